@@ -45,10 +45,11 @@ def study(tmp_path):
     made = Study(plan, tmp_path)
     made.store = Store.made(tmp_path)
     made.store.adopt(plan)
-    while made._advanced(True):
-        for job in made._open():
+    while made._begin_next():
+        for job in made.store.jobs():
             numbers = {"fluid_load": load(job.changes)}
             made.store.add_record(Record(job.key, Ending.COMPUTED, numbers=numbers))
+    made.store.close()
     return made
 
 

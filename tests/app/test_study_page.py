@@ -35,14 +35,15 @@ def page(tmp_path_factory):
     study = Study(read_plan(STUDY, folder, base=base), folder)
     study.store = Store.made(folder)
     study.store.adopt(study.plan)
-    jobs = next_batch(study.plan, study.result())
-    study.store.add_jobs(jobs)
+    jobs = list(next_batch(study.plan, study.result()))
+    study.store.add_batch(study.store.jobs(), jobs)
     for job in jobs[:-1]:
         x, y = job.point
         found = {"cof": 0.2 - 0.1 * x**2, "rubber_volume": 1e-4 * (1 + math.sqrt(1 - x) + 0.1 * y)}
         study.store.add_record(Record(job.key, Ending.COMPUTED, numbers=found))
     reason = "the sole is gone & <b>lost</b>"
     study.store.add_record(Record(jobs[-1].key, Ending.INFEASIBLE, reason))
+    study.store.close()
     return write_study_report(study, study.result()).page
 
 

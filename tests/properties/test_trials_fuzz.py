@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from damaged_bytes import damaged, damages
 from underfoot.core import DataError
 from underfoot.trials import described_file
 
@@ -23,38 +24,11 @@ FILES = [
     "cetr/HT-2n-6-4_2_001.csv",
     "pcs/demo_3.txt",
 ]
-INSERTS = [b"\t", b"\n", b",", b"nan", b"\0" * 40, b"1e999", b"=", b"\xff\xfe", b"-", b"1,5;", b"P"]
 
 
 @cache
 def _content(name: str) -> bytes:
     return (DATA / name).read_bytes()
-
-
-@st.composite
-def damages(draw):
-    """Cut, overwrite, remove or insert; half of it in the first 4 kB, where headers lie."""
-    kind = draw(st.sampled_from(["cut", "overwrite", "remove", "insert"]))
-    near = draw(st.booleans())
-    place = draw(st.floats(0.0, 1.0, exclude_max=True))
-    many = draw(st.integers(1, 8))
-    values = draw(st.binary(min_size=many, max_size=many))
-    return kind, near, place, values, draw(st.sampled_from(INSERTS))
-
-
-def _damaged(data: bytes, damage) -> bytes:
-    kind, near, place, values, insert = damage
-    at = int(place * (min(len(data), 4096) if near else len(data)))
-    if kind == "cut":
-        return data[:at]
-    if kind == "remove":
-        return data[:at] + data[at + 37 * len(values) :]
-    if kind == "insert":
-        return data[:at] + insert + data[at:]
-    changed = bytearray(data)
-    for i, value in enumerate(values):
-        changed[(at + 97 * i) % len(data)] = value
-    return bytes(changed)
 
 
 def _refusal(path: Path) -> DataError | None:
@@ -76,7 +50,7 @@ def _refusal(path: Path) -> DataError | None:
 @given(damage=damages())
 def test_damaged_files_never_raise_anything_else(tmp_path, name, damage):
     path = tmp_path / Path(name).name
-    path.write_bytes(_damaged(_content(name), damage))
+    path.write_bytes(damaged(_content(name), damage))
     refused = _refusal(path)
     assert refused is None or (refused.where and "not foreseen" not in refused.what)
 
@@ -101,7 +75,7 @@ def workbook(tmp_path_factory) -> bytes:
 @given(damage=damages())
 def test_damaged_workbooks_never_raise_anything_else(tmp_path, workbook, damage):
     path = tmp_path / "run.xlsx"
-    path.write_bytes(_damaged(workbook, damage))
+    path.write_bytes(damaged(workbook, damage))
     refused = _refusal(path)
     assert refused is None or refused.where
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from underfoot.core import DataError, Provenance, SourcedValue, Status, unknown_name
+from underfoot.core import DataError, Provenance, SourcedValue, Status, UnderfootError, unknown_name
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
@@ -244,6 +244,7 @@ class Result(Presentable):
         Raises:
             DataError: The folder is no result, is damaged or was written by a newer version.
         """
+        import h5py
         import xarray
 
         folder = Path(folder)
@@ -252,6 +253,7 @@ class Result(Presentable):
             case_text = (folder / "case.toml").read_text(encoding="utf-8")
             fields = Fields()
             if (folder / FIELDS_FILE).exists():
+                h5py.File(folder / FIELDS_FILE).close()  # refuses a damaged one without a trace
                 with xarray.open_dataset(folder / FIELDS_FILE, engine="h5netcdf") as dataset:
                     fields = from_xarray(dataset)
             if stored["format"] > FORMAT:
@@ -281,9 +283,11 @@ class Result(Presentable):
                 provenance=_known(Provenance, provenance),
                 case_text=case_text,
             )
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except UnderfootError:
+            raise
+        except Exception as error:  # of JSON, netCDF and HDF5, whatever a damaged byte meets
             raise DataError(
-                f"can't be read as a result ({error})",
+                "can't be read as a result: a file is missing or damaged",
                 where=str(folder),
                 allowed="a folder with case.toml, result.json and result.nc",
                 remedy="Run the case again with --out",

@@ -1,5 +1,6 @@
 """Text files of instruments: encoding, cells, decimal commas, what stands for a missing value."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -20,19 +21,45 @@ def existing(path: Path | str) -> Path:
 
 
 def numbered_lines(path: Path | str, remedy: str) -> list[tuple[int, str]]:
-    """Return the lines of a text file (UTF-8, else Latin-1) with their numbers, from 1.
+    """Return the lines of a text file with their numbers, from 1.
 
     Raises:
-        DataError: No such file, or a binary one, with the ``remedy`` for that.
+        DataError: No such file, or a binary or empty one, with the ``remedy`` for that.
     """
-    raw = existing(path).read_bytes()
-    if b"\x00" in raw[:4096]:
-        raise DataError("this is a binary file", where=str(path), remedy=remedy)
+    return list(enumerate(decoded(existing(path).read_bytes(), str(path), remedy).splitlines(), 1))
+
+
+def decoded(data: bytes, where: str, remedy: str = "Export it again as text") -> str:
+    """Return the text of a file: UTF-8, UTF-16, else Latin-1; a DataError for binary content."""
+    wide = utf16_of(data)
     try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")
-    return list(enumerate(text.splitlines(), 1))
+        text = data.decode(wide or "utf-8-sig")
+    except UnicodeDecodeError as error:
+        if wide:
+            raise DataError("damaged UTF-16 text", where=where) from error
+        text = data.decode("latin-1")
+    if "\0" in text or not text.strip():
+        raise DataError(
+            "empty" if not text.strip("\0 \r\n\t") else "not a text file",
+            where=where,
+            remedy=remedy,
+        )
+    return text
+
+
+def utf16_of(data: bytes) -> str:
+    """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    even, odd = data[:400:2], data[1:400:2]
+    if len(data) > 20 and not any(odd) and all(even):
+        return "utf-16-le"
+    return "utf-16-be" if len(data) > 20 and not any(even) and all(odd) else ""
+
+
+def harmless(cell: str) -> str:
+    """Return a cell that no spreadsheet runs as a formula: such text gets a quote before it."""
+    return f"'{cell}" if re.match(r"(?s)[=@\t\r]|[+-].*([|!]|[A-Za-z]\()", cell) else cell
 
 
 def with_content(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:

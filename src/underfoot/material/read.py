@@ -305,7 +305,7 @@ def _prony(
 
 def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
     try:
-        data = tomllib.loads(text.existing(path).read_text(encoding="utf-8"))
+        data = tomllib.loads(text.decoded(text.existing(path).read_bytes(), str(path)))
     except tomllib.TOMLDecodeError as error:
         raise DataError(f"not valid TOML: {error}", where=str(path)) from error
     kind = data.get("modulus", "young")

@@ -1,6 +1,5 @@
 """Rubber on one rough surface, dry, at rest or sliding: real contact, hysteresis, gap, leakage."""
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 from underfoot import material, surface
 from underfoot.core import Cache, DataError, InputError, Progress, display, silent, to_si
 from underfoot.core.checks import exactly_one
+from underfoot.core.files import read_toml
 from underfoot.core.presentation import Presentable, Table
 from underfoot.rough_contact import (
     ContactTable,
@@ -349,7 +349,7 @@ def _compound(path: Path) -> tuple[Any, str, list[str]] | None:
 
     if path.suffix.lower() != ".toml" or not path.is_file():
         return None
-    read = tomllib.loads(path.read_text(encoding="utf-8"))
+    read = read_toml(path)
     if "relaxation" not in read:
         return None
     compound = Material.model_validate(read)

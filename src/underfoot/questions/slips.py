@@ -14,6 +14,7 @@ import numpy as np
 from underfoot.compute.slips import slips
 from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.presentation import Presentable, Table, percent, quantity_text
+from underfoot.core.text import decoded
 from underfoot.slip.dynamics import (
     GaitHistory,
     SlipMotion,
@@ -262,7 +263,7 @@ def slip_population(
 def own_histories(path: Path) -> list[GaitHistory]:
     """Return the steps of a table of load and shear, or those of a force-plate recording."""
     if path.suffix.lower() == ".csv" and path.is_file():
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = decoded(path.read_bytes(), str(path)).splitlines()
         if any(line.startswith(COLUMNS[0]) for line in lines[:50]):
             return [load_history(path)]
     return recorded_histories(path)
@@ -281,8 +282,7 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     from underfoot.trials.measurement import MEAN_OF_STEPS
 
     try:
-        with path.open(encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = list(csv.DictReader(decoded(path.read_bytes(), str(path)).splitlines()))
     except FileNotFoundError:
         raise InputError("there is no such file", where=str(path)) from None
     steps: dict[str, list[float]] = {}

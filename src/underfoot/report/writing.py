@@ -18,6 +18,7 @@ from typing import Any
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.text import harmless
 
 Writer = Callable[[Path], object]
 WRITTEN_IN_PART = 6
@@ -153,7 +154,7 @@ def _rescued(lost: Mapping[str, Writer]) -> str:
 def _csv_cell(value: Any) -> Any:
     if value is None or value != value:
         return ""
-    return repr(value) if isinstance(value, float) else value
+    return repr(value) if isinstance(value, float) else harmless(str(value))
 
 
 def _finite(value: Any) -> Any:

@@ -2,7 +2,9 @@
 
 Morris: mean absolute elementary effect mu* and their deviation sigma (Morris 1991; Campolongo,
 Cariboni and Saltelli 2007). Sobol: share of the variance by an input alone, S1, and with all its
-interactions, ST (Saltelli et al. 2010). Computed by SALib; intervals by its bootstrap, 95 %.
+interactions, ST (Saltelli et al. 2010). Computed by SALib; intervals by its bootstrap, 95 %. On a
+surrogate its own error is in them: the indices I_k of the surrogate without each of K parts of the
+runs give the variance (K - 1) / K sum (I_k - mean I)^2 (jackknife by groups; Efron and Stein 1981).
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from underfoot.core.presentation import Presentable, Table
 from .goals import AnyGoal
 from .plan import StudyPlan
 from .result import StudyResult
-from .surrogate import Surrogate, fitted
+from .surrogate import NORMAL, Surrogate, fitted
 
 ON_SURROGATE = {"sobol": 1024, "morris": 200}
 """Base sample or trajectories on a surrogate."""
@@ -114,6 +116,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
         DataError: Too few usable runs; a run of the sample that has no number.
     """
     plan, method = result.plan, result.plan.method
+    without: list[Array] = []
     if method.on == "runs":
         points = np.array([one.point for one in result.designs])
         values = result.values(result.designs, [goal])[:, 0]
@@ -127,17 +130,26 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
         (surrogate,) = surrogates(result, [goal])
         points = _salib(plan, "sample")(ON_SURROGATE[method.analysis])
         values, basis = surrogate.mean(points), surrogate.reliability
-    given = (points, values) if method.analysis == "morris" else (values,)
+        without = surrogate.means_without(points)
+    columns = _indices(plan, points, values)
+    if without:
+        parts = np.array([_indices(plan, points, one) for one in without])
+        variance = (len(parts) - 1) * parts.var(axis=0)
+        columns[1::2] = np.sqrt(columns[1::2] ** 2 + NORMAL**2 * variance[::2])
+    paths = tuple(one.path for one in plan.dimensions)
+    return Effects(str(goal), goal.unit, method.analysis, paths, *columns, basis=basis)
+
+
+def _indices(plan: StudyPlan, points: Array, values: Array) -> Array:
+    """Return (4, inputs): main, half its interval, total, half its interval, by SALib."""
+    method = plan.method.analysis
+    given = (points, values) if method == "morris" else (values,)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # indices of an output that does not vary
         indices = _salib(plan, "analyze")(*given)
-    columns = [
-        np.nan_to_num(np.array(indices.get(part, np.zeros(len(plan.dimensions))), float))
-        for name in KEYS[method.analysis]
-        for part in (name, f"{name}_conf")
-    ]
-    paths = tuple(one.path for one in plan.dimensions)
-    return Effects(str(goal), goal.unit, method.analysis, paths, *columns, basis=basis)
+    nothing = np.zeros(len(plan.dimensions))
+    names = [part for name in KEYS[method] for part in (name, f"{name}_conf")]
+    return np.nan_to_num(np.array([indices.get(name, nothing) for name in names], dtype=float))
 
 
 def surrogates(result: StudyResult, goals: Sequence[AnyGoal]) -> list[Surrogate]:

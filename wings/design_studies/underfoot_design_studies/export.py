@@ -21,7 +21,8 @@ def exported(
     can't be made as a solid, has no STEP file; a remark says so.
     """
     result, plan = study.result(), study.plan
-    remarks = study.store.write_views(result.cases())
+    study.store.write_views(result.cases())
+    remarks: list[str] = []
     with whole_folder(folder, overwrite=overwrite) as staging:
         for name in ("results.csv", "results.parquet"):
             if (study.store.folder / name).exists():

@@ -20,6 +20,8 @@ from underfoot.core.catalogue import Catalogue
 
 TAIL = 1e-3
 """Share of a distribution beyond either end that a study leaves out."""
+WIDEST = 1e6
+"""Factor of a lognormal distribution at most."""
 OUTSIDE = 0.025
 """Share of a distribution that may lie beyond the physical range, where it is held."""
 
@@ -136,8 +138,10 @@ def read_input(path: str, given: Any, known: Catalogue) -> Input | Follow:
         raise InputError(f"{logarithmic!r}", where=".log", allowed="true or false")
     if logarithmic and low <= 0:
         raise RangeError(f"{given['from']}", where=".from", allowed="above 0 with log")
-    if steps is not None and (isinstance(steps, bool) or not isinstance(steps, int) or steps < 2):
-        raise InputError(f"{steps!r}", where=".steps", allowed="a whole number from 2")
+    if steps is not None and (
+        isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 10**6
+    ):
+        raise InputError(f"{steps!r}", where=".steps", allowed="a whole number from 2 to 10^6")
     return Range(path, low, high, logarithmic, steps)
 
 
@@ -166,6 +170,8 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
     unit, second, place = unit_at(path), given[forms[kind]], f".{forms[kind]}"
     if kind == "lognormal":
         spread = _number(second, place, 1.0)
+        if spread > WIDEST:
+            raise RangeError(f"{second}", where=place, allowed=f"up to {WIDEST:g}")
         if centre <= 0:
             raise RangeError(f"{given[kind]}", where=f".{kind}", allowed="above 0")
     else:

@@ -4,12 +4,13 @@ A batch is proposed when the one before has ended, so that the same study propos
 whichever machine computes them in whatever order. An optimisation begins with designs spread
 evenly, and then takes those of a genetic algorithm's front on the surrogates (NSGA-II; Deb et al.
 2002) that promise the largest growth of the hypervolume (Emmerich, Giannakoglou and Naujoks 2006),
-times the probability that every requirement holds.
+times the probability that every requirement holds. The front that grows is that of the surrogates'
+means at the designs, not of the runs as they came out: a lucky run is no front.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -44,14 +45,14 @@ BEYOND = 0.1
 
 
 @threads_limited(1)
-def next_batch(plan: StudyPlan, so_far: StudyResult) -> list[Job]:
+def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     """Return the jobs of the next batch; none where the study is done."""
-    batch = max((job.batch for job in so_far.jobs), default=-1) + 1
-    count = len({job.design for job in so_far.jobs})
-    if batch == 0:
+    if not so_far.jobs:
         return _jobs(plan, first_points(plan), 0, 0)
-    if any(job.quick != plan.method.quick for job in so_far.jobs):
+    last = so_far.jobs[-1]
+    if last.quick != plan.method.quick:
         return []  # the front was the last
+    batch, count = last.batch + 1, last.design + 1
     left = min(plan.designs - count, plan.method.batch)
     try:
         if left > 0 and plan.method.kind in ("optimise", "robust"):
@@ -83,12 +84,11 @@ def first_points(plan: StudyPlan) -> list[tuple[float, ...]]:
     return plan.sampled_points(count)
 
 
-def _jobs(plan: StudyPlan, points: Sequence[Sequence[float]], first: int, batch: int) -> list[Job]:
-    return [
-        job
-        for number, point in enumerate(points, start=first)
-        for job in plan.jobs(number, point, batch)
-    ]
+def _jobs(
+    plan: StudyPlan, points: Sequence[Sequence[float]], first: int, batch: int
+) -> Iterator[Job]:
+    for number, point in enumerate(points, start=first):
+        yield from plan.jobs(number, point, batch)
 
 
 def _least_known(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
@@ -113,8 +113,9 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     usable = np.isfinite(known).all(axis=1)
     low, high = known[usable].min(axis=0), known[usable].max(axis=0)
     span = np.where(high > low, high - low, 1.0)
-    scaled = (known - low) / span
-    front = scaled[so_far.allowed(so_far.designs)]
+    places = np.array([one.point for one in so_far.designs])
+    believed = np.column_stack([one.mean(places) for one in goals]) * signs
+    front = ((believed - low) / span)[so_far.allowed(so_far.designs)]
     measure = optional_module("moocore", "study", "An optimisation").Hypervolume(
         ref=[1.0 + BEYOND] * len(signs)
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from enum import StrEnum
 from functools import cache
@@ -13,13 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, SourcedValue, content_hash
+from underfoot.core import SourcedValue, content_hash
 from underfoot.core.arrays import Array
 from underfoot.core.fields import Fields
 from underfoot.core.identity import files_hash, program_hash
 
-FORMAT = 1
-"""Version of the lines that this package writes; newer ones are refused."""
+from .lines import FORMAT
 
 
 @cache
@@ -67,9 +66,10 @@ class Job:
         return json.dumps({"format": FORMAT, **asdict(self)}, ensure_ascii=False)
 
     @classmethod
-    def from_line(cls, text: str) -> Job:
+    def from_line(cls, text: str | bytes) -> Job:
         """Return the job of a line."""
-        plain = _known(json.loads(text))
+        plain = json.loads(text)
+        del plain["format"]
         return cls(**{**plain, "point": tuple(plain["point"])})
 
 
@@ -129,37 +129,31 @@ class Record:
             reason=self.reason,
         )
 
-    def line(self) -> str:
-        """Return the record as a line of JSON; draws as float32, base64."""
+    def line(self, place: tuple[int, int, int]) -> str:
+        """Return the record as a line of JSON.
+
+        Its draws are binary (float32): ``place`` is their first byte in the file of draws beside,
+        their number and the CRC-32 of their bytes.
+        """
         plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "maps"}
-        packed = base64.b64encode(np.asarray(self.draws, "<f4").tobytes()).decode("ascii")
-        plain |= {"draws": packed, "breaches": list(self.breaches)}
+        del plain["draws"]
+        plain |= {"breaches": list(self.breaches), "draws": place}
         return json.dumps({"format": FORMAT, **plain}, ensure_ascii=False, allow_nan=False)
 
+    @property
+    def packed_draws(self) -> bytes:
+        """The draws as float32."""
+        return np.asarray(self.draws, "<f4").tobytes()
+
     @classmethod
-    def from_line(cls, text: str) -> Record:
-        """Return the record of a line."""
-        plain = _known(json.loads(text))
-        draws = np.frombuffer(base64.b64decode(plain["draws"]), "<f4").astype(float)
-        plain |= {"draws": draws, "ending": Ending(plain["ending"])}
-        return cls(**{**plain, "breaches": tuple(plain["breaches"])})
+    def from_line(cls, text: str | bytes, draws: Callable[[int, int, int], bytes]) -> Record:
+        """Return the record of a line; ``draws`` reads the bytes of a place.
 
-
-def _known(plain: dict[str, Any]) -> dict[str, Any]:
-    version = plain.pop("format", None)
-    if not isinstance(version, int):
-        raise DataError("a line without its format")
-    if version > FORMAT:
-        raise NewerFormat(version)
-    return plain
-
-
-class NewerFormat(DataError):
-    """A line of a newer version of the program."""
-
-    def __init__(self, version: int) -> None:
-        super().__init__(
-            f"the study was written by a newer version (format {version})",
-            allowed=f"format {FORMAT} or older",
-            remedy="Update underfoot, or run the study in another folder",
-        )
+        Lines of version 1 have them in base64.
+        """
+        plain = json.loads(text)
+        one = plain["draws"]
+        packed = base64.b64decode(one) if plain.pop("format") == 1 else draws(*one)
+        plain |= {"draws": np.frombuffer(packed, "<f4").astype(float)}
+        plain |= {"ending": Ending(plain["ending"]), "breaches": tuple(plain["breaches"])}
+        return cls(**plain)

@@ -99,7 +99,7 @@ def write_study_report(
     study: Study, result: StudyResult, *, progress: Progress = silent
 ) -> Written:
     """Write results.csv, results.parquet, surrogate.json and report.html into a study's folder."""
-    failures = study.store.write_views(result.cases())
+    study.store.write_views(result.cases())
     ready = shown(result, _soles(study, result, progress))
     if ready.models:
         models = [one.to_dict() for one in ready.models]
@@ -109,7 +109,7 @@ def write_study_report(
     drawn = {name: png(make()) for name, make in figures(ready).items()}
     with whole_file(path) as part:
         part.write_text(page_text(ready, drawn), encoding="utf-8")
-    return Written(study.store.folder, path, tuple(failures))
+    return Written(study.store.folder, path)
 
 
 @figures.register(StudyResult)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,8 +17,10 @@ from underfoot.core.presentation import Presentable, Table, percent, quantity_te
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
+from .jobs import Jobs
 from .plan import StudyPlan
 from .record import Ending, Job, Record, program
+from .records import Records
 
 if TYPE_CHECKING:
     import xarray
@@ -27,6 +29,23 @@ if TYPE_CHECKING:
 PLACE = ("design", "condition", "draw", "grid", "ending")
 MOST_ROWS = 12
 """Designs of a table on the terminal."""
+
+
+class DesignRecords(Mapping[tuple[int, int], Record]):
+    """The records of a design by (condition, draw), each read when it is asked for."""
+
+    def __init__(self, keys: Mapping[tuple[int, int], str], records: Mapping[str, Record]) -> None:
+        self._keys, self._records = keys, records
+
+    def __getitem__(self, place: tuple[int, int]) -> Record:
+        key = self._keys[place]
+        return self._records.get(key) or Record(key, Ending.OPEN)
+
+    def __iter__(self) -> Iterator[tuple[int, int]]:
+        return iter(self._keys)
+
+    def __len__(self) -> int:
+        return len(self._keys)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,17 +114,21 @@ class StudyResult(Presentable):
     @cached_property
     def all_designs(self) -> list[Design]:
         """Every design on every grid, in the order in which they were set."""
-        by_design: dict[tuple[int, bool], dict[tuple[int, int], Job]] = {}
+        keys: dict[tuple[int, bool], dict[tuple[int, int], str]] = {}
+        points: dict[int, tuple[float, ...]] = {}
         for job in self.jobs:
-            by_design.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job
-        designs = []
-        for (number, quick), jobs in sorted(
-            by_design.items(), key=lambda one: (one[0][0], one[0][1])
-        ):
-            point = next(iter(jobs.values())).point
-            records = {at: self.record(job) for at, job in jobs.items()}
-            designs.append(Design(number, point, self.plan.design_changes(point), quick, records))
-        return designs
+            keys.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job.key
+            points[job.design] = job.point
+        return [
+            Design(
+                number,
+                points[number],
+                self.plan.design_changes(points[number]),
+                quick,
+                DesignRecords(keys[number, quick], self.records),
+            )
+            for number, quick in sorted(keys)
+        ]
 
     @cached_property
     def designs(self) -> list[Design]:
@@ -200,8 +223,11 @@ class StudyResult(Presentable):
     @cached_property
     def endings(self) -> Counter[str]:
         """How many cases ended in each way, open ones too."""
-        jobs = {job.key: job for job in self.jobs}.values()
-        return Counter(str(self.record(job).ending) for job in jobs)
+        keys = set(self.jobs.keys if isinstance(self.jobs, Jobs) else (j.key for j in self.jobs))
+        if isinstance(self.records, Records):
+            return Counter(str(self.records.ending(key)) for key in keys)
+        known = {key: self.records[key].ending for key in keys & self.records.keys()}
+        return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, and the best design."""

@@ -1,14 +1,17 @@
-"""A study on disk: a folder of text lines that any number of processes add to.
+"""A study on disk: a folder that any number of processes add to.
 
     study.toml          the study as written
     base.toml           its base case, complete
-    jobs.jsonl          what is to be computed, in batches, by the one process that leads
+    jobs.jsonl          what is to be computed, in closed batches, by the one process that leads
     cases-WORKER.jsonl  one line a finished case, each file by one process: the truth
-    claims/KEY          who computes a case now
-    alive/WORKER        touched while a process works
+    draws-WORKER.f4     the draws of COF of those cases
+    packed-HASH.npz     ten thousand finished cases, of processes that ended
+    claims/             who computes what now (``claims``)
+    alive/WORKER        touched while a process works; sessions.jsonl tells of those that ended
 
-A case is finished when its line is on disk. Lines are only added, so that a process killed at any
-time leaves at most one torn line, which is not read. All of it works on a network file system.
+A case is finished when its line is written; every line has a check sum. Lines are only added, so
+that a process killed at any time leaves at most one torn line, which is not read. All of it works
+on a network file system, with or without locks of the kernel.
 """
 
 from __future__ import annotations
@@ -22,18 +25,28 @@ import threading
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from importlib.util import find_spec
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
+from zlib import crc32
+
+import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import DataError, InputError, MissingExtraError
+from underfoot.core import DataError, InputError
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER, whole_file
 from underfoot.core.optional import optional_module
+from underfoot.core.text import harmless
 
+from .claims import Round, begin_round, clear, latest_round
+from .jobs import Jobs, add_batch, jobs_at
+from .lines import FORMAT, sealed, whole_lines, write_all, write_file
 from .plan import StudyPlan
-from .record import Job, NewerFormat, Record
+from .record import Job, Record
+from .records import DRAWS, LINES, Records
 from .study_file import read_plan
 
 if TYPE_CHECKING:
@@ -41,22 +54,34 @@ if TYPE_CHECKING:
 
 BEAT, SILENT = 20.0, 120.0
 """s: a working process touches its file this often, and counts as dead after this long."""
+COMMIT = 0.2
+"""s: what is written goes to the disk together with all that was written since so long."""
+SETTLED = 1.0
+"""s within which two that take the lead from a dead process see each other, without locks."""
 RESERVE = 1 << 18
 """Bytes kept free on the disk for the cases that end after it filled up."""
+LED = ("base.toml", "study.toml", "sessions.jsonl", "jobs", "packed", "lead.claim")
+"""Files that only the leading process writes."""
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
 
 class Store:
     """The folder of a study, as one process sees it.
 
-    ``name`` is that of the process: machine, process number and start.
+    Attributes:
+        name: Of the process: machine, process number and start.
+        known: The finished cases that this process knows; ``records`` looks for those of others.
     """
 
     def __init__(self, folder: Path | str) -> None:
         self.folder = Path(folder)
         self.name = f"{platform.node() or 'host'}-{os.getpid()}-{uuid4().hex[:6]}"
-        self._records: dict[str, Record] = {}
-        self._read: dict[Path, int] = {}
+        self.known = Records(self.folder)
+        self._round: Round | None = None
+        self._held: dict[str, tuple[Round, int]] = {}
+        self._left: dict[tuple[Round, int], int] = {}
+        self._open: dict[Path, tuple[int, int]] = {}
+        self._committed = 0.0
 
     @classmethod
     def made(cls, folder: Path | str) -> Store:
@@ -83,21 +108,22 @@ class Store:
         return store
 
     def adopt(self, plan: StudyPlan) -> None:
-        """Write the plan; only the leading process does.
+        """Write the plan; only the leading process does. What dead processes left is tidied.
 
-        Where the folder has another one its jobs are set aside; cases that both have stay finished.
+        Where the folder has another plan its jobs are set aside; cases of both stay finished.
         """
+        self._tidy()
         base = f"{plan.base.to_toml(complete=True)}\n# hash: {plan.base.hash}\n"
-        texts = {"base.toml": base, "study.toml": plan.text}
+        texts = {"base.toml": base.encode("utf-8"), "study.toml": plan.text.encode("utf-8")}
         paths = {self.folder / name: text for name, text in texts.items()}
-        if all(path.exists() and path.read_text("utf-8") == text for path, text in paths.items()):
+        if all(path.exists() and path.read_bytes() == text for path, text in paths.items()):
             return
         with suppress(FileNotFoundError):
-            jobs = self.folder / "jobs.jsonl"
-            jobs.rename(self.folder / f"jobs-before-{int(time.time())}.jsonl")
+            aside = f"jobs-before-{uuid4().hex[:8]}.jsonl"
+            os.rename(self.folder / "jobs.jsonl", self.folder / aside)
+        self.begin_round(Jobs(self.folder / "jobs.jsonl"), ended=False)
         for path, text in paths.items():
-            with whole_file(path) as part:
-                part.write_text(text, encoding="utf-8")
+            write_file(path, text)
 
     @property
     def exists(self) -> bool:
@@ -121,34 +147,37 @@ class Store:
 
     # --- what is there ---
 
-    def jobs(self) -> list[Job]:
-        """Return the jobs that were set, in their order, each once."""
-        jobs: dict[tuple[str, int], Job] = {}
-        path = self.folder / "jobs.jsonl"
-        for line in _whole_lines(path, 0)[0]:
-            job = _parsed(Job, line, path)
-            if job is not None:
-                jobs.setdefault((job.key, job.design), job)
-        return list(jobs.values())
+    def jobs(self) -> Jobs:
+        """Return the jobs of the batches that were set, in their order."""
+        return Jobs(self.folder / "jobs.jsonl")
 
-    def records(self) -> dict[str, Record]:
+    def records(self) -> Records:
         """Return the finished cases by key; only what is new is read again."""
-        for path in sorted(self.folder.glob("cases-*.jsonl")):
-            lines, self._read[path] = _whole_lines(path, self._read.get(path, 0))
-            for line in lines:
-                record = _parsed(Record, line, path)
-                if record is not None:
-                    self._records.setdefault(record.key, record)
-        return self._records
+        return self.known.look() if self.folder.is_dir() else self.known
 
     # --- what is added ---
 
-    def add_jobs(self, jobs: Iterable[Job]) -> None:
-        """Append jobs; only the leading process does."""
-        _append(self.folder / "jobs.jsonl", "".join(f"{job.line()}\n" for job in jobs))
+    def add_batch(self, before: Jobs, jobs: Iterable[Job]) -> int:
+        """Set a batch behind those that are there; return its number of jobs.
+
+        Only the leading process does. A batch that was cut off is written over.
+        """
+        try:
+            return add_batch(self.folder / "jobs.jsonl", before.batches, jobs, before.end)
+        except OSError as error:
+            raise self._full(error) from error
+
+    def close_batches(self, before: Iterable[Job]) -> None:
+        """Write jobs of version 1 anew, in closed batches."""
+        whole = self.folder / f".jobs-{uuid4().hex}"
+        whole.touch()
+        unique = {(job.key, job.design): job for job in before}.values()
+        for batch, jobs in groupby(unique, lambda job: job.batch):
+            add_batch(whole, batch, jobs, whole.stat().st_size)
+        os.replace(whole, self.folder / "jobs.jsonl")
 
     def add_record(self, record: Record) -> None:
-        """Append a finished case, its maps first, and end the claim on it.
+        """Add a finished case, its maps first.
 
         A full disk costs none: the reserve takes it, and then the study stops.
 
@@ -163,22 +192,68 @@ class Store:
             if error.errno not in NO_SPACE:
                 raise
             full = error
-        path, line = self.folder / f"cases-{self.name}.jsonl", f"{record.line()}\n"
         try:
-            _append(path, line)
+            self._write(record)
         except OSError as error:
             if error.errno not in NO_SPACE:
                 raise
             self._reserve.unlink(missing_ok=True)
-            _append(path, line)
+            self._write(record)
             full = error
-        self._records[record.key] = record
-        self.release(record.key)
+        block = self._held.pop(record.key, None)
+        if block is not None:
+            self._left[block] -= 1
+            if not self._left[block]:
+                del self._left[block]
+                block[0].finish(block[1])
         if full is not None:
-            raise DataError(
-                f"the disk of {self.folder} is full; every finished case is on it",
-                remedy="Free some space and give the same command again: it goes on from there",
-            ) from full
+            raise self._full(full) from full
+
+    def _full(self, error: OSError) -> Exception:
+        """Return what to raise for an error of the file system: our words for a full disk."""
+        if error.errno not in NO_SPACE:
+            return error
+        return DataError(
+            f"the disk of {self.folder} is full; every finished case is on it",
+            remedy="Free some space and give the same command again: it goes on from there",
+        )
+
+    def _write(self, record: Record) -> None:
+        draws, path = record.packed_draws, self.folder / f"{LINES}{self.name}.jsonl"
+        first = self._append(self.folder / f"{DRAWS}{self.name}.f4", draws) if draws else 0
+        line = sealed(record.line((first, len(draws) // 4, crc32(draws))))
+        place = self._append(path, line)
+        self.known.add(record.key, record.ending, path, place, place + len(line))
+        if time.monotonic() - self._committed > COMMIT:
+            self.commit()
+
+    def _append(self, path: Path, data: bytes) -> int:
+        """Append to a file of this process; return the first byte. All of it is written or none."""
+        if path not in self._open:
+            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+            self._open[path] = descriptor, os.fstat(descriptor).st_size
+        descriptor, end = self._open[path]
+        try:
+            write_all(descriptor, data)
+        except OSError:
+            os.ftruncate(descriptor, end)
+            raise
+        self._open[path] = descriptor, end + len(data)
+        return end
+
+    def commit(self) -> None:
+        """See on the disk what was written."""
+        for descriptor, _ in self._open.values():
+            os.fsync(descriptor)
+        self._committed = time.monotonic()
+
+    def close(self) -> None:
+        """Commit and close the files of this process."""
+        try:
+            self.commit()
+        finally:
+            while self._open:
+                os.close(self._open.popitem()[1][0])
 
     def _add_maps(self, key: str, maps: Fields) -> None:
         optional_module("zarr", "study", "Keeping the maps of a study")
@@ -202,19 +277,41 @@ class Store:
     def leading(self) -> Iterator[bool]:
         """Yield whether this process leads the study: one at a time may set jobs.
 
-        The lock ends with the process, however that ends.
+        The lock ends with the process, however that ends; where the file system has none a file
+        with the name of the process does instead.
         """
-        path = self.folder / "lead.lock"
+        path, claim = self.folder / "lead.lock", self.folder / "lead.claim"
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
         try:
-            if not _locked(descriptor):
+            locked = _locked(descriptor)
+            if locked is False or (locked is None and not self._claimed(claim)):
                 yield False
                 return
-            os.truncate(descriptor, 0)
-            os.write(descriptor, self.name.encode())
+            os.ftruncate(descriptor, 0)
+            write_all(descriptor, self.name.encode("utf-8"))
             yield True
         finally:
             os.close(descriptor)
+            with suppress(OSError):
+                if claim.read_text(encoding="utf-8") == self.name:
+                    claim.unlink()
+
+    def _claimed(self, path: Path) -> bool:
+        """Return whether this process has a claim: nobody else has it, or who had it is dead."""
+        try:
+            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+        except FileExistsError:
+            owner = path.read_text(encoding="utf-8")
+            if owner == self.name or self._alive(owner, path):
+                return False
+            write_file(path, self.name.encode("utf-8"))
+            time.sleep(SETTLED)
+            return path.read_text(encoding="utf-8") == self.name
+        try:
+            write_all(descriptor, self.name.encode("utf-8"))
+        finally:
+            os.close(descriptor)
+        return True
 
     def leader(self) -> str:
         """Return the name of the process that leads, or led last."""
@@ -222,12 +319,80 @@ class Store:
             return (self.folder / "lead.lock").read_text(encoding="utf-8")
         return ""
 
+    def begin_round(self, jobs: Jobs, *, ended: bool) -> int:
+        """Give out the jobs that have no record; return their number.
+
+        Only the leading process does. ``ended`` says that a round without jobs is the last one;
+        otherwise there is none until the next begins.
+        """
+        records, seen = self.known, set[str]()
+        places = [
+            place
+            for key, place in zip(jobs.keys, jobs.places.tolist(), strict=True)
+            if not (key in records or key in seen or seen.add(key))
+        ]
+        claims = self.folder / "claims"
+        if places or ended:
+            self._round = begin_round(claims, np.array(places), len(set(jobs.keys)), self.name)
+        else:
+            clear(claims)
+            self._round = None
+        return len(places)
+
+    @property
+    def round(self) -> Round | None:
+        """The latest round; None before the first."""
+        latest = latest_round(self.folder / "claims", self.name, self._round)
+        self._round = latest
+        return latest
+
+    def take(self, *, in_order: bool) -> list[Job] | None:
+        """Return jobs that this process is to compute now, [] where they are; None without any."""
+        latest = self.round
+        claimed = latest and latest.claim(self._alive, in_order=in_order)
+        if latest is None or claimed is None:
+            return None
+        number, places, owners = claimed
+        if owners:
+            self.known.look(owners)
+        jobs = jobs_at(self.folder / "jobs.jsonl", places)
+        jobs = [job for job in jobs if job.key not in self.known]
+        block = latest, number
+        self._held |= {job.key: block for job in jobs}
+        self._left[block] = len(jobs)
+        if not jobs:
+            del self._left[block]
+            latest.finish(number)
+        return jobs
+
+    @property
+    def holds(self) -> bool:
+        """Whether jobs that this process took have no record yet."""
+        return bool(self._held)
+
+    @property
+    def shared(self) -> bool:
+        """Whether another living process computes cases of the study."""
+        latest = self.round
+        return latest is not None and latest.held(self._alive)
+
+    @property
+    def share(self) -> float:
+        """Share of the jobs set so far that are finished."""
+        if self._round is None:
+            return 0.0
+        done = self._round.share
+        mine = {block for block in self._left if block[0] is self._round}
+        sizes = sum(self._round.size(number) for _, number in mine)
+        left = sum(self._left[block] for block in mine)
+        return done + (sizes - left) / max(self._round.total, 1)
+
     @contextmanager
     def working(self, workers: int) -> Iterator[None]:
         """Show that this process works with so many workers, as long as the block lasts."""
         path, stop = self.folder / "alive" / self.name, threading.Event()
         start = {"began": time.time(), "workers": workers, "ended": None}
-        path.write_text(json.dumps(start), encoding="utf-8")
+        write_file(path, json.dumps(start).encode("utf-8"))
         with suppress(OSError):
             self._reserve.write_bytes(os.urandom(RESERVE))
 
@@ -243,66 +408,58 @@ class Store:
         finally:
             stop.set()
             thread.join()
+            self.close()
             with suppress(OSError):
                 self._reserve.unlink(missing_ok=True)
-                path.write_text(json.dumps({**start, "ended": time.time()}), encoding="utf-8")
-
-    def claim(self, key: str) -> bool:
-        """Return whether this process may compute a case: nobody else does, or who did is dead."""
-        path = self.folder / "claims" / key
-        for _ in range(2):
-            try:
-                descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
-            except FileExistsError:
-                pass
-            else:
-                os.write(descriptor, self.name.encode())
-                os.close(descriptor)
-                return True
-            try:
-                owner = path.read_text(encoding="utf-8")
-                if owner == self.name or self._alive(owner, path):
-                    return False
-                # of several that see a dead owner one can take the claim away
-                aside = path.with_name(f".{key}-{self.name}")
-                path.rename(aside)
-                aside.unlink()
-            except FileNotFoundError:
-                continue
-        return False
-
-    def release(self, key: str) -> None:
-        """End the claim of this process on a case, a half-made one too."""
-        path = self.folder / "claims" / key
-        with suppress(FileNotFoundError):
-            if path.read_text(encoding="utf-8") in (self.name, ""):
-                path.unlink()
+                write_file(path, json.dumps({**start, "ended": time.time()}).encode("utf-8"))
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return when each process began and ended (None: still at work) and its workers."""
-        sessions = []
-        for path in sorted((self.folder / "alive").glob("*")):
+        tidied = whole_lines(self.folder / "sessions.jsonl")
+        sessions = [json.loads(body)["session"] for _, _, body in tidied]
+        for path in sorted((self.folder / "alive").glob("[!.]*")):
             with suppress(OSError, ValueError):
                 plain = json.loads(path.read_text(encoding="utf-8"))
-                seen = path.stat().st_mtime
                 if plain["ended"] is None and not self._alive(path.name, path):
-                    plain["ended"] = seen
+                    plain["ended"] = path.stat().st_mtime
                 sessions.append({"name": path.name, **plain})
         return sessions
 
-    def _alive(self, owner: str, claim: Path) -> bool:
+    def _tidy(self) -> None:
+        """Remove what processes left that ended or were killed, and keep their times."""
+        ended = {one["name"]: one for one in self.sessions() if one["ended"] is not None}
+        lines = [sealed(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()]
+        if lines:
+            write_file(self.folder / "sessions.jsonl", b"".join(lines))
+        for name in ended:
+            (self.folder / "alive" / name).unlink(missing_ok=True)
+        for path in (*self.folder.glob(".reserve-*"), *(self.folder / "alive").glob(".*-*")):
+            reserve = path.parent == self.folder
+            owner = path.name.removeprefix(".reserve-") if reserve else path.name[1:-33]
+            if not self._alive(owner, path):
+                path.unlink(missing_ok=True)
+        for name in LED:  # halves: only who leads writes them
+            for path in self.folder.glob(f".{name}*-*"):
+                path.unlink(missing_ok=True)
+
+    def _alive(self, owner: str, mark: Path | None = None) -> bool:
+        """Return whether a process works: its file, or else ``mark``, was touched lately."""
         machine, _, number = owner.rpartition("-")[0].rpartition("-")
         here = machine == (platform.node() or "host") and number.isdigit()
         if here and not _runs(int(number)):
             return False
-        now = self.folder / "alive" / self.name
-        clock = now if now.exists() else self.folder / "alive"
-        with suppress(OSError):
-            if clock == now:
-                os.utime(now)  # times of one clock, that of the file system
-            there = self.folder / "alive" / owner
-            seen = (there if there.exists() else claim).stat().st_mtime
-            return clock.stat().st_mtime - seen < SILENT
+        own, there = (self.folder / "alive" / name for name in (self.name, owner))
+        with suppress(OSError, ValueError):
+            if owner and there.exists():
+                mark = there
+                if json.loads(there.read_text(encoding="utf-8") or "{}").get("ended") is not None:
+                    return False
+            if mark is None:
+                return False
+            clock = own if own.exists() else self.folder / "alive"
+            if clock == own:
+                os.utime(own)  # times of one clock, that of the file system
+            return clock.stat().st_mtime - mark.stat().st_mtime < SILENT
         return False
 
     @property
@@ -311,84 +468,36 @@ class Store:
 
     # --- views ---
 
-    def write_views(self, cases: DataFrame) -> list[str]:
-        """Write results.csv and, where DuckDB is installed, results.parquet; return remarks."""
+    def write_views(self, cases: DataFrame) -> None:
+        """Write results.csv and, where DuckDB is installed, results.parquet."""
         table = self.folder / "results.csv"
         with whole_file(table) as part:
-            cases.to_csv(part, index=False)
-        try:
-            duckdb = optional_module("duckdb", "study", "results.parquet")
-        except MissingExtraError as error:
-            return [str(error)]
+            texts = cases.select_dtypes(exclude="number").columns
+            cases.assign(**{name: cases[name].map(_cell) for name in texts}).to_csv(
+                part, index=False
+            )
+        if find_spec("duckdb") is None:
+            return
+        import duckdb
+
         with whole_file(table.with_suffix(".parquet")) as part, duckdb.connect() as database:
             database.read_csv(str(table), sample_size=-1).write_parquet(str(part))
-        return []
 
 
-def _append(path: Path, text: str) -> None:
-    """Append whole lines and see them on the disk; take a torn one back where it is full."""
-    data = text.encode("utf-8")
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
-    try:
-        before = os.fstat(descriptor).st_size
-        if before and not _ends_with_line(path, before):
-            data = b"\n" + data  # after the torn line of a leader that was killed
-        try:
-            written = os.write(descriptor, data)
-            if written < len(data):
-                raise OSError(errno.ENOSPC, "no space left on the disk", str(path))
-            os.fsync(descriptor)
-        except OSError:
-            os.truncate(path, before)
-            raise
-    finally:
-        os.close(descriptor)
+def _cell(value: Any) -> Any:
+    return harmless(value) if isinstance(value, str) else value
 
 
-def _ends_with_line(path: Path, size: int) -> bool:
-    with path.open("rb") as stream:
-        stream.seek(size - 1)
-        return stream.read(1) == b"\n"
-
-
-def _whole_lines(path: Path, start: int) -> tuple[list[str], int]:
-    """Return the lines from a place on that have an end, and the place after them."""
-    try:
-        with path.open("rb") as stream:
-            stream.seek(start)
-            data = stream.read()
-    except FileNotFoundError:
-        return [], start
-    end = data.rfind(b"\n") + 1
-    return data[:end].decode("utf-8", errors="replace").split("\n")[:-1], start + end
-
-
-def _parsed(kind: Any, line: str, path: Path) -> Any:
-    """Return the job or record of a line; None of a torn one."""
-    try:
-        return kind.from_line(line)
-    except NewerFormat as error:
-        raise DataError(error.what, where=str(path), **error.parts) from None
-    except (ValueError, KeyError, TypeError, DataError):
-        return None
-
-
-def _locked(descriptor: int) -> bool:
+def _locked(descriptor: int) -> bool | None:
+    """Return whether a file is locked for this process; None where it can't be."""
     try:
         import fcntl
-    except ImportError:  # Windows
-        import msvcrt
 
-        lock: Any = msvcrt
-        try:
-            lock.locking(descriptor, lock.LK_NBLCK, 1)
-        except OSError:
-            return False
-        return True
-    try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
+    except (ImportError, OSError):  # Windows; NFS and Lustre without a lock service
+        return None
     return True
 
 

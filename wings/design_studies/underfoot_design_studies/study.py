@@ -9,17 +9,18 @@ from pathlib import Path
 
 from underfoot.core import InputError, Progress, nearest_match, silent
 
+from .claims import Round
 from .computing import computed, crashed
 from .engines import Engine, engine
 from .plan import StudyPlan
-from .proposals import next_batch
-from .record import Job
+from .proposals import first_points, next_batch
+from .record import Ending, Job
 from .result import StudyResult
 from .store import Store
 from .study_file import load_plan
 
-PAUSE = 1.0
-"""s between two looks for work while others work."""
+PAUSE, LONGEST_PAUSE = 1.0, 16.0
+"""s between two looks for work while others work, at first and at most."""
 
 
 class Study:
@@ -33,7 +34,6 @@ class Study:
     def __init__(self, plan: StudyPlan, folder: Path | str) -> None:
         self.plan = plan
         self.store = Store(folder)
-        self._total = 0
 
     def __repr__(self) -> str:
         return f"<Study {self.plan.name!r:.80} in {str(self.store.folder)!r:.80}>"
@@ -88,6 +88,8 @@ class Study:
             self.store.adopt(self.plan)
             compute, count = engine(on, workers)
             self._compute(compute, count, progress, leads=True)
+            if not any(one["ended"] is None for one in self.store.sessions()):
+                self.store.records().pack(self.store.jobs().keys)
         return self.result()
 
     def work(self, workers: int | None = 1, progress: Progress = silent) -> int:
@@ -100,12 +102,15 @@ class Study:
         with self.store.leading() as leads:
             if leads:
                 self.store.adopt(self.plan)
+                latest = self.store.round
+                if latest is None or not len(latest.places):
+                    self._begin_next()  # not begun, or finished: is every case still there?
         return self._compute(*engine(None, workers), progress, leads=False)
 
     def result(self) -> StudyResult:
         """Return what the folder holds now; views of it are not written."""
         sessions = self.store.sessions() if self.store.exists else []
-        return StudyResult(self.plan, self.store.jobs(), dict(self.store.records()), sessions)
+        return StudyResult(self.plan, self.store.jobs(), self.store.records(), sessions)
 
     def _compute(self, compute: Engine, workers: int, progress: Progress, *, leads: bool) -> int:
         """Compute what nobody else does until the study is done; return how many cases."""
@@ -115,57 +120,59 @@ class Study:
                 for record in compute(function, self._claimed(leads), crashed):
                     self.store.add_record(record)
                     count += 1
-                    progress(self._stage(), len(self.store.records()) / max(self._total, 1))
+                    progress(self._stage(), self.store.share)
             except KeyboardInterrupt as stop:
                 kept = "every finished case is kept; the same command goes on from there"
                 raise type(stop)(kept) from None
         return count
 
     def _claimed(self, leads: bool) -> Iterator[Job | None]:
-        """Yield open jobs that nobody else computes; None while the last ones of a batch run."""
-        held: set[str] = set()
-        try:
-            while True:
-                for job in self._open():
-                    if job.key in held or job.key in self.store.records():
-                        continue
-                    held.add(job.key)  # first: Ctrl-C may come in the middle of the claim
-                    if not self.store.claim(job.key):
-                        held.remove(job.key)
-                    elif job.key in self.store.records():  # finished between look and claim
-                        self.store.release(job.key)
-                    else:
-                        yield job
-                held -= self.store.records().keys()
-                if held:
-                    yield None
-                elif self._open():
-                    time.sleep(PAUSE)  # others compute them
-                elif not self._advanced(leads):
-                    return
-        finally:
-            for key in held:  # a finished one too: Ctrl-C may come before its claim is ended
-                self.store.release(key)
+        """Yield jobs that nobody else computes; None while the last ones of a batch run."""
+        if leads and not self.store.shared:
+            self._begin_next()
+        pause = PAUSE
+        while True:
+            jobs = self.store.take(in_order=leads)
+            if jobs is not None:
+                yield from jobs
+                pause = PAUSE
+            elif self.store.holds:
+                yield None
+            elif (latest := self.store.round) is not None and not latest.ended:
+                time.sleep(pause)  # others compute them
+                pause = min(2 * pause, LONGEST_PAUSE)
+            elif not self._advanced(latest, leads):
+                return
 
-    def _advanced(self, leads: bool) -> bool:
-        """Return whether the study goes on, after setting its next batch if this process leads."""
+    def _advanced(self, ended: Round | None, leads: bool) -> bool:
+        """Return whether the study goes on after a round, and begin the next where none has."""
+        if ended is not None and not len(ended.places):
+            return False
+        if leads:
+            return self._begin_next()
+        with self.store.leading() as leads:
+            if leads and self.store.round is ended:
+                return self._begin_next()
         if not leads:
-            with self.store.leading() as leads:
-                if leads:
-                    return bool(self._open()) or self._advanced(True)
             time.sleep(PAUSE)
-            return True
-        so_far = StudyResult(self.plan, self.store.jobs(), self.store.records())
-        new = next_batch(self.plan, so_far)
-        self.store.add_jobs(new)
-        return bool(new)
+        return True
 
-    def _open(self) -> list[Job]:
-        records = self.store.records()
-        jobs = {job.key: job for job in self.store.jobs()}
-        self._total = len(jobs)
-        return [job for key, job in jobs.items() if key not in records]
+    def _begin_next(self) -> bool:
+        """Give out what has no record, or else the next batch; return whether there was any."""
+        records, jobs = self.store.records(), self.store.jobs()
+        if not jobs.closed:  # of version 1: whole where no design of the first batch is missing
+            first = {job.design for job in jobs if job.batch == 0}
+            self.store.close_batches(jobs if len(first) == len(first_points(self.plan)) else [])
+            jobs = self.store.jobs()
+        while not self.store.begin_round(jobs, ended=False):
+            batch = next_batch(self.plan, StudyResult(self.plan, jobs, records))
+            if not self.store.add_batch(jobs, batch):
+                self.store.begin_round(jobs, ended=True)
+                return False
+            jobs = self.store.jobs()
+        return True
 
     def _stage(self) -> str:
-        failed = sum(not record.usable for record in self.store.records().values())
+        endings = self.store.known.endings
+        failed = endings.total() - endings[Ending.COMPUTED]
         return "Cases" + (f", {failed} without numbers" if failed else "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -110,7 +111,10 @@ def _ran(
     with TemporaryDirectory(prefix="underfoot-study-") as temporary:
         place = Path(temporary if folder is None else folder)
         study = Study(read_plan(text, place, base=case), place)
-        return study.run(on, workers, progress)
+        result = study.run(on, workers, progress)
+        if folder is None:  # it goes now
+            result = replace(result, jobs=list(result.jobs), records=dict(result.records))
+        return result
 
 
 def _written(section: str, path: str, value: Any) -> Any:

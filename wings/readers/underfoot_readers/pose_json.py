@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.core.text import decoded
 from underfoot.trials.readers.draft import Draft
-from underfoot.trials.readers.text import decoded
 from underfoot.trials.trial import Event, Trial
 
 _RATE = ("fps", "frame_rate", "framerate", "frequency", "rate", "sampling_rate")

@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
+from underfoot.core.text import decoded
 from underfoot.trials.readers import Profile, read_profile, trial_suffixes
 from underfoot.trials.readers.sheet import is_workbook, workbook_rows
-from underfoot.trials.readers.text import decoded, is_number, name_and_unit, si_unit
+from underfoot.trials.readers.text import is_number, name_and_unit, si_unit
 
 from .file_result import FileResult
 

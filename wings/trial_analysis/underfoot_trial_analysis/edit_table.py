@@ -8,8 +8,9 @@ from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
+from underfoot.core.text import decoded
 from underfoot.trials.events import EditError
-from underfoot.trials.readers.text import decoded, is_number, name_and_unit
+from underfoot.trials.readers.text import is_number, name_and_unit
 from underfoot.trials.trial import Edit
 
 from .conditions import named_file, table_columns, table_delimiter

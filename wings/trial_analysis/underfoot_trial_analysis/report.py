@@ -21,6 +21,7 @@ from underfoot.core import Progress, display, silent
 from underfoot.core.files import check_writable_folder
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
+from underfoot.core.text import harmless
 from underfoot.report.html import embedded, environment, png
 
 from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
@@ -385,7 +386,7 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, float):
         return f"{value:.10g}" if math.isfinite(value) else ""
-    return str(value)
+    return harmless(str(value))
 
 
 def _number_or_text(value: Any) -> Any:
@@ -399,7 +400,7 @@ def _number_or_text(value: Any) -> Any:
 def _safe(text: str) -> str:
     """Text that a spreadsheet would run as a formula is kept as text."""
     cleaned = "".join(letter for letter in text if letter.isprintable() or letter in "\n\t")
-    return "'" + cleaned if cleaned.startswith(("=", "+", "@")) else cleaned
+    return harmless(cleaned)
 
 
 def _sheet_name(name: str, used: set[str]) -> str:

@@ -10,14 +10,17 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
 from underfoot.core import DataError, InputError, nearest_match
 from underfoot.core.optional import optional_module
 from underfoot.core.registry import offered
+from underfoot.core.text import decoded
 
 from .cad import read_cad
 from .mesh import Mesh
 from .rhino import read_rhino
-from .scenes import read_scene
+from .scenes import AGAIN, read_scene
 from .stl import looks_like_stl, read_stl
 
 SUFFIXES = {
@@ -37,7 +40,6 @@ SUFFIXES = {
 }
 """Endings of file names and the format they promise."""
 FORMATS = "STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB, GLTF, 3MF"
-_MARKED_TEXT = {"utf-8-sig": (BOM_UTF8,), "utf-16": (BOM_UTF16_LE, BOM_UTF16_BE)}
 _MAGIC = {
     b"ISO-10303-21": "STEP",
     b"ply\n": "PLY",
@@ -77,9 +79,8 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     """
     path = Path(path)
     head = _head(path)
-    for encoding, marks in _MARKED_TEXT.items():
-        if head.startswith(marks):
-            return _of_text(path, encoding, unit)
+    if head.startswith((BOM_UTF8, BOM_UTF16_LE, BOM_UTF16_BE)):
+        return _of_text(path, unit)
     optional_module("numba", "cad", "Reading a sole from a file")
     ending = path.suffix.lower()
     if ending not in SUFFIXES and (reader := offered("outsole_readers", ending[1:])):
@@ -103,6 +104,9 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     mesh = _reader(content, unit)(path)
     if mesh.triangles.shape[0] == 0:
         raise DataError("the file holds no faces", where=str(path))
+    bad = np.count_nonzero(~np.isfinite(mesh.triangles).all(axis=(1, 2)))
+    if bad:
+        raise DataError(f"a corner of {bad} faces is no number", where=str(path), remedy=AGAIN)
     if content != promised:
         ending = path.suffix or "no ending"
         remark = f"The file is named {ending} but holds {content}; it was read as {content}."
@@ -110,12 +114,9 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     return mesh
 
 
-def _of_text(path: Path, encoding: str, unit: str) -> Mesh:
+def _of_text(path: Path, unit: str) -> Mesh:
     """Return the triangles of a text file with a byte-order mark, as shells of Windows write it."""
-    try:
-        text = path.read_bytes().decode(encoding)
-    except UnicodeDecodeError as error:
-        raise DataError(f"damaged {encoding} text", where=str(path)) from error
+    text = decoded(path.read_bytes(), str(path), AGAIN)
     with TemporaryDirectory() as folder:
         plain = Path(folder, path.name)
         plain.write_text(text, encoding="utf-8")

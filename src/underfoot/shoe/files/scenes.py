@@ -12,7 +12,7 @@ from underfoot.core.optional import optional_module
 
 from .mesh import Mesh
 
-_REMEDY = "It may be cut short or damaged: export the outsole again"
+AGAIN = "It may be cut short or damaged: export the outsole again"
 _LONGEST, _SHORTEST = 2.0, 0.02  # m: what glTF may hold when its metres are meant
 
 
@@ -40,11 +40,7 @@ def read_scene(path: Path, kind: str) -> Mesh:
                 scene = trimesh.load_scene(stream, file_type=kind.lower(), **options)
         parts = _parts(scene)
     except Exception as error:  # trimesh raises whatever its parser meets
-        raise DataError(
-            f"the {kind} file cannot be read ({type(error).__name__}: {error})",
-            where=str(path),
-            remedy=_REMEDY,
-        ) from error
+        raise DataError(f"the {kind} file cannot be read", where=str(path), remedy=AGAIN) from error
     if not parts:
         content = _points_alone(path, kind)
         raise DataError(
@@ -58,7 +54,7 @@ def read_scene(path: Path, kind: str) -> Mesh:
             raise DataError(
                 f"a face names corner {faces.max()} of {vertices.shape[0]}",
                 where=str(path),
-                remedy=_REMEDY,
+                remedy=AGAIN,
             )
         soups.append(np.ascontiguousarray(vertices[faces], dtype=np.float32))
     unit, remarks = None, []

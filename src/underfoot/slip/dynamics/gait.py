@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
+from underfoot.core.text import decoded, existing
 
 COLUMNS = (
     "time_s",
@@ -147,12 +148,8 @@ def load_history(path: Path | str) -> GaitHistory:
     Columns: time_s, normal_per_body_weight, shear_ratio and, where known, foot_angle_deg and
     heel_velocity_m_per_s.
     """
-    path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise InputError("there is no such file", where=str(path)) from None
-    return history_from_lines(text.splitlines(), path.stem)
+    text = decoded(existing(path).read_bytes(), str(path))
+    return history_from_lines(text.splitlines(), Path(path).stem)
 
 
 def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:

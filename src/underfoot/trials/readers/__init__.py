@@ -77,7 +77,7 @@ def read_trials(
         # Damaged files break assumptions in ways no check foresees; the user gets one kind of
         # answer, the programmer the cause.
         raise DataError(
-            f"damaged in a way that was not foreseen ({type(error).__name__}: {error})",
+            "damaged in a way that was not foreseen",
             where=path.name,
             remedy="Export the file again; if it opens elsewhere, please report it",
         ) from error

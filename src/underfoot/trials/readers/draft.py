@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.text import decoded
 
 from ..plates import finished_plate
 from ..trial import Channel, Event, Marker, Plate, Trial
 from .profile import Profile
-from .text import decoded, in_si, lines_of, rate_of, si_unit, table, truncated, unique_names
+from .text import in_si, lines_of, rate_of, si_unit, table, truncated, unique_names
 
 
 @dataclass

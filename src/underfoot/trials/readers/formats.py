@@ -17,8 +17,7 @@ from typing import Any
 
 from underfoot.core import DataError, InputError
 from underfoot.core.registry import offered, offers
-
-from .text import utf16_of
+from underfoot.core.text import utf16_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.text import decoded
 
 from . import text
 from .text import si_unit
@@ -72,7 +73,7 @@ def sheet_from(
         rows = workbook_rows(data, where, sheet)
         table = _layout(rows, header_line, where)
         return _sheet(rows, table, rows[table.first :], None, where, notes)
-    lines = text.lines_of(text.decoded(data, where))
+    lines = text.lines_of(decoded(data, where))
     while lines and not lines[-1].strip():
         lines.pop()
     body = lines[len(lines) // 2 :]  # a free header may hold other signs: the body decides
@@ -215,7 +216,7 @@ def workbook_rows(data: bytes, where: str, sheet: str | None = None) -> list[lis
         raise
     except Exception as error:  # both packages raise whatever their parsers meet
         raise DataError(
-            f"the workbook is damaged ({type(error).__name__})",
+            "the workbook is damaged",
             where=where,
             remedy="Save it again, or export it as CSV",
         ) from error

@@ -15,34 +15,6 @@ NOTHING = ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
 
 
-def decoded(data: bytes, where: str) -> str:
-    """Return the text of a file: UTF-8, UTF-16, else Latin-1; a DataError for binary content."""
-    wide = utf16_of(data)
-    try:
-        text = data.decode(wide or "utf-8-sig")
-    except UnicodeDecodeError as error:
-        if wide:
-            raise DataError("damaged UTF-16 text", where=where) from error
-        text = data.decode("latin-1")
-    if "\0" in text or not text.strip():
-        raise DataError(
-            "empty" if not text.strip("\0 \r\n\t") else "not a text file",
-            where=where,
-            remedy="Export it again as text",
-        )
-    return text
-
-
-def utf16_of(data: bytes) -> str:
-    """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return "utf-16"
-    even, odd = data[:400:2], data[1:400:2]
-    if len(data) > 20 and not any(odd) and all(even):
-        return "utf-16-le"
-    return "utf-16-be" if len(data) > 20 and not any(even) and all(odd) else ""
-
-
 def lines_of(text: str) -> list[str]:
     """Return the lines without line ends; only CR and LF count as ends."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

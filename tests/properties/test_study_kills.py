@@ -1,0 +1,153 @@
+"""A study that is killed at any write, and then gone on with, has every design that it planned.
+
+Each call by which the study changes its folder is stopped in turn, half done where it is a write:
+from there on nothing is written, as after kill -9 or a power cut.
+"""
+
+import os
+import shutil
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from underfoot_design_studies import plan as plan_module
+from underfoot_design_studies import proposals, records, study
+from underfoot_design_studies.record import Ending, Record
+from underfoot_design_studies.store import Store
+from underfoot_design_studies.study import Study
+from underfoot_design_studies.study_file import read_plan
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+TEXT = """\
+base = "work_shoe_untreaded_glycerol.toml"
+[vary]
+"motion.speed" = { from = "0.3 m/s", to = "0.7 m/s" }
+[method]
+kind = "optimise"
+budget = 12
+batch = 3
+[outputs]
+maximise = ["cof"]
+"""
+CHANGES = ("write", "fsync", "replace", "rename", "mkdir", "ftruncate", "unlink", "rmdir")
+DEAD = 2**22 + 1
+"""Number of no process: that of who was killed."""
+
+
+class Killed(BaseException):
+    """The end of a process."""
+
+
+class Plug:
+    """Pull it at one of the calls that change the folder."""
+
+    def __init__(self, patch, at):
+        self.at, self.count = at, 0
+        for name in CHANGES:
+            patch.setattr(os, name, self.guarded(name, getattr(os, name)))
+        patch.setattr(os, "getpid", lambda: DEAD)
+
+    def guarded(self, name, real):
+        def call(*arguments, **named):
+            self.count += 1
+            if self.count == self.at and name == "write":
+                real(arguments[0], arguments[1][: len(arguments[1]) // 2])
+            if self.count >= self.at:
+                raise Killed
+            return real(*arguments, **named)
+
+        return call
+
+
+@pytest.fixture
+def made_up(monkeypatch):
+    """Cases that are numbers, and proposals that depend on every case that is finished."""
+    keys = {}
+
+    def key(self, changes, quick):
+        return keys.setdefault(repr((changes, quick)), f"{len(keys):024x}")
+
+    def computed(base, job):
+        draws = np.full(3, job.point[0])
+        return Record(job.key, Ending.COMPUTED, numbers={"cof": job.point[0]}, draws=draws)
+
+    def promising(so_far, count):
+        values = so_far.goal_values(so_far.designs)[:, 0]
+        assert np.isfinite(values).all()
+        shift = float(values.sum()) % 1.0
+        return [((shift + k / 7) % 1.0,) for k in range(count)]
+
+    monkeypatch.setattr(plan_module.StudyPlan, "_key", key)
+    monkeypatch.setattr(study, "computed", computed)
+    monkeypatch.setattr(proposals, "_promising", promising)
+    monkeypatch.setattr(records, "PACK", 5)
+    return read_plan(TEXT, EXAMPLES)
+
+
+def run(plan, folder, lead):
+    """Run a study, or help with it without a leader."""
+    one = Study(plan, folder)
+    one.run(workers=1) if lead else one.work()
+
+
+def answers(folder):
+    """Return design, place and number of every case, as any process reads them."""
+    result = Study.load(folder).result()
+    return [(one.design, one.point, result.record(one).numbers["cof"]) for one in result.jobs]
+
+
+def calls(plan, folder, lead, at):
+    """Return how many calls changed the folder, up to the one at which the plug was pulled."""
+    with pytest.MonkeyPatch.context() as patch:
+        plug = Plug(patch, at)
+        with suppress(Killed):
+            run(plan, folder, lead)
+    return plug.count
+
+
+@pytest.mark.parametrize("lead", [True, False])
+@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.slow)])
+def test_killed_at_every_write_the_designs_set_are_those_planned(made_up, tmp_path, lead, step):
+    total = calls(made_up, tmp_path / "whole", lead, at=10**9)
+    whole = answers(tmp_path / "whole")
+    assert len(whole) == made_up.designs == 12
+    assert total > 90
+    for at in range(1, total + 1, step):
+        folder = tmp_path / str(at)
+        calls(made_up, folder, lead, at)
+        if at % 3 == 0:  # killed once more as it goes on
+            calls(made_up, folder, lead, 1 + at % 41)
+        Study(made_up, folder).run(workers=1)
+        assert answers(folder) == whole, f"killed at call {at}"
+        assert [one.name for one in folder.rglob(".*")] == [".underfoot"]
+        shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("name", ["jobs.jsonl", "cases", "draws", "jobs.npy", "study.toml"])
+def test_a_folder_that_was_copied_in_part_is_completed(made_up, tmp_path, name, monkeypatch):
+    monkeypatch.setattr(records, "PACK", 10**6)
+    run(made_up, tmp_path / "whole", True)
+    whole = answers(tmp_path / "whole")
+    (path,) = [one for one in (tmp_path / "whole").rglob(f"{name}*") if one.is_file()]
+    size = path.stat().st_size
+    for share in (0.0, 0.3, 0.5, 0.97):
+        copy = tmp_path / "copy"
+        shutil.copytree(tmp_path / "whole", copy)
+        os.truncate(copy / path.relative_to(tmp_path / "whole"), int(share * size))
+        Study(made_up, copy).run(workers=1)
+        assert answers(copy) == whole
+        shutil.rmtree(copy)
+
+
+@pytest.mark.parametrize("place", range(0, 2400, 160))
+def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, place):
+    run(made_up, tmp_path, True)
+    whole, path = answers(tmp_path), tmp_path / "jobs.jsonl"
+    data = bytearray(path.read_bytes())
+    data[place] ^= 2
+    path.write_bytes(data)
+    assert len(Store(tmp_path).jobs()) < 12
+    Study(made_up, tmp_path).run(workers=1)
+    assert answers(tmp_path) == whole

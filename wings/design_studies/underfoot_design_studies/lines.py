@@ -1,0 +1,117 @@
+"""Lines of text that carry a check sum, and files that are whole or absent.
+
+Every byte that a study writes goes through ``os``, so that a test can stop it at each call.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from uuid import uuid4
+from zlib import crc32
+
+from underfoot.core import DataError
+
+FORMAT = 2
+"""Version of the lines that this package writes; newer ones are refused, version 1 is read."""
+_HEAD = b'{"format": '
+
+
+def sealed(text: str) -> bytes:
+    """Return a line: the text (JSON), a tab, its CRC-32 in hexadecimal digits."""
+    body = text.encode("utf-8")
+    return b"%s\t%08x\n" % (body, crc32(body))
+
+
+def unsealed(line: bytes) -> bytes | None:
+    """Return the text of a line without its end; None of a torn or damaged one.
+
+    Lines of version 1 have no check sum and are taken as they are.
+
+    Raises:
+        NewerFormat: The line is of a later version.
+    """
+    version = line[len(_HEAD) : line.find(b",")]
+    if not line.startswith(_HEAD) or not version.isdigit():
+        return None
+    if int(version) > FORMAT:
+        raise NewerFormat(int(version))
+    if int(version) == 1:
+        return line if line.endswith(b"}") else None
+    body, _, check = line.rpartition(b"\t")
+    return body if b"%08x" % crc32(body) == check else None
+
+
+def whole_lines(path: Path, start: int = 0) -> Iterator[tuple[int, int, bytes]]:
+    """Yield (first byte, byte after, text) of each undamaged line from a place on.
+
+    Raises:
+        NewerFormat: A line of a later version.
+    """
+    try:
+        stream = path.open("rb")
+    except FileNotFoundError:
+        return
+    with stream:
+        stream.seek(start)
+        for line in stream:
+            end = start + len(line)
+            try:
+                body = unsealed(line[:-1]) if line.endswith(b"\n") else None
+            except NewerFormat as error:
+                raise DataError(error.what, where=str(path), **error.parts) from None
+            if body is not None:
+                yield start, end, body
+            start = end
+
+
+def line_at(path: Path, place: int) -> bytes | None:
+    """Return the text of the line that begins at a byte; None where it is damaged."""
+    with path.open("rb") as stream:
+        stream.seek(place)
+        return unsealed(stream.readline().removesuffix(b"\n"))
+
+
+def write_all(descriptor: int, data: bytes) -> None:
+    """Write every byte.
+
+    Raises:
+        OSError: The disk took a part only.
+    """
+    view = memoryview(data)
+    while view:
+        written = os.write(descriptor, view)
+        if not written:
+            raise OSError(errno.ENOSPC, "no space left on the disk")
+        view = view[written:]
+
+
+def write_file(path: Path, data: bytes) -> None:
+    """Put a file in its place, whole and on the disk."""
+    part = path.with_name(f".{path.name}-{uuid4().hex}")
+    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+    try:
+        try:
+            write_all(descriptor, data)
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+        os.replace(part, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(part)
+        raise
+
+
+class NewerFormat(DataError):
+    """A line of a newer version of the program."""
+
+    def __init__(self, version: int) -> None:
+        super().__init__(
+            f"the study was written by a newer version (format {version})",
+            allowed=f"format {FORMAT} or older",
+            remedy="Update underfoot, or run the study in another folder",
+        )

@@ -1,0 +1,215 @@
+"""The finished cases of a study: what its files hold, known by key, read when they are asked for.
+
+    cases-WORKER.jsonl  a line a case, by one process
+    draws-WORKER.f4     its draws of COF, float32
+    packed-HASH.npz     many finished cases of processes that ended
+
+Of each case its key, ending and place are in memory (0.3 kB); the last cases read are too.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from hashlib import blake2b
+from io import BytesIO
+from pathlib import Path
+from zipfile import BadZipFile
+from zlib import crc32
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from .lines import line_at, whole_lines, write_file
+from .record import Ending, Record
+
+RECENT = 4096
+"""Records that stay in memory after they were read."""
+PACK = 10_000
+"""Cases of a packed file, and finished cases in lines from which on they are packed."""
+ENDINGS = tuple(Ending)
+LINES, DRAWS, PACKED = "cases-", "draws-", "packed-"
+
+
+class Records(Mapping[str, Record]):
+    """The finished cases of a folder by key, as of the last ``look``."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._files: list[Path] = []
+        self._numbers: dict[Path, int] = {}
+        self._places: dict[str, int] = {}
+        self._sizes: dict[str, int] = {}
+        self.endings: Counter[Ending] = Counter()
+        self._record = lru_cache(RECENT)(self._read)
+        self._packed = lru_cache(4)(_packed_columns)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._places
+
+    def __getitem__(self, key: str) -> Record:
+        try:
+            return self._record(self._places[key] >> 3)
+        except FileNotFoundError:  # packed since the last look
+            self.look()
+            return self._record(self._places[key] >> 3)
+
+    def ending(self, key: str) -> Ending:
+        """Return how a case ended; ``OPEN`` of one that is not finished. Nothing is read."""
+        place = self._places.get(key)
+        return Ending.OPEN if place is None else ENDINGS[place & 7]
+
+    def look(self, owners: Sequence[str] | None = None) -> Records:
+        """Read what is new in the files of some processes, by default of all; return this.
+
+        Files are opened only where their size has changed.
+        """
+        with os.scandir(self.folder) as entries:
+            files = sorted(entries, key=lambda one: (not one.name.startswith(PACKED), one.name))
+        if self._sizes.keys() - {one.name for one in files}:  # packed: places are others now
+            self.__init__(self.folder)
+        for one in files:
+            path = Path(one.path)
+            if path.suffix == ".npz" and one.name.startswith(PACKED):
+                if one.name not in self._sizes:
+                    self._sizes[one.name] = 0
+                    self._add_packed(path)
+            elif path.suffix == ".jsonl" and one.name.startswith(LINES):
+                wanted = owners is None or path.stem.removeprefix(LINES) in owners
+                if wanted and one.stat().st_size > self._sizes.get(one.name, 0):
+                    self._add_lines(path)
+        return self
+
+    def add(self, key: str, ending: Ending, path: Path, place: int, end: int) -> None:
+        """Take in a case of this process that has just been written."""
+        self._put(key, ending, self._number(path), place)
+        self._sizes[path.name] = end
+
+    def pack(self, order: Sequence[str]) -> None:
+        """Put what is in lines into packed files, in an order of keys, and remove the lines.
+
+        Nobody else may write. A kill in between leaves cases in both, which are equal.
+        """
+        texts = [path for path in self._files if path.suffix == ".jsonl"]
+        own = {k for k, path in enumerate(self._files) if path.suffix == ".jsonl"}
+        loose = [key for key, place in self._places.items() if place >> 51 in own]
+        if not texts or 0 < len(loose) < PACK:
+            return
+        rank = {key: k for k, key in enumerate(order)}
+        loose.sort(key=lambda key: rank.get(key, len(rank)))
+        for first in range(0, len(loose), PACK):
+            data = self._packed_bytes(loose[first : first + PACK])
+            name = f"{PACKED}{first // PACK:05}-{blake2b(data, digest_size=8).hexdigest()}.npz"
+            write_file(self.folder / name, data)
+        for path in texts:
+            path.unlink()
+            _draws_of(path).unlink(missing_ok=True)
+        self.look()
+
+    def _packed_bytes(self, keys: Sequence[str]) -> bytes:
+        lines, draws = [], bytearray()
+        for key in keys:
+            record = self[key]
+            packed = record.packed_draws
+            place = (len(draws), len(packed) // 4, crc32(packed))
+            lines.append(record.line(place).encode("utf-8"))
+            draws += packed
+        stream = BytesIO()
+        np.savez_compressed(
+            stream,
+            allow_pickle=False,
+            keys=np.array(keys, dtype=np.str_),
+            endings=np.array([ENDINGS.index(self.ending(key)) for key in keys], dtype=np.uint8),
+            lines=np.frombuffer(b"\n".join(lines), dtype=np.uint8),
+            draws=np.frombuffer(bytes(draws), dtype=np.uint8),
+        )
+        return stream.getvalue()
+
+    def _number(self, path: Path) -> int:
+        if path not in self._numbers:
+            self._numbers[path] = len(self._files)
+            self._files.append(path)
+        return self._numbers[path]
+
+    def _put(self, key: str, ending: Ending, number: int, place: int) -> None:
+        if key not in self._places:
+            self._places[key] = (number << 48 | place) << 3 | ENDINGS.index(ending)
+            self.endings[ending] += 1
+
+    def _add_lines(self, path: Path) -> None:
+        number, draws, size = self._number(path), _draws_of(path), -1
+        end = self._sizes.get(path.name, 0)
+        for start, after, body in whole_lines(path, end):
+            end = after
+            _, _, version, _, _, key, _, _, _, ending, _ = body.split(b'"', 10)
+            if version != b": 1, ":
+                first, count, _ = body[body.rfind(b"[") + 1 : -2].split(b",")
+                last = int(first) + 4 * int(count)
+                if last > size:
+                    size = draws.stat().st_size if draws.exists() else 0
+                if last > size:
+                    continue  # a folder that was copied in part
+            self._put(key.decode(), Ending(ending.decode()), number, start)
+        self._sizes[path.name] = end
+
+    def _add_packed(self, path: Path) -> None:
+        number = self._number(path)
+        try:
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as columns:
+                keys, endings = columns["keys"].tolist(), columns["endings"].tolist()
+        except (OSError, ValueError, KeyError, BadZipFile):
+            return  # damaged: its cases are open again
+        for place, (key, ending) in enumerate(zip(keys, endings, strict=True)):
+            self._put(key, ENDINGS[ending], number, place)
+
+    def _read(self, place: int) -> Record:
+        path, place = self._files[place >> 48], place & (1 << 48) - 1
+        if path.suffix == ".npz":
+            lines, draws = self._packed(path)
+            return Record.from_line(lines[place], lambda a, n, _: draws[a : a + 4 * n])
+        body = line_at(path, place)
+        if body is None:
+            raise _damaged(path)
+
+        def read(first: int, count: int, check: int) -> bytes:
+            if not count:
+                return b""
+            with _draws_of(path).open("rb") as stream:
+                stream.seek(first)
+                packed = stream.read(4 * count)
+            if crc32(packed) != check:
+                raise _damaged(_draws_of(path))
+            return packed
+
+        return Record.from_line(body, read)
+
+
+def _draws_of(path: Path) -> Path:
+    return path.with_name(path.name.replace(LINES, DRAWS, 1)).with_suffix(".f4")
+
+
+def _packed_columns(path: Path) -> tuple[list[bytes], bytes]:
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as columns:
+            return columns["lines"].tobytes().split(b"\n"), columns["draws"].tobytes()
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, KeyError, BadZipFile) as error:
+        raise _damaged(path) from error
+
+
+def _damaged(path: Path) -> DataError:
+    return DataError(
+        "a finished case is damaged",
+        where=str(path),
+        remedy="Remove this file and give underfoot study run again: it computes its cases anew",
+    )
