@@ -108,8 +108,11 @@ def app_pictures() -> None:
             page.get_by_role("tab", name=tab).click()
             page.wait_for_timeout(500)
             seen()
-        page.get_by_role("button", name="Undo").click()
-        page.wait_for_timeout(1000)
+        page.get_by_role("tab", name="Sole").click()
+        slider.focus()
+        for _ in range(20):
+            page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(1500)
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_timeout(1500)
         seen()
@@ -121,8 +124,9 @@ def app_pictures() -> None:
             page.locator(".choice label", has_text=field).click()
             drawn(page)
             seen()
-        page.locator("input[name='contaminant.viscosity']").focus()
-        for _ in range(6):
+        viscosity = page.locator("input[name='contaminant.viscosity']")
+        viscosity.focus()
+        while float((viscosity.get_attribute("aria-valuetext") or "").removesuffix(" cP")) > 120:
             page.keyboard.press("ArrowLeft")
         page.wait_for_function("document.querySelector('.sliders').dataset.asked > 0")
         page.wait_for_timeout(1500)
@@ -133,8 +137,8 @@ def app_pictures() -> None:
         page.wait_for_selector(".big")
         drawn(page)
         seen()
-        page.get_by_role("link", name="Compare with Work shoe on glycerol").click()
-        page.wait_for_url("**/compare?**")
+        both = sorted(path.stem for path in (place / "project" / "variants").glob("*.toml"))
+        page.goto(f"{base}compare?variants={'|'.join(both)}")
         drawn(page)
         seen("app_compare")
 
