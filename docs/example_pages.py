@@ -149,15 +149,13 @@ class Cards(SphinxDirective):
         for name in self.content:
             page = folder / f"{name}.md"
             self.env.note_dependency(str(page))
-            link = addnodes.pending_xref(
-                refdomain="std", reftype="doc", refexplicit=True, refwarn=True, reftarget=name,
-                refdoc=self.env.docname,
-            )  # fmt: skip
-            link += nodes.inline(classes=["card"])
+            target = f"{self.env.docname.rpartition('/')[0]}/{name}"
+            address = self.env.app.builder.get_relative_uri(self.env.docname, target)
+            link = nodes.reference("", "", internal=True, refuri=address, classes=["card"])
             if self.config.draw:
                 draw(page, source)
-                link[0] += nodes.image(uri=f"/_drawn/{name}/picture.svg", alt="")
-            link[0] += nodes.inline(text=question(page))
+                link += nodes.image(uri=f"/_drawn/{name}/picture.svg", alt="")
+            link += nodes.inline(text=question(page))
             cards += nodes.paragraph("", "", link)
         return [cards]
 

@@ -1,7 +1,7 @@
 """Pictures of the app and of the pages that commands write, for ``docs/images``.
 
 ``.venv/bin/python docs/screenshots.py`` makes them anew (some minutes), with names only those:
-``app``, ``designer``, ``ergonomist``. The pages are those that the blocks of the tutorials leave.
+``app``, ``measured``, ``designer``, ``ergonomist``. Tutorials: the pages that their blocks leave.
 Chromium is needed (``make chromium``).
 """
 
@@ -81,7 +81,7 @@ def project():
 
 
 def app_pictures() -> None:
-    """Begin with a work shoe, change it, compute, ask what if, compare; then measured files."""
+    """Begin with a work shoe, change it, compute, ask what if, compare, read recordings."""
     frames: list[bytes] = []
     with project() as (page, base, place):
 
@@ -153,6 +153,10 @@ def app_pictures() -> None:
         page.wait_for_timeout(1000)
         seen("app_trial")
     film("app", frames)
+
+
+def measured_picture() -> None:
+    """Drop a scan and a rubber test on the design page."""
     with project() as (page, base, _):
         begin(page, base)
         measured = ROOT / "examples" / "measured"
@@ -163,7 +167,7 @@ def app_pictures() -> None:
             zone = page.locator(f".drop[aria-label^='{label}'] input[type=file]")
             zone.set_input_files(measured / file)
             page.get_by_text(words).wait_for()
-        page.get_by_text("Scan of the sole: sole.csv").scroll_into_view_if_needed()
+        page.get_by_text("Compound: dma.toml").scroll_into_view_if_needed()
         page.wait_for_timeout(1000)
         store("app_measured", page.screenshot())
 
@@ -187,5 +191,6 @@ def tutorial_pictures(tutorial: str) -> None:
 
 
 if __name__ == "__main__":
-    for wanted in sys.argv[1:] or ["app", *PAGES]:
-        app_pictures() if wanted == "app" else tutorial_pictures(wanted)
+    of_the_app = {"app": app_pictures, "measured": measured_picture}
+    for wanted in sys.argv[1:] or [*of_the_app, *PAGES]:
+        of_the_app[wanted]() if wanted in of_the_app else tutorial_pictures(wanted)
