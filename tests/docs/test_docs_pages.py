@@ -7,7 +7,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from pages import ROOT, agrees, blocks_of, held, numbers_compared
+from pages import ROOT, agrees, blocks_of, held, numbers_compared, reader
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
@@ -40,10 +40,25 @@ def test_a_guide_prints_what_it_says(name, tmp_path):
     assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
 
 
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.stem, marks=[pytest.mark.slow] * (page.stem == "performance"))
+        for page in sorted((ROOT / "docs" / "guide").glob("*.md"))
+        if "{plot}" in page.read_text() and page.stem != "design_studies"  # run above
+    ],
+)
+def test_a_guide_draws_its_figures(page, tmp_path):
+    with reader(tmp_path) as session:
+        for block in blocks_of(page):
+            if block.language == "{plot}":
+                session.output(block)
+
+
 @pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
 def test_every_block_of_a_tutorial_shows_what_it_prints_or_prints_nothing(page):
     shown = [block for block in blocks_of(page) if block.shown is not None]
-    assert len(shown) >= 8
+    assert len(shown) >= (6 if page.stem == "app" else 8)
     for block in shown:
         assert any(character.isdigit() for character in block.shown or ""), block.line
 

@@ -1,0 +1,196 @@
+"""Pictures of the app and of the pages that commands write, for ``docs/images``.
+
+``.venv/bin/python docs/screenshots.py`` makes them anew (some minutes), with names only those:
+``app``, ``measured``, ``designer``, ``ergonomist``. Tutorials: the pages that their blocks leave.
+Chromium is needed (``make chromium``).
+"""
+
+import io
+import shutil
+import sys
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "app"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
+
+from pages import ROOT, blocks_of, reader
+from web_app import begin, drawn, page_of, served
+
+IMAGES = ROOT / "docs" / "images"
+
+MOST = 150_000
+"""Bytes of a picture."""
+FILM_WIDTH, FRAME = 800, 2500  # px, ms
+PAGES = {
+    "designer": {
+        "designer_outsole": ("bars/outsole.png", ""),
+        "designer_run": ("out/bars/report.html", ""),
+        "designer_compare": ("out/compared/report.html", ""),
+        "designer_wear": ("out/wear/report.html", "figure"),
+    },
+    "ergonomist": {
+        "ergonomist_trials": ("walks_done/report.html", ""),
+        "ergonomist_study": ("study_done/report.html", ""),
+        "ergonomist_slip": ("slip/report.html", ""),
+        "ergonomist_sensitivity": ("sensitivity/report.html", "figure"),
+    },
+}
+"""Tutorial: picture: the page that its blocks leave, and from which element on (its top)."""
+
+
+def store(name: str, png: bytes, width: int | None = None) -> None:
+    """Write a picture as PNG of few colours, the most that its bytes allow."""
+    image = Image.open(io.BytesIO(png)).convert("RGB")
+    if width and image.width > width:
+        image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
+    for colours in (256, 128, 64, 32):
+        written = io.BytesIO()
+        few = image.quantize(colours, dither=Image.Dither.NONE)
+        few.save(written, format="PNG", optimize=True)
+        if written.tell() <= MOST:
+            break
+    (IMAGES / f"{name}.png").write_bytes(written.getvalue())
+    print(f"{name}.png: {written.tell() / 1e3:.0f} kB, {colours} colours", flush=True)
+
+
+def film(name: str, frames: list[bytes]) -> None:
+    """Write pictures as an animated GIF."""
+    small = []
+    for frame in frames:
+        image = Image.open(io.BytesIO(frame)).convert("RGB")
+        height = round(image.height * FILM_WIDTH / image.width)
+        image = image.resize((FILM_WIDTH, height), Image.LANCZOS)
+        small.append(image.quantize(64, dither=Image.Dither.NONE))
+    path = IMAGES / f"{name}.gif"
+    small[0].save(path, save_all=True, append_images=small[1:], duration=FRAME, loop=0)
+    print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB, {len(small)} frames", flush=True)
+
+
+@contextmanager
+def project():
+    """Yield a page of the app on a new project, its address and a folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        with served(place / "project", place / "home") as app, page_of(app.link) as page:
+            yield page, app.base, place
+
+
+def app_pictures() -> None:
+    """Begin with a work shoe, change it, compute, ask what if, compare, read recordings."""
+    frames: list[bytes] = []
+    with project() as (page, base, place):
+
+        def seen(name: str = "") -> None:
+            page.mouse.move(5, 400)
+            page.wait_for_timeout(600)
+            frames.append(page.screenshot())
+            if name:
+                store(name, frames[-1])
+
+        page.get_by_role("button", name="Skip").first.click()
+        page.get_by_role("heading", name="I design outsoles").wait_for()
+        seen("app_start")
+        begin(page, base)
+        seen("app_design")
+        slider = page.locator("input[name='shoe.tread.lug_width']")
+        slider.focus()
+        for _ in range(20):
+            page.keyboard.press("ArrowRight")
+        page.wait_for_timeout(1500)
+        drawn(page)
+        seen()
+        for tab in ("Floor", "Spill", "Assumptions"):
+            page.get_by_role("tab", name=tab).click()
+            page.wait_for_timeout(500)
+            seen()
+        page.get_by_role("tab", name="Sole").click()
+        slider.focus()
+        for _ in range(20):
+            page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(1500)
+        page.get_by_role("button", name="Compute friction").click()
+        page.wait_for_timeout(1500)
+        seen()
+        page.wait_for_selector(".big")
+        drawn(page)
+        page.get_by_role("button", name="Simulated without gain").wait_for()
+        seen("app_answer")
+        for field in ("Fluid pressure", "Film thickness"):
+            page.locator(".choice label", has_text=field).click()
+            drawn(page)
+            seen()
+        viscosity = page.locator("input[name='contaminant.viscosity']")
+        viscosity.focus()
+        while float((viscosity.get_attribute("aria-valuetext") or "").removesuffix(" cP")) > 120:
+            page.keyboard.press("ArrowLeft")
+        page.wait_for_function("document.querySelector('.sliders').dataset.asked > 0")
+        page.wait_for_timeout(1500)
+        seen("app_what_if")
+        page.get_by_text("the full run differs by").wait_for()
+        seen()
+        page.get_by_role("button", name="Keep it as a variant").click()
+        page.wait_for_selector(".big")
+        drawn(page)
+        seen()
+        both = sorted(path.stem for path in (place / "project" / "variants").glob("*.toml"))
+        page.goto(f"{base}compare?variants={'|'.join(both)}")
+        drawn(page)
+        seen("app_compare")
+
+        walks = ROOT / "tests" / "data" / "trials" / "biomechzoo"
+        shutil.copytree(walks, place / "project" / "trials" / "my walks")
+        page.goto(base + "trials?study=my walks")
+        page.locator(".trial-card").nth(3).wait_for()
+        page.wait_for_timeout(2000)
+        seen("app_trials")
+        page.locator(".trial-card", has_text="HC030A05").click()
+        page.get_by_text("step 1 on plate 2: RCOF").wait_for()
+        page.wait_for_timeout(1000)
+        seen("app_trial")
+    film("app", frames)
+
+
+def measured_picture() -> None:
+    """Drop a scan and a rubber test on the design page."""
+    with project() as (page, base, _):
+        begin(page, base)
+        measured = ROOT / "examples" / "measured"
+        for label, file, words in (
+            ("Drop a scan of the sole", "sole.csv", "Scan of the sole: sole.csv"),
+            ("Drop a test of the rubber", "dma.csv", "Compound: dma.toml"),
+        ):
+            zone = page.locator(f".drop[aria-label^='{label}'] input[type=file]")
+            zone.set_input_files(measured / file)
+            page.get_by_text(words).wait_for()
+        page.get_by_text("Compound: dma.toml").scroll_into_view_if_needed()
+        page.wait_for_timeout(1000)
+        store("app_measured", page.screenshot())
+
+
+def tutorial_pictures(tutorial: str) -> None:
+    """Run the blocks of a tutorial and look at the pages that they leave."""
+    with tempfile.TemporaryDirectory() as folder, reader(Path(folder)) as session:
+        for block in blocks_of(ROOT / "docs" / "tutorials" / f"{tutorial}.md"):
+            if block.language != "{plot}":
+                session.output(block)
+        for name, (file, element) in PAGES[tutorial].items():
+            if file.endswith(".png"):
+                store(name, Path(file).read_bytes(), width=1000)
+                continue
+            with page_of(Path(file).resolve().as_uri(), width=1000, height=700) as page:
+                page.wait_for_timeout(2000)
+                if element:
+                    page.locator(element).first.evaluate("(e) => e.scrollIntoView()")
+                    page.wait_for_timeout(500)
+                store(name, page.screenshot())
+
+
+if __name__ == "__main__":
+    of_the_app = {"app": app_pictures, "measured": measured_picture}
+    for wanted in sys.argv[1:] or [*of_the_app, *PAGES]:
+        of_the_app[wanted]() if wanted in of_the_app else tutorial_pictures(wanted)
