@@ -198,7 +198,7 @@ def test_libraries_and_threads_give_the_same_contact():
 @pytest.mark.skipif(
     mkl_library() is None, reason="MKL, an extra, has no wheel for this machine or is left out"
 )
-@pytest.mark.parametrize("shape", [(8, 8), (33, 20), (16, 27), (5, 7)])
+@pytest.mark.parametrize("shape", [(8, 8), (33, 20), (16, 27), (5, 7), (3, 20, 27)])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_both_fourier_libraries_agree(shape, dtype):
     field = np.random.default_rng(0).standard_normal(shape).astype(dtype)

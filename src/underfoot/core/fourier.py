@@ -17,10 +17,7 @@ VARIABLE = "UNDERFOOT_FFT"
 
 
 class Transform(Protocol):
-    """Real FFT over the last two axes of one shape and precision, into new arrays.
-
-    The half spectrum is over the last axis.
-    """
+    """Real FFT over the last two axes, the half spectrum over the last, into new arrays."""
 
     def forward(self, field: AnyArray) -> AnyArray:
         """Return the half spectrum of a real field."""

@@ -264,10 +264,7 @@ def balanced_weights(
 
 
 class Convolution:
-    """Linear (not periodic) convolution of fields (..., nx, ny) with influence coefficients.
-
-    Of coefficients (..., 2 nx - 1, 2 ny - 1): each field with its own.
-    """
+    """Linear (not periodic) convolution of fields (..., nx, ny), each with its own influence."""
 
     def __init__(self, influence: Array, shape: tuple[int, int], dtype: Any = float) -> None:
         nx, ny = shape
@@ -296,8 +293,8 @@ class Convolution:
         lines: Any = fft.rfft(field, n=self.padded[1])
         spectrum: Any = fft.fft(lines, n=self.padded[0], axis=-2)
         spectrum *= self.spectrum
-        lines = fft.ifft(spectrum, axis=-2, overwrite_x=True)[..., :nx, :]
-        deflection: Any = fft.irfft(lines, n=self.padded[1])
+        lines = fft.ifft(spectrum, axis=-2, overwrite_x=True)
+        deflection: Any = fft.irfft(lines[..., :nx, :], n=self.padded[1])
         return deflection[..., :ny]
 
     def within(self, shape: tuple[int, int], dtype: Any = float) -> "Convolution":
