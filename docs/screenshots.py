@@ -28,18 +28,18 @@ MOST = 150_000
 FILM_WIDTH, FRAME = 800, 2500  # px, ms
 PAGES = {
     "designer": {
-        "designer_outsole": ("bars/outsole.png", ""),
-        "designer_run": ("out/bars/report.html", ""),
-        "designer_compare": ("out/compared/report.html", ""),
-        "designer_wear": ("out/wear/report.html", "img"),
+        "designer_outsole": "bars/outsole.png",
+        "designer_run": "out/bars/report.html",
+        "designer_compare": "out/compared/report.html",
+        "designer_wear": "out/wear/report.html",
     },
     "ergonomist": {
-        "ergonomist_trials": ("walks_done/report.html", ""),
-        "ergonomist_study": ("study_done/report.html", ""),
-        "ergonomist_slip": ("slip/report.html", ""),
+        "ergonomist_trials": "walks_done/report.html",
+        "ergonomist_study": "study_done/report.html",
+        "ergonomist_slip": "slip/report.html",
     },
 }
-"""Tutorial: picture: the page that its blocks leave, and from which element on (its top)."""
+"""Tutorial: picture: the page that its blocks leave."""
 
 
 def store(name: str, png: bytes, width: int | None = None) -> None:
@@ -171,16 +171,13 @@ def measured_picture() -> None:
         store("app_measured", page.screenshot())
 
 
-def page_picture(name: str, file: Path, element: str) -> None:
-    """Look at a page that a command left, from an element on."""
+def page_picture(name: str, file: Path) -> None:
+    """Look at a page that a command left."""
     if file.suffix == ".png":
         store(name, file.read_bytes(), width=1000)
         return
     with page_of(file.resolve().as_uri(), width=1000, height=900) as page:
         page.wait_for_timeout(2000)
-        if element:
-            page.locator(element).first.evaluate("(e) => e.scrollIntoView()")
-            page.wait_for_timeout(500)
         store(name, page.screenshot())
 
 
@@ -193,9 +190,9 @@ def tutorial_pictures(tutorial: str) -> None:
                 break
             if block.language != "{plot}":
                 session.output(block)
-            for name, (file, element) in list(waiting.items()):
+            for name, file in list(waiting.items()):
                 if Path(file).is_file():
-                    page_picture(name, Path(file), element)
+                    page_picture(name, Path(file))
                     del waiting[name]
 
 

@@ -83,5 +83,5 @@ def test_pictures_are_used_and_small():
     pages += (ROOT / "README.md").read_text()
     for picture in (ROOT / "docs" / "images").iterdir():
         assert f"images/{picture.name}" in pages, picture.name
-        limit = 1_000_000 if picture.suffix == ".gif" else 190_000
+        limit = 1_000_000 if picture.suffix == ".gif" else 150_000
         assert picture.stat().st_size <= limit, picture.name
