@@ -28,19 +28,18 @@ MOST = 150_000
 FILM_WIDTH, FRAME = 800, 2500  # px, ms
 PAGES = {
     "designer": {
-        "designer_outsole": ("bars/outsole.png", ""),
-        "designer_run": ("out/bars/report.html", ""),
-        "designer_compare": ("out/compared/report.html", ""),
-        "designer_wear": ("out/wear/report.html", "figure"),
+        "designer_outsole": "bars/outsole.png",
+        "designer_run": "out/bars/report.html",
+        "designer_compare": "out/compared/report.html",
+        "designer_wear": "out/wear/report.html",
     },
     "ergonomist": {
-        "ergonomist_trials": ("walks_done/report.html", ""),
-        "ergonomist_study": ("study_done/report.html", ""),
-        "ergonomist_slip": ("slip/report.html", ""),
-        "ergonomist_sensitivity": ("sensitivity/report.html", "figure"),
+        "ergonomist_trials": "walks_done/report.html",
+        "ergonomist_study": "study_done/report.html",
+        "ergonomist_slip": "slip/report.html",
     },
 }
-"""Tutorial: picture: the page that its blocks leave, and from which element on (its top)."""
+"""Tutorial: picture: the page that its blocks leave."""
 
 
 def store(name: str, png: bytes, width: int | None = None) -> None:
@@ -172,22 +171,29 @@ def measured_picture() -> None:
         store("app_measured", page.screenshot())
 
 
+def page_picture(name: str, file: Path) -> None:
+    """Look at a page that a command left."""
+    if file.suffix == ".png":
+        store(name, file.read_bytes(), width=1000)
+        return
+    with page_of(file.resolve().as_uri(), width=1000, height=900) as page:
+        page.wait_for_timeout(2000)
+        store(name, page.screenshot())
+
+
 def tutorial_pictures(tutorial: str) -> None:
-    """Run the blocks of a tutorial and look at the pages that they leave."""
+    """Run the blocks of a tutorial and look at each page as soon as it is there."""
+    waiting = dict(PAGES[tutorial])
     with tempfile.TemporaryDirectory() as folder, reader(Path(folder)) as session:
         for block in blocks_of(ROOT / "docs" / "tutorials" / f"{tutorial}.md"):
+            if not waiting:
+                break
             if block.language != "{plot}":
                 session.output(block)
-        for name, (file, element) in PAGES[tutorial].items():
-            if file.endswith(".png"):
-                store(name, Path(file).read_bytes(), width=1000)
-                continue
-            with page_of(Path(file).resolve().as_uri(), width=1000, height=700) as page:
-                page.wait_for_timeout(2000)
-                if element:
-                    page.locator(element).first.evaluate("(e) => e.scrollIntoView()")
-                    page.wait_for_timeout(500)
-                store(name, page.screenshot())
+            for name, file in list(waiting.items()):
+                if Path(file).is_file():
+                    page_picture(name, Path(file))
+                    del waiting[name]
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """A surrogate in place of runs, with its error on runs that it did not see.
 
-Three forms, of values y over the features x of the inputs (a name is one column a value):
+Three forms, of values y over the features x of the inputs (a name is one column a value)::
 
     quadratic   ln y = b0 + b.x + x.B.x + noise, weights and noise by evidence (MacKay 1992)
     process     y a Gaussian process: Matern (nu = 5/2) with a length for each input, a linear
