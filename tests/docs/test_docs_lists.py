@@ -131,6 +131,7 @@ def test_readme_shows_what_the_slip_tester_prints(tmp_path):
     assert held(rows, printed) >= 60
 
 
+@pytest.mark.slow
 def test_the_example_of_each_room_prints_what_it_shows(tmp_path):
     assert numbers_compared(ROOT / "docs" / "api" / "examples.md", tmp_path) >= 25
 
