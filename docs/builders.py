@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from docutils import nodes
 from sphinx.builders.singlehtml import SingleFileHTMLBuilder
 
 ROOT = "physics/index"
@@ -26,6 +27,15 @@ class ManualBuilder(SingleFileHTMLBuilder):
             super().write_documents(docnames)
         finally:
             self.config.root_doc, self.config.html_title = site, title
+
+    def assemble_doctree(self) -> nodes.document:
+        """Return the whole page; a link to a place in one of its pages has one anchor, not two."""
+        tree = super().assemble_doctree()
+        for link in tree.findall(nodes.reference):
+            page, _, place = link.get("refuri", "")[1:].partition("#")
+            if place and page.startswith("document-"):
+                link["refuri"] = f"#{place}"
+        return tree
 
     def get_target_uri(self, docname: str, typ: str | None = None) -> str:
         """Return a place of this page, or the page of the site."""

@@ -1,5 +1,6 @@
 """Lists that pages take from the code are whole, and the front pages' numbers are computed."""
 
+import os
 import re
 import sys
 import tempfile
@@ -116,6 +117,7 @@ def test_readme_shows_what_a_run_prints(tmp_path):
     shown = re.search(r"^```\n(Available COF.*?)^```", README, re.DOTALL | re.MULTILINE)
     assert shown
     with reader(tmp_path):
+        os.environ["COLUMNS"] = "240"  # the page does not fold lines
         case = "$UNDERFOOT/examples/work_shoe_untreaded_glycerol.toml"
         printed = command_output(f"underfoot run {case} --out out")
     assert held(shown.group(1), printed) >= 40
