@@ -10,7 +10,7 @@ PYTEST := $(BIN)/pytest -n 2 --dist
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow fuzz test-install chromium bundle bundle-check bench validate docs clean help
+.PHONY: run app check test test-quick test-slow fuzz test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -58,7 +58,11 @@ bench: $(READY)  ## measured cost, memory and scaling
 
 docs: $(READY)  ## the documentation as an offline site in out/docs
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs out/docs
+	$(BIN)/sphinx-build -q -b manual docs out/docs
 	@echo "open out/docs/index.html"
+
+manual: docs  ## the theory on one page, printed as out/docs/theory_manual.pdf (needs Chromium)
+	$(BIN)/python docs/print_manual.py out/docs/theory_manual.html out/docs/theory_manual.pdf
 
 clean:  ## remove the environment and everything that was made
 	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis .import_linter_cache

@@ -19,10 +19,12 @@ extensions = [
     "sphinx-mathjax-offline",  # the site loads nothing from elsewhere
     "drawn",
     "example_pages",
+    "generated",
+    "builders",
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build", "_drawn"]
+exclude_patterns = ["_build", "_drawn", "api/examples.md"]
 html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]

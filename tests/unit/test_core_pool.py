@@ -1,6 +1,8 @@
 """Workers that end with their parent, however it ends; estimates of the time left."""
 
+import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -246,3 +248,23 @@ def test_a_script_without_a_guard_of_main_does_the_work_itself(tmp_path):
         [sys.executable, str(script)], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.stdout.splitlines()[-1] == "{0: 1, 1: 2, 2: 3}"
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_progress_is_one_line_on_80_columns_and_no_number_is_cut(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr("sys.stderr", screen)
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setenv("TERM", "xterm")
+    with bar("Running") as report:
+        for step in range(12):
+            report("contact and film, position 3 of 8, averaged over it", step / 12, 1.2e-4)
+            time.sleep(0.03)
+    plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", screen.getvalue())
+    lines = [line for line in re.split(r"[\r\n]+", plain) if line.strip()]
+    assert max(map(len, lines)) <= 80
+    assert all("residual 1.2e-04" in line and " % " in line for line in lines[1:])

@@ -16,7 +16,7 @@ from .equations import EQUATIONS
 from .parts import field_at, paths, unit_at
 from .quantity import default_of
 from .section import quantity_of
-from .terms import TERMS
+from .terms import TERMS, term
 
 WIDTH = 80
 """Characters of a line in a list of formulas."""
@@ -52,8 +52,8 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
         InputError: An unknown name, with the nearest one; an equation that the report has not.
     """
     parts = []
-    if name.casefold() in TERMS:
-        parts.append(f"{name}: {TERMS[name.casefold()]}")
+    if (meaning := term(name)) is not None:
+        parts.append(f"{name}: {meaning}")
     if any(entry == name for _, entry in catalogue.entries):
         parts.append(catalogue.describe(name))
     if key := _key(name):

@@ -87,7 +87,7 @@ def pair(
 ) -> None:
     """Narrow the friction of a pair by readings of your own tester or a certificate.
 
-    READINGS has tables [[reading]] with case = "my_case.toml", cof = 0.24 and, where known,
+    READINGS has tables named reading, each with case = "my_case.toml", cof = 0.24 and, where known,
     sd = 0.02 and kind = "lower" (a certificate's limit). A case uses what it writes with
     friction.draws_file = "FILE".
     """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 studies_app = typer.Typer(
     name="studies",
-    help="Published studies run again: our numbers beside the printed ones.",
+    help="Published studies run again: computed numbers beside the printed ones.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
@@ -75,7 +75,7 @@ def run_study(
     show_all: ShowAll = False,
     overwrite: Overwrite = False,
 ) -> None:
-    """Run a study and print each published number beside ours, with a verdict and its reason.
+    """Run a study: each published number beside the computed one, a verdict and its reason.
 
     With --out: the page report.html, figures, tables, verdicts.csv, study.json. `all` runs every
     study into one page (studies.html), summary.csv and summary.md; a study that fails does not

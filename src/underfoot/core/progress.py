@@ -85,17 +85,19 @@ def bar(title: str) -> Iterator[Progress]:
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
+    from rich.table import Column
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=28),
+    columns = (  # on a narrow terminal the name of the stage is cut, and no number
+        TextColumn("{task.description}", table_column=Column(ratio=1, no_wrap=True)),
+        BarColumn(bar_width=10),
         TextColumn("{task.percentage:>3.0f} %"),
         TextColumn("{task.fields[residual]}"),
         TimeElapsedColumn(),
         TextColumn("{task.fields[left]}"),
     )
     time_left = TimeLeft()
-    with Bar(*columns, console=Console(stderr=True), transient=True) as drawing:
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, transient=True, expand=True) as drawing:
         task = drawing.add_task(title, total=1.0, residual="", left="")
 
         def report(stage: str, fraction: float, residual: float | None = None) -> None:

@@ -381,7 +381,7 @@ class PairContactLaw(UncertainInputs):
     draws: PairDraws = field(default_factory=packaged_pair_draws)
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
-    spread_basis: str = field(default="of a pair that was not measured, any shoe", init=False)
+    spread_basis: str = field(default="without a reading of this pair, any shoe", init=False)
 
     def __post_init__(self) -> None:
         if self.viscosity is not None:
@@ -428,7 +428,7 @@ class PairContactLaw(UncertainInputs):
         words = [*self.draws.notes]
         if LABORATORY not in self.draws.errors:
             words.append(
-                "friction.pair: contact friction of this pair was not measured; a reading of your "
+                "friction.pair: nobody measured the friction of this pair; a reading of your "
                 "own narrows it (underfoot calibrate pair)."
             )
         if self.pair.family == "dry":

@@ -201,7 +201,7 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     kept = wide.rows(generator.permutation(rows))
     kept = replace(kept, source=f"{start.source}; soles of class {known.name}")
     basis = f"of a sole of class {known.name}"
-    basis += ", calibrated to readings" if calibrated else ", of a pair that was not measured"
+    basis += ", calibrated to readings" if calibrated else ", without a reading of this pair"
     note = f"shoe.class: {known.name} ({known.source}): " + "; ".join(map(str, known.readings))
     note += " is not reached" if known.fails else ""
     note += f". Before that was known, {passing:.0%} of such soles would have it."

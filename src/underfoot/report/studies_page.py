@@ -80,7 +80,7 @@ def studies_page(
     several = len(results) > 1
     page = environment().get_template("studies.html")
     return page.render(
-        title="Printed numbers beside ours" if several else results[0].study.title,
+        title="Printed and computed numbers" if several else results[0].study.title,
         several=several,
         sections=sections,
         headline=headline(results),

@@ -156,7 +156,7 @@ def needed_acof(
     Solves P(ACOF) = risk, where P falls with ACOF; to 1e-12.
 
     Parameters:
-        risk: Wanted probability, above 0 and below 1.
+        risk: Target probability, above 0 and below 1.
         rcof: Required friction of the population.
         model: A published model; None takes ``ReportG6``.
 

@@ -1,4 +1,4 @@
-"""Published studies run again: our numbers beside the printed ones, with a verdict for each."""
+"""Published studies run again: computed beside printed numbers, with a verdict for each."""
 
 from .figure import Figure, Layer, Panel
 from .runner import Computed, Options, StudyResult, Table, run_all, run_study

@@ -97,7 +97,7 @@ class StudyResult(Presentable):
         return self.tables()[0]
 
     def tables(self) -> tuple[ShownTable, ...]:
-        columns = ("statement", "printed", "ours", "verdict", "why")
+        columns = ("statement", "printed", "computed", "verdict", "why")
         verdicts = [
             ShownTable(
                 kind.heading,

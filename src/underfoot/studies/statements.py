@@ -57,7 +57,7 @@ class Kind(StrEnum):
         return {
             Kind.INDEPENDENT: "Independent statements",
             Kind.RESTATES: "The same readings in other words",
-            Kind.AGAINST_ITSELF: "The report compared with itself",
+            Kind.AGAINST_ITSELF: "The report's numbers against each other",
             Kind.OWN_GOAL: "Goals of this project; the report prints no number",
             Kind.CALIBRATED_ON: "Readings that a parameter was chosen on",
             Kind.ALTERNATIVE: "The same statements with a model or parameters other than the "
@@ -96,7 +96,7 @@ class Statement:
             larger of both; () where it is not known.
         quantity: Name of ours in the study's result.
         kind, of: What it is worth; the statement that it restates or is an alternative of.
-        not_comparable: Why nothing of ours can stand beside it; "" where something does.
+        not_comparable: Why nothing computed can stand beside it; "" where something does.
         remark: What a reader should know about the cause.
     """
 
@@ -254,7 +254,7 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         raise InputError(str(error), where=where) from error
     none = table.get("not_comparable", "")
     if not none and not table.get("quantity"):
-        raise InputError("no quantity of ours", where=where, allowed="quantity or not_comparable")
+        raise InputError("no computed quantity", where=where, allowed="quantity or not_comparable")
     printed, unit = table.get("printed", ""), table.get("unit", "")
     numbers: tuple[float, ...] = ()
     names: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""Every printed statement beside ours: the headline of independent ones, and the tables apart."""
+"""Printed statements beside computed values: a headline of independent ones, tables apart."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
     """Return all statements as Markdown, as docs/studies/summary.md keeps it."""
     missing = [name for name in studies() if name not in {r.study.name for r in results}]
     text = [
-        "# Every printed statement beside ours",
+        "# Every printed statement beside the computed value",
         "",
         "Written by `underfoot studies run all`. Counted are independent statements: each reading "
-        "once, nothing that a parameter was chosen on, no comparison of the report with itself. "
-        "What an agreement needs is fixed in `wings/` before anything is "
+        "once, nothing that a parameter was chosen on, no comparison of the report's numbers "
+        "with each other. What an agreement needs is fixed in `wings/` before anything is "
         "computed.",
         "",
         "| study | " + " | ".join(str(verdict) for verdict in Verdict) + " |",
@@ -72,7 +72,7 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
             continue
         for kind, some in tables_by_kind(result.judgements):
             text += [f"### {kind.heading}", ""]
-            text += ["| statement | printed | tolerance | ours | beyond it by | verdict | why |"]
+            text += ["| statement | printed | tolerance | computed | outside by | verdict | why |"]
             text += ["|---" * 7 + "|"]
             for one in some:
                 s = one.statement

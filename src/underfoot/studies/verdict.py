@@ -56,14 +56,15 @@ class Verdict(StrEnum):
     def rule(self) -> str:
         """Return what the verdict means."""
         return {
-            Verdict.AGREES: "every value of ours lies within the tolerance of the printed one, and "
-            "is more likely inside than outside where a probability is known",
-            Verdict.OVERLAPS: "our 95 % interval (or our values over the conditions) reaches into "
-            "the tolerance of the printed one, lies in it with a probability of 0.2 or more, and "
-            "is no wider than half the scale (100 points of a share; twice the printed value)",
+            Verdict.AGREES: "every computed value lies within the tolerance of the printed one, "
+            "and is more likely inside than outside where a probability is known",
+            Verdict.OVERLAPS: "the computed 95 % interval (or the values over the conditions) "
+            "reaches into the tolerance of the printed one, lies in it with a probability of "
+            "0.2 or more, and is no wider than half the scale (100 points of a share; twice the "
+            "printed value)",
             Verdict.TREND_ONLY: "a change of the printed sign in every condition, of another size",
-            Verdict.UNDECIDED: "our interval reaches into the tolerance, but is too wide or too "
-            "improbable there to say that they agree",
+            Verdict.UNDECIDED: "the computed interval reaches into the tolerance, but is too wide "
+            "or too improbable there to say that they agree",
             Verdict.DISAGREES: "none of these",
             Verdict.NOT_CONVERGED: "no two grids whose values differ by less than a third of the "
             "tolerance, no steady approach to extrapolate, and no known error of a quick grid",

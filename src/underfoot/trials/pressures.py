@@ -109,7 +109,7 @@ def pressure_pulse(
     if channel.unit != "Pa":
         return without(f'the unit of the channel is "{channel.unit}", not a pressure')
     if len(quiet) < 20:
-        return without(f"{len(quiet)} samples before contact are no baseline (500 wanted)")
+        return without(f"{len(quiet)} samples before contact are no baseline (500 needed)")
     if len(quiet) < BASELINE_SAMPLES:
         flags = (remark(f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %"),)
     mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))

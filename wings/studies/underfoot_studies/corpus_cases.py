@@ -279,7 +279,7 @@ class _Contents:
         device = self.table.get("device")
         whole = device in WHOLE_SHOE
         if not whole and device not in FLAT:
-            raise InputError(f"{device} is no device of ours", where="device")
+            raise InputError(f"{device} is no device of the program", where="device")
         motion: dict[str, Any] = dict(METHOD if whole else SLID_FLAT)
         for key, (name, unit) in MOTION.items():
             if key in self.table:

@@ -207,9 +207,10 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         "",
         "Written by `python -m underfoot_studies.report_ledger docs/studies`; a test holds it to "
         "that. What the report defines, prints and concludes: what a person runs for it, and how "
-        "ours stands beside the print. *Works* means that one command gives the thing, with print, "
-        "ours and the cause where they differ. It does not mean that ours agrees: that is the "
-        "column beside it, from [every printed statement beside ours](summary.md).",
+        "the computed value stands beside the print. *Works* means that one command gives the "
+        "thing, with print, the computed value and the cause where they differ. It does not mean "
+        "that they agree: that is the column beside it, from "
+        "[every printed statement beside the computed value](summary.md).",
         "",
         f"**{len(every)} rows**: "
         + ", ".join(f"{counts[k]} {v}" for k, v in RATINGS.items())

@@ -109,7 +109,7 @@ class ReducedSole:
 
     def __post_init__(self) -> None:
         if self.constants.shape != (kernel.COUNT,) or not np.isfinite(self.constants).all():
-            raise InputError("fourteen finite constants are wanted", where="reduced.constants")
+            raise InputError("fourteen finite constants are needed", where="reduced.constants")
         if self.fitted is not None and self.viscosity != self.fitted.viscosity:
             raise InputError(
                 f"{self.viscosity} Pa s",
