@@ -73,7 +73,7 @@ def test_a_scan_is_read_and_its_lines_make_a_case(folder):
     exact = profile_roughness(profile, 0.8e-3, 20e-6)
     for name in ("ra", "rq", "rz", "rdq"):
         assert told[name] == pytest.approx(getattr(exact, name), rel=1e-3)
-    checked = called("check", folder / "case.toml", folder=folder.parent)
+    checked = called("check", folder / "case.toml", "--all", folder=folder.parent)
     assert checked.returncode == 0, checked.stderr
     assert "file: boden.csv" in checked.stdout
     case = Case.load(folder / "case.toml")

@@ -69,7 +69,7 @@ def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
     assert len(book.sheetnames) == 3
     cells = list(book.worksheets[1].iter_rows(min_row=3, max_row=4, values_only=True))
     assert cells == [("'=1+1", 1.5, None, None), ("plain", None, 3, "-x")]
-    assert csv_text(table).splitlines()[1] == "=1+1,1.5,,"
+    assert csv_text(table).splitlines()[1] == "'=1+1,1.5,,"
 
 
 def test_an_interrupted_analysis_goes_on(tester, tmp_path, monkeypatch):

@@ -32,10 +32,10 @@ def test_an_example_prints_and_draws_what_its_page_shows(page):
     from matplotlib import pyplot
 
     pyplot.switch_backend("Agg")
+    pyplot.close("all")
     with fresh_folder(page) as folder:
         assert numbers_compared(page, folder) >= 3
         assert len(pyplot.get_fignums()) == 1
-        pyplot.close("all")
 
 
 @pytest.mark.parametrize("name", ["which_regime", "fit_my_dma", "fit_my_tribometer"])

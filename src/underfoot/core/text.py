@@ -40,7 +40,7 @@ def decoded(data: bytes, where: str, remedy: str = "Export it again as text") ->
         text = data.decode("latin-1")
     if "\0" in text or not text.strip():
         raise DataError(
-            "empty" if not text.strip("\0 \r\n\t") else "not a text file",
+            "binary, not a text file" if "\0" in text else "empty",
             where=where,
             remedy=remedy,
         )
