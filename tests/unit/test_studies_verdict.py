@@ -267,7 +267,7 @@ def test_tolerances_follow_from_what_is_printed(given, accepted):
         ({"tolerance": "mean"}, "count"),
         ({"kind": "nice"}, "nice"),
         ({"unit": "furlong"}, "unknown unit"),
-        ({"quantity": None}, "no quantity"),
+        ({"quantity": None}, "no computed quantity"),
         ({"kind": "restates", "of": "b"}, "unknown statement"),
         ({"claim": "range"}, "printed"),
         ({"claim": "range", "printed": ["3", "2"]}, "lowest first"),
