@@ -14,8 +14,8 @@ error e of what was left out is taken, and
     Q2 = 1 - sum e^2 / sum (y - mean y)^2
 
 The deviation that a form states is multiplied by the factor with which 95 % of what was left out
-lies within 1.96 of it (conformal; Vovk 2015, Barber et al. 2021). The noise of the runs, their
-numerical error that differs from design to design, is a part of each form and of its deviation.
+lies within 1.96 of it (conformal; Vovk 2015, Barber et al. 2021). Noise of the runs, fitted
+and not taken from their numerical error, is a part of each form and of its deviation.
 """
 
 from __future__ import annotations
