@@ -183,9 +183,6 @@ def test_the_best_designs_leave_as_solids(finished, tmp_path):
         assert "MANIFOLD_SOLID_BREP" in text
 
 
-@pytest.mark.xfail(
-    reason="a second `study work` that starts in the first round computes its open cases again"
-)
 @pytest.mark.slow
 def test_two_that_share_a_folder_without_a_master_give_the_same(finished, tmp_path):
     folder, _ = finished

@@ -34,13 +34,15 @@ ASKED = 8
 REFUSED = 4
 """Blocks that others had first, one after another, after which the folder is listed again."""
 DONE = ".done"
+FIRST = 10_000_000
+"""Numbers that a first round is drawn from."""
 
 
 class Round:
     """A round as one process sees it.
 
     Attributes:
-        number: Of the round, from 0.
+        number: Of the round, one above that of the round before.
         places: (jobs,) first bytes.
         total, before: Jobs that were set, and of these finished, as it began.
     """
@@ -162,7 +164,8 @@ def _rounds(claims: Path) -> list[int]:
 
 def begin_round(claims: Path, places: AnyArray, total: int, name: str) -> Round:
     """Begin the next round with the open jobs of a study and remove the earlier ones."""
-    number = max(_rounds(claims), default=-1) + 1
+    # where none is left a number of its own: who knows an earlier round takes no other for it
+    number = max(_rounds(claims), default=random.randrange(FIRST)) + 1
     stream = BytesIO()
     head = [total, total - len(places)]
     np.save(stream, np.concatenate([head, places]).astype(np.int64), allow_pickle=False)
