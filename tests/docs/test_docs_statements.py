@@ -205,17 +205,21 @@ def importable(name):
 
 
 @cache
-def words_of_the_program():
-    """Return every identifier and file name of sources, data, examples and build files."""
-    listed = subprocess.run(
+def files_of_the_repository():
+    return subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     ).stdout.split("\n")
+
+
+@cache
+def words_of_the_program():
+    """Return every identifier and file name of sources, data, examples and build files."""
     words = set()
-    for name in listed:
+    for name in files_of_the_repository():
         path = ROOT / name
         words |= set(re.findall(r"\w+", name))
         if name.startswith(("docs/", "CHANGELOG", "tests/data")) and path.suffix != ".py":
@@ -250,13 +254,7 @@ def test_every_word_in_code_type_is_a_word_of_the_program():
 
 
 def test_every_file_that_a_page_names_is_in_the_repository():
-    listed = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout.split("\n")
+    listed = files_of_the_repository()
     inside = {*listed, *(str(parent) for name in listed for parent in Path(name).parents)}
     count = 0
     for page in PAGES:

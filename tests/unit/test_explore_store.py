@@ -175,6 +175,16 @@ def test_who_takes_over_from_the_dead_computes_only_what_they_left(store, monkey
     assert set(Store(store.folder).records()) == set(keys)
 
 
+def test_who_knew_an_ended_round_computes_nothing_of_it_again(store):
+    keys, other = begun(store), Store(store.folder)
+    assert list(other.round.places)
+    for _ in keys:
+        taken(store)
+    added(store, *map(record, keys))
+    assert not Study.load(store.folder)._begin_next()
+    assert took(other) is None
+
+
 def test_a_silent_process_of_another_machine_loses_its_claim(store):
     keys, elsewhere = begun(store), Store(store.folder)
     elsewhere.name = "elsewhere-12-abcdef"
