@@ -5,7 +5,9 @@ import re
 from pathlib import Path
 
 BOUNDED = re.compile(r"COF|share|slip|distance|load|pressure|adhesion|risk", re.IGNORECASE)
-SIGNED = re.compile(r"correlation|slope|change|differ|effect|ACOF - RCOF|half slip", re.IGNORECASE)
+SIGNED = re.compile(
+    r"\bICC\b|correlation|slope|change|differ|effect|ACOF - RCOF|half slip", re.IGNORECASE
+)
 INTERVAL = re.compile(r"(?<![\d.])([+-]?[\d.]+)(?: \S{1,4})? \(([-\N{MINUS SIGN}][\d.]+) to")
 BLOCK = re.compile(r"<(?:tr|p|li|h\d|div|figcaption|dd|dt)\b")
 HIDDEN = re.compile(r"<(script|style|svg)\b.*?</\1>", re.DOTALL)

@@ -117,7 +117,7 @@ def test_studies_are_listed_and_unknown_ones_refused(run):
 def test_a_study_prints_each_line_with_its_verdict(run):
     done = run("studies", "run", "g1", "--quick", "--series", "broad")
     assert done.exit_code == 0, done.output
-    for words in ("rougher floor", "verdict  undecided", "Not taken as printed", "wavelengths"):
+    for words in ("rougher floor", "verdict   undecided", "Not taken as printed", "wavelengths"):
         assert words in done.stdout
 
 

@@ -350,22 +350,22 @@ def test_two_hundred_random_actions_lose_no_variant_and_raise_no_error(app):
     chance = random.Random(20261122)
     with page_of(app.link) as page:
         begin(page, app.base)
-        known = {"Work shoe on glycerol"}
+        seen = {"Work shoe on glycerol"}
         page.set_default_timeout(3000)
         for _ in range(200):
             with contextlib.suppress(Error):  # what was aimed at has gone with its page
                 act(page, chance, app.base)
-            names = {path.stem for path in (app.folder / "variants").glob("*.toml")}
-            known |= names
+            seen |= {path.stem for path in (app.folder / "variants").glob("*.toml")}
         page.wait_for_timeout(500)
         assert page.complaints == []
         assert app.process.poll() is None
-        history = (app.folder / "history.jsonl").read_text()
-        assert all(f'"variant": "{name}"' in history for name in known)
+        history = (app.folder / "history.jsonl").read_text().splitlines()
+        made = {json.loads(line)["variant"] for line in history}
+        assert seen <= made  # one may come and go between two looks
         from underfoot_app.project import Project
 
         project = Project(app.folder)
-        assert known == {*project.variants(), *project.removed()}
+        assert made == {*project.variants(), *project.removed()}
         for name in project.variants():
             project.case(name)
 

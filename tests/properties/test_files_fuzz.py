@@ -60,6 +60,7 @@ design = "sobol"
 
 def mesh_bytes(kind):
     import trimesh
+
     data = trimesh.creation.box((0.1, 0.05, 0.01)).export(file_type=kind)
     return data if isinstance(data, bytes) else data.encode()
 
@@ -163,6 +164,7 @@ def test_a_text_file_is_read_in_every_encoding_that_programs_write(tmp_path, enc
 @pytest.mark.parametrize("kind", ["stl", "obj", "ply", "off", "glb"])
 def test_a_mesh_with_one_corner_that_is_no_number_is_refused(tmp_path, kind, number):
     import trimesh
+
     box = trimesh.creation.box((0.1, 0.05, 0.01))
     corners = np.array(box.vertices)
     corners[3, 1] = number
