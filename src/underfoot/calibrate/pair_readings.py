@@ -285,10 +285,9 @@ def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress)
         raise ConvergenceError(
             f"the case {case.name} gave no result: {contact.status}", history=(), where=case.name
         )
-    found = contact_friction(
-        case, parts.context, parts.local_law, parts.sole, contact, samples=law.draws.count
-    )
-    sums, sampled = found.sums, found.sampled
+    on = case, parts.context, parts.local_law, parts.sole, contact
+    friction = contact_friction(*on, samples=law.draws.count, spreads=solution.spreads)
+    sums, sampled = friction.sums, friction.sampled
     positions = averaged(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
     if positions is not None:
         sums, sampled = positions.friction(sums, sampled)

@@ -27,6 +27,7 @@ class Context:
         modulus: Young's modulus of the outsole, Pa; ``modulus_breaches`` says what it leaves.
         viscosity: Of the contaminant, Pa s; None on a dry floor.
         rq: Rq of the interface, m; ``rq_deviation`` is its standard deviation over itself.
+        leak_deviation: Standard deviation of ln of the Rq that lets fluid leak, 1.
         fluid: Name of the contaminant.
         catalogue: Entries of the kinds that the options of the case name in ``consults``.
         rough_contact: Returns the rough contact that friction shares, from a context; or None.
@@ -42,6 +43,7 @@ class Context:
     viscosity: SourcedValue | None
     rq: SourcedValue
     rq_deviation: float | None
+    leak_deviation: float
     fluid: str
     catalogue: Catalogue
     progress: Progress = silent

@@ -30,6 +30,9 @@ RQ_PER_RA = math.sqrt(math.pi / 2)
 """Rq over Ra of Gaussian heights, 1.253."""
 SOLE_RQ, FLOOR_RQ = (1.25e-6, 10e-6), (0.3e-6, 4e-6)
 """Rq (m) of soles (Ra 1 to 8 um) and of smooth to matt floors, where none is given (assumed)."""
+BEYOND_DEVIATION = math.log(2) / 1.96
+"""Standard deviation of ln ``roughness_beyond_cutoff`` where it is assumed: 2, between 1 (no waves
+beyond the stylus' cut-off) and 4 (Hurst 0.8, waves up to 4.5 mm) in 95 %."""
 STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
 
@@ -181,6 +184,10 @@ class Interface(Option):
     def rq_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float | None:
         """Return the standard deviation of Rq over itself; None when not given."""
 
+    def leak_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float:
+        """Return the standard deviation of ln of the Rq that lets fluid leak; 0 if not known."""
+        return self.rq_deviation(shoe, floor) or 0.0
+
     def _too_rough(self, case: CaseView, where: str) -> Iterator[InputError]:
         rq = self.rq(case.shoe.roughness, case.floor.roughness).value or 0.0
         waves = self.longest_wave
@@ -263,6 +270,20 @@ class CompositeInterface(Interface):
         squares = math.fsum(rq**2 for rq, _ in heights)
         known = [rq * spread for rq, spread in heights if spread is not None]
         return math.hypot(*known) / squares if known and squares > 0 else None
+
+    def leak_deviation(self, shoe: SurfaceRoughness, floor: SurfaceRoughness) -> float:
+        beyond, parts = self.sourced("roughness_beyond_cutoff"), []
+        assumed = BEYOND_DEVIATION if beyond.assumed else 0.0
+        factor = (beyond.uncertainty or 0.0) / self.roughness_beyond_cutoff or assumed
+        scanned = 0.0
+        for roughness, usual in ((shoe, SOLE_RQ), (floor, FLOOR_RQ)):
+            square, rq = self._height(roughness, usual) ** 2, roughness.rq_or_estimate
+            drawn = math.log(usual[1] / usual[0]) / (2 * 1.96)
+            given = (roughness.rq_uncertainty or 0.0) / rq if rq else drawn
+            parts.append(square * given)
+            scanned += square * (roughness.sha256 is not None)
+        whole = self.rq(shoe, floor).value or 0.0
+        return math.hypot(*parts, (whole**2 - scanned) * factor) / whole**2 if whole else 0.0
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         yield from self._too_rough(case, f"{where}.roughness_beyond_cutoff")

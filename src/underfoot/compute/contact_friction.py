@@ -53,12 +53,12 @@ def contact_friction(
     contact: SoleContact,
     *,
     samples: int = SAMPLES,
-    rough: Mapping[str, float] | None = None,
+    spreads: Mapping[str, tuple[float, float]] | None = None,
 ) -> ContactFriction:
     """Return the friction of a contact by the local law, drawn over the spread of its inputs.
 
-    ``rough``: what a standard deviation of gap and flow of the rough contact changes the logarithm
-    of the film's odds by (``film_spreads``).
+    ``spreads``: what a standard deviation less and more of a part of the rough contact adds to the
+    logarithm of the film's odds (``film_spreads``); between and beyond in proportion.
     """
     maps = law_on(law, contact)(contact.contact_pressure, case.motion.speed, contact.film_thickness)
     at = contact.finest
@@ -97,8 +97,9 @@ def contact_friction(
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=errors["film_error"],
         rough_errors={
-            name: change * normal_draws(seed, f"{name} of the rough contact", samples)
-            for name, change in (rough or {}).items()
+            name: np.where(normal > 0, more, -less) * normal
+            for name, (less, more) in (spreads or {}).items()
+            for normal in [normal_draws(seed, f"{name} of the rough contact", samples)]
         },
         tread_error=errors["tread_error"],
         film_shear=film_shear,

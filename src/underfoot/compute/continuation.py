@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -24,19 +24,17 @@ from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue,
 from underfoot.core.arrays import Array
 from underfoot.core.threads import threads_limited
 from underfoot.shoe import SoleMap
-from underfoot.sole_contact.solver import SoleContact, solve_on
+from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import ContactFriction, contact_friction
 from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
-from .solve import edge_inlet, solved_motion, solver_settings
+from .solve import continued, film_spreads, solved_motion
 
 SAFETY, SHARE = 2.0, 0.1
 """Error per unit of what the steps move, and of the change. Chosen on 21 changes of two treaded
 soles, of whose COF and film load they cover 41 of 42; of 29 changes of three other soles 55 of 58
 (the worst misses by half)."""
-MOST_STEPS = 20
-"""Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 MOST_KEPT = 4
 """Marches that ``preview`` keeps, each some 50 MB."""
 MOST_CHANGED = 0.1
@@ -139,8 +137,16 @@ class Continuation:
 
     @cached_property
     def _drawn(self) -> ContactFriction:
-        parts = self._parts
-        return contact_friction(self.case, parts.context, parts.local_law, parts.sole, self.contact)
+        return self._friction(self._parts, self.contact)
+
+    def _friction(self, parts: Prepared, contact: SoleContact) -> ContactFriction:
+        """Return the friction of a contact; its film is as unknown as that of the march."""
+        on = parts.case, parts.context, parts.local_law, parts.sole, contact
+        return contact_friction(*on, spreads=self._spreads)
+
+    @cached_property
+    def _spreads(self) -> dict[str, tuple[float, float]]:
+        return film_spreads(self._parts, self.contact)
 
     def continued(self, changes: Mapping[str, Any]) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
@@ -160,7 +166,7 @@ class Continuation:
             values[name] = two[name] + off
             steps = abs(off) + abs(two[name] - one[name])
             errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
-        drawn = contact_friction(case, parts.context, parts.local_law, parts.sole, second)
+        drawn = self._friction(parts, second)
         factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
         return Preview(
             dict(changes),
@@ -202,21 +208,9 @@ class Continuation:
                 allowed="fluid, speed, load, angle, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
-        settings = replace(solver_settings(case, parts.film), most_time_steps=MOST_STEPS)
-        first, second = solve_on(
-            self.contact,
-            parts.sole,
-            parts.compliance,
-            parts.asperities,
-            viscosity=parts.viscosity,
-            speed=case.motion.speed,
-            normal_force=case.motion.normal_force,
-            turn=case.motion.shoe_angle - angle,
-            duration=settings.end_time,
-            steps=2,
-            settings=settings,
-            inlet=edge_inlet(case, parts.local_law),
-        )
+        on = parts.sole, parts.compliance, parts.asperities, parts.film, parts.local_law
+        turn = case.motion.shoe_angle - angle
+        first, second = continued(self.contact, case, *on, turn=turn)
         return parts, first, second
 
 

@@ -1,7 +1,7 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,14 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
+from underfoot.core.arrays import Array
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
+from underfoot.friction.propagation import normal_draws
+from underfoot.friction.sampled_cof import SAMPLES
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
-_NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated yet"
+_NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated"
 CONTACT_SHARE = 1e-3
 """Contact pressure below this share of the mean pressure doesn't count as contact."""
 BEARING_SHARE = 0.99
@@ -39,6 +42,7 @@ _INPUTS = {
     "full_contact": "real contact area",
     "gap": "gap between the rough surfaces",
     "flow": "flow between the rough surfaces",
+    "leak": "roughness that lets fluid leak",
     "laboratory": "difference between laboratories",
     "pair": "difference between pairs",
     "model": "the law itself",
@@ -98,7 +102,7 @@ def scalars(
         "cof_hysteresis": friction.cof_hysteresis,
         "cof_viscous": friction.cof_viscous,
         "normal_force": case.sourced("motion.normal_force"),
-        "fluid_load": _film_load(computed(contact.fluid_load, "N"), contact.normal_force),
+        "fluid_load": computed(contact.fluid_load, "N"),
         "fluid_load_sensor": sensor.load,
         "peak_fluid_pressure": computed(float(contact.fluid_pressure.max()), "Pa"),
         "peak_fluid_pressure_sensor": sensor.peak_pressure,
@@ -111,17 +115,46 @@ def scalars(
     return numbers, risk
 
 
-def _film_load(load: SourcedValue, normal_force: float) -> SourcedValue:
-    """Return the load on the film with the model's error, ``FILM_ERROR``."""
-    share = (load.value or 0.0) / normal_force
-    if not 0 < share < 1:
-        return load
-    low, high = (
-        normal_force * share / (share + (1 - share) * math.exp(turn * FILM_ERROR))
-        for turn in (1.96, -1.96)
-    )
-    deviation = FILM_ERROR * normal_force * share * (1 - share)
-    return replace(load, uncertainty=deviation, interval=(low, high), reason="")
+def with_film_spread(
+    values: Mapping[str, SourcedValue],
+    sampled: SampledCof | None,
+    at_places: Mapping[str, Array] | None = None,
+) -> dict[str, SourcedValue]:
+    """Return the numbers of the film with the spread of its load, and that over places.
+
+    ln F / (W - F), F the load on the film, W the whole, is off by ``sampled.film_odds``, without
+    these by ``FILM_ERROR``; what sensors read and peaks go with F. Draws take ``at_places`` (name:
+    values at positions of the tread or shoe angles) in turn, as those of COF do.
+    """
+    load, whole = values["fluid_load"].value, values["normal_force"].value
+    if not load or not whole:
+        return dict(values)
+    odds = None if sampled is None else sampled.film_odds
+    if odds is None:
+        odds = FILM_ERROR * normal_draws(0, "film load", SAMPLES)
+    share = min(load / whole, 1.0)
+    factors = 1 / (share + (1 - share) * np.exp(-odds))
+    result = dict(values)
+    for name in GRID_NAMES[1:]:
+        value = values[name].value
+        if not value:
+            continue
+        draws, places = value * factors, (at_places or {}).get(name)
+        if places is not None:
+            draws = draws * (places / places.mean())[np.arange(draws.size) % places.size]
+        draws = np.minimum(draws, whole) if name == "fluid_load" else draws
+        low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
+        own = 1.96 * (values[name].uncertainty or 0.0) / value
+        result[name] = replace(
+            values[name],
+            uncertainty=math.hypot(float(np.std(draws)), own * value / 1.96),
+            interval=(
+                value * math.exp(-math.hypot(math.log(value / min(low, value)), own)),
+                value * math.exp(math.hypot(math.log(max(high, value) / value), own)),
+            ),
+            reason="",
+        )
+    return result
 
 
 def slip_probability(

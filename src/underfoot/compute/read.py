@@ -78,6 +78,7 @@ def readings(
     values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
+    values = numbers.with_film_spread(values, sampled, positions.values if positions else None)
     drainage = None
     if contact.fluid_load > FILM_MATTERS * contact.normal_force:
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)

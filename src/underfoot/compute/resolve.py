@@ -12,6 +12,7 @@ from underfoot.core import Breach, Progress, Range, SourcedValue, breaches, sile
 def resolved(case: Case, progress: Progress = silent) -> Context:
     """Return what the options of a case are built from."""
     modulus, beyond = youngs_modulus(case)
+    surfaces = case.shoe.roughness, case.floor.roughness
     return Context(
         shoe=case.shoe,
         floor=case.floor,
@@ -22,7 +23,8 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         modulus_breaches=(*beyond, *_untested_rates(case)),
         viscosity=None if case.contaminant is None else case.contaminant.build(),
         rq=case.effective_rq,
-        rq_deviation=case.interface.rq_deviation(case.shoe.roughness, case.floor.roughness),
+        rq_deviation=case.interface.rq_deviation(*surfaces),
+        leak_deviation=case.interface.leak_deviation(*surfaces),
         fluid=case.entries.get("contaminant", "the fluid"),
         catalogue=case.consulted,
         progress=progress,

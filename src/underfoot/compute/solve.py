@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,7 +12,7 @@ from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 from underfoot.film import FilmModel, NewtonianFilm
 from underfoot.friction import FrictionLaw
-from underfoot.friction.sampled_cof import FLOW, GAP
+from underfoot.friction.sampled_cof import FLOW, GAP, LEAK
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw, TabulatedLaw
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading
@@ -20,7 +20,7 @@ from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw, LugInlet
 from underfoot.sole_contact.motion_history import solve_history
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
-from underfoot.sole_contact.solver import SoleContact, solve_sliding
+from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
@@ -29,7 +29,11 @@ from .positions import Place, TreadPositions, place_numbers, position_count, tre
 from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
-from .summary import FILM_MATTERS
+
+LEAST_FILM = 1e-3
+"""Share of the load from which it is computed how unknown a film is."""
+MOST_STEPS = 20
+"""Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +43,14 @@ class Solution:
     Attributes:
         friction: Of the contact, as the tread lies.
         sensor: What the scans of the floor read.
+        spreads: ``film_spreads``.
     """
 
     contact: SoleContact
     recorder: Recorder
     friction: ContactFriction
     sensor: SensorReading
+    spreads: Mapping[str, tuple[float, float]]
 
 
 def solved(parts: Prepared, progress: Progress = silent) -> Solution:
@@ -65,49 +71,82 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
         watch=recorder,
         progress=progress,
     )
-    rough = film_spreads(parts, contact, progress)
-    friction = contact_friction(case, parts.context, parts.local_law, sole, contact, rough=rough)
+    spreads = film_spreads(parts, contact, progress)
+    law = parts.local_law
+    friction = contact_friction(case, parts.context, law, sole, contact, spreads=spreads)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
-    return Solution(contact, recorder, friction, sensor)
+    return Solution(contact, recorder, friction, sensor, spreads)
 
 
 def film_spreads(
     parts: Prepared, contact: SoleContact, progress: Progress = silent
-) -> dict[str, float]:
-    """Return what a standard deviation of a rough contact's gap and flow adds to ln F / (W - F).
+) -> dict[str, tuple[float, float]]:
+    """Return what one standard deviation less and more of a gap adds to ln F / (W - F).
 
-    F is the load on the film, W the whole; on the quick grid, as the tread lies. Empty where the
-    rough contact is none of measured surfaces, the film bears too little to matter, or one of the
-    contacts could not be solved.
+    F is the load on the film, W the whole; by name of the part of the rough contact (``ROUGH``):
+    gap and flow of measured surfaces, else the roughness that lets fluid leak. The contact goes on
+    in two steps with and without the change; that of a motion history is solved again, on the quick
+    grid as the tread lies. Empty where the film bears less than ``LEAST_FILM`` of the load, a rough
+    contact was given, or a contact could not be solved.
     """
-    case = parts.case
+    law, film = parts.asperities, contact.fluid_load / contact.normal_force
+    given = "rough_contact" in parts.objects or parts.film is None
+    if given or not contact.status.usable or not LEAST_FILM < film < 1:
+        return {}
     rough = micro_contact(parts, contact)
-    film = contact.fluid_load / contact.normal_force
-    if rough is None or parts.film is None or not contact.status.usable:
+    if isinstance(law, TabulatedLaw) and rough is not None:
+        gap, flow = 1 + rough.gap_deviation, 1 + rough.flow_deviation
+        changed = {
+            GAP: (law.changed(1 / gap, 1.0), law.changed(gap, 1.0)),
+            FLOW: (law.changed(1.0, 1 / flow), law.changed(1.0, flow)),
+        }
+    elif deviation := parts.context.leak_deviation:
+        leaks = (_leaking(parts, math.exp(sign * deviation)) for sign in (-1, 1))
+        changed = {LEAK: tuple(leaks)}
+    else:
         return {}
-    if not (FILM_MATTERS < film < 1) or not isinstance(parts.asperities, TabulatedLaw):
-        return {}
-    sole = sole_map(case, case.numerics.quick_grid_spacing)
-    compliance = parts.compliance if "compliance" in parts.objects else parts.compliance_on(sole)
-    local_law = parts.law_on(sole)
-
-    def odds(asperities: TabulatedLaw) -> float:
-        here = solved_motion(
-            case, sole, compliance, asperities, parts.film, local_law, progress=progress
-        )
-        if not here.status.usable:
-            raise ConvergenceError(str(here.status), history=[])
-        share = min(max(here.fluid_load / here.normal_force, 1e-6), 1 - 1e-6)
-        return math.log(share / (1 - share))
-
-    law = parts.asperities
-    wider = law.changed(1 + rough.gap_deviation, 1.0)
-    freer = law.changed(1.0, 1 + rough.flow_deviation)
+    odds = _odds_on(parts, contact, progress)
     try:
-        own = odds(law)
-        return {GAP: odds(wider) - own, FLOW: odds(freer) - own}
+        unchanged = odds(law)
+        return {
+            name: (odds(less) - unchanged, odds(more) - unchanged)
+            for name, (less, more) in changed.items()
+        }
     except ConvergenceError:
         return {}
+
+
+def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
+    """Return the rough contact on ``factor`` times the roughness that lets fluid leak."""
+    rq = parts.context.rq.scaled(factor)
+    return parts.case.rough_contact.build(replace(parts.context, rq=rq))
+
+
+def _odds_on(
+    parts: Prepared, contact: SoleContact, progress: Progress
+) -> Callable[[PressureGapLaw], float]:
+    """Return a function: ln F / (W - F) of a contact on other asperities."""
+    case, sole, compliance = parts.case, parts.sole, parts.compliance
+    steady = case.motion.build() is None
+    if not steady and "compliance" not in parts.objects:
+        sole = sole_map(case, case.numerics.quick_grid_spacing)
+        compliance = parts.compliance_on(sole)
+
+    def odds(asperities: PressureGapLaw) -> float:
+        local_law = replace(parts, asperities=asperities).law_on(sole)
+        if steady:
+            on = sole, compliance, asperities
+            end = continued(contact, case, *on, parts.film, local_law)[-1]
+        else:
+            end = solved_motion(
+                case, sole, compliance, asperities, parts.film, local_law, progress=progress
+            )
+        if not end.status.usable:
+            raise ConvergenceError(str(end.status), history=[])
+        share = min(max(end.fluid_load / end.normal_force, 1e-6), 1 - 1e-6)
+        return math.log(share / (1 - share))
+
+    return odds
 
 
 def solved_at(
@@ -253,3 +292,39 @@ def solved_motion(
     if history is not None:
         return solve_history(*parts, history, map_angle=motion.shoe_angle, **common)
     return solve_sliding(*parts, speed=motion.speed, normal_force=motion.normal_force, **common)
+
+
+def continued(
+    start: SoleContact,
+    case: Case,
+    sole: SoleMap,
+    compliance: Compliance,
+    asperities: PressureGapLaw,
+    film: FilmModel | None,
+    law: FrictionLaw | EdgedLaw,
+    *,
+    turn: float = 0.0,
+) -> list[SoleContact]:
+    """Return what a steady contact becomes under a changed case after one step and after two.
+
+    ``turn``: change of the shoe angle since the map was made, rad.
+
+    Raises:
+        InputError: Another grid.
+        ConvergenceError: A step could not be made.
+    """
+    settings = replace(solver_settings(case, film), most_time_steps=MOST_STEPS)
+    return solve_on(
+        start,
+        sole,
+        compliance,
+        asperities,
+        viscosity=None if film is None else film.viscosity,
+        speed=case.motion.speed,
+        normal_force=case.motion.normal_force,
+        turn=turn,
+        duration=settings.end_time,
+        steps=2,
+        settings=settings,
+        inlet=edge_inlet(case, law),
+    )

@@ -19,10 +19,11 @@ CLASSES = 64
 SAMPLES = 500
 MODEL = "model"
 FILM, SUCTION, TREAD = "film load", "suction", "tread"
-GAP, FLOW = "gap", "flow"
-"""Parts of the error of the load on the film that the rough contact makes."""
+ROUGH = GAP, FLOW, LEAK = "gap", "flow", "leak"
+"""Parts of the error of the load on the film that the rough contact makes: its gap, its flow, or
+the roughness that lets fluid leak."""
 SHEAR, ZERO = "film shear", "zero"
-APART = (MODEL, FILM, GAP, FLOW, SUCTION, TREAD, SHEAR, ZERO)
+APART = (MODEL, FILM, *ROUGH, SUCTION, TREAD, SHEAR, ZERO)
 """What is drawn beside the inputs of the law."""
 VACUUM = 1e5
 HIGHEST = 3.0
@@ -35,7 +36,8 @@ class SampledCof:
 
     ``share``: part of the variance of COF that goes with each input ("model": the law's own error),
     squared correlations over their sum, 1. ``left_out``: inputs taken as exact because their spread
-    is not known.
+    is not known. ``film_odds``: what ln F / (W - F) is off by, F the load on the film, W the whole;
+    None without a film.
     """
 
     cof: Array
@@ -46,6 +48,7 @@ class SampledCof:
     left_out: tuple[str, ...]
     confidence: float
     seed: int
+    film_odds: Array | None = None
 
     def sourced(self, name: str, value: SourcedValue) -> SourcedValue:
         """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
@@ -101,8 +104,8 @@ def sampled_cof(
         fluid_inputs: "viscosity" (Pa s) with its standard deviation; where it has none it counts as
             exact.
         film_error: Draws (samples,) of the error of ln F / (W - F); None takes the load as exact.
-        rough_errors: "gap", "flow": draws (samples,) of what each adds to the error of the load on
-            the film.
+        rough_errors: Those of ``ROUGH``: draws (samples,) of what each adds to the error of the
+            load on the film.
         tread_error: Draws (samples,) of the error of ln COF by the tread; None counts none.
         film_shear: Draws (samples,) of ln of the film's shear stress over that computed.
         zero: Draws (samples,) of what a reading of COF under a film is off by.
@@ -156,7 +159,7 @@ def sampled_cof(
             )
             share = 1.0 + pull_share * (ratio - 1.0)
             solid, hysteresis = solid * share, hysteresis * share
-        odds = sum(values.get(name, 0.0) for name in (FILM, GAP, FLOW))
+        odds = sum(values.get(name, 0.0) for name in (FILM, *ROUGH))
         share = 1.0 / (carried + (1.0 - carried) * np.exp(odds))
         solid, hysteresis = solid * share, hysteresis * share
         hysteresis = min(hysteresis, solid)
@@ -167,12 +170,14 @@ def sampled_cof(
 
     options = {"samples": samples, "seed": seed, "shares": False}
     spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)
+    odds = [joint[name] for name in (FILM, *ROUGH) if name in joint]
     return SampledCof(
         *spread.draws.T,
         share=_shares(spread),
         left_out=tuple(name for name in spread.left_out if SHEAR not in inputs),
         confidence=confidence,
         seed=seed,
+        film_odds=np.sum(odds, axis=0) if odds else None,
     )
 
 
