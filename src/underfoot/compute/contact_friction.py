@@ -36,13 +36,15 @@ from .sole import sole_map
 class ContactFriction:
     """Shear stresses on the sole, what edges of lugs do to them, their sum and its draws.
 
-    ``parts`` are maps (nx, ny), the viscous part 0 outside the film.
+    ``parts`` are maps (nx, ny), the viscous part 0 outside the film; ``film_odds`` (samples,) draws
+    of the error of ln F / (W - F), F the load on the film, W the whole.
     """
 
     parts: FrictionParts
     lugs: LugFriction | None
     sums: FrictionCoefficients
     sampled: SampledCof | None
+    film_odds: Array
 
 
 def contact_friction(
@@ -82,6 +84,11 @@ def contact_friction(
         name: error.draws(place, samples=samples, seed=seed, known=known)
         for name, error in sole_errors(case, context).items()
     }
+    rough = {
+        name: np.where(normal > 0, more, -less) * normal
+        for name, (less, more) in (spreads or {}).items()
+        for normal in [normal_draws(seed, f"{name} of the rough contact", samples)]
+    }
     pressures = at.contact_pressure, at.fluid_pressure
     on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
     source = f"{plain.name} law: {plain.source}"
@@ -96,11 +103,7 @@ def contact_friction(
         **at.areas,
         fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
         film_error=errors["film_error"],
-        rough_errors={
-            name: np.where(normal > 0, more, -less) * normal
-            for name, (less, more) in (spreads or {}).items()
-            for normal in [normal_draws(seed, f"{name} of the rough contact", samples)]
-        },
+        rough_errors=rough,
         tread_error=errors["tread_error"],
         film_shear=film_shear,
         zero=numbers.ZERO * normal_draws(seed, "zero of the cell", samples),
@@ -110,7 +113,8 @@ def contact_friction(
         seed=seed,
     )
     sums = cof(parts, *pressures, **on_cells, sampled=sampled, source=source)
-    return ContactFriction(maps, lugs, sums, sampled)
+    film_odds = errors["film_error"] + sum(rough.values())
+    return ContactFriction(maps, lugs, sums, sampled, film_odds)
 
 
 def film_warmth(

@@ -13,8 +13,6 @@ from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.core.arrays import Array
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
-from underfoot.friction.propagation import normal_draws
-from underfoot.friction.sampled_cof import SAMPLES
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
 from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.sole_state import FAINT, SoleState
@@ -117,23 +115,20 @@ def scalars(
 
 def with_film_spread(
     values: Mapping[str, SourcedValue],
-    sampled: SampledCof | None,
+    film_odds: Array,
     at_places: Mapping[str, Array] | None = None,
 ) -> dict[str, SourcedValue]:
     """Return the numbers of the film with the spread of its load, and that over places.
 
-    ln F / (W - F), F the load on the film, W the whole, is off by ``sampled.film_odds``, without
-    these by ``FILM_ERROR``; what sensors read and peaks go with F. Draws take ``at_places`` (name:
-    values at positions of the tread or shoe angles) in turn, as those of COF do.
+    ln F / (W - F), F the load on the film, W the whole, is off by ``film_odds`` (n,); what sensors
+    read and peaks go with F. Draws take ``at_places`` (name: values at positions of the tread or
+    shoe angles) in turn, as those of COF do.
     """
     load, whole = values["fluid_load"].value, values["normal_force"].value
     if not load or not whole:
         return dict(values)
-    odds = None if sampled is None else sampled.film_odds
-    if odds is None:
-        odds = FILM_ERROR * normal_draws(0, "film load", SAMPLES)
     share = min(load / whole, 1.0)
-    factors = 1 / (share + (1 - share) * np.exp(-odds))
+    factors = 1 / (share + (1 - share) * np.exp(-film_odds))
     result = dict(values)
     for name in GRID_NAMES[1:]:
         value = values[name].value

@@ -7,7 +7,6 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
-from underfoot.friction.sampled_cof import GAP
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -78,7 +77,8 @@ def readings(
     values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
-    values = numbers.with_film_spread(values, sampled, positions.values if positions else None)
+    places = positions.values if positions else None
+    values = numbers.with_film_spread(values, solution.friction.film_odds, places)
     drainage = None
     if contact.fluid_load > FILM_MATTERS * contact.normal_force:
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
@@ -89,9 +89,11 @@ def readings(
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
-    solved = sampled is None or GAP in sampled.share or share < FILM_MATTERS
-    if micro is not None and not solved:
-        labels["cof_spread_from"] += ", gap and flow of the rough contact: not estimated"
+    unknown = micro is not None or parts.context.leak_deviation > 0
+    if unknown and not solution.spreads and share > FILM_MATTERS:
+        labels["film_spread"] = (
+            "leaves out the roughness that lets fluid leak, which could not be estimated"
+        )
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)

@@ -43,6 +43,7 @@ LUGS_SHOWN = 6
 """Most lugs in the table of their drainage."""
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
+    "film_spread": "Spread of the film",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
     "grid_error": "Numerical error",
@@ -168,10 +169,11 @@ def cautions(
     if others := [name for name in models if name != slip_model]:
         reasons.append(beyond_tests(others))
     sections = {line.partition(":")[0] for line in assumptions}
-    open_sections = [name for name in DECISIVE[:2] if name in sections]
-    if open_sections and friction_limit(scalars).kind == "film":
-        named = {"interface": "interface roughness", "shoe.heel": "heel shape"}
-        inputs = " and ".join(named[name] for name in open_sections)
+    left_out = {"shoe.heel": "heel shape"}
+    if "film_spread" in labels:
+        left_out = {"interface": "interface roughness", **left_out}
+    inputs = " and ".join(text for name, text in left_out.items() if name in sections)
+    if inputs and friction_limit(scalars).kind == "film":
         reasons.append(
             f"The film load depends on assumed values ({inputs}) that the ± leaves out; "
             "underfoot sensitivity gives their effect."

@@ -36,8 +36,7 @@ class SampledCof:
 
     ``share``: part of the variance of COF that goes with each input ("model": the law's own error),
     squared correlations over their sum, 1. ``left_out``: inputs taken as exact because their spread
-    is not known. ``film_odds``: what ln F / (W - F) is off by, F the load on the film, W the whole;
-    None without a film.
+    is not known.
     """
 
     cof: Array
@@ -48,7 +47,6 @@ class SampledCof:
     left_out: tuple[str, ...]
     confidence: float
     seed: int
-    film_odds: Array | None = None
 
     def sourced(self, name: str, value: SourcedValue) -> SourcedValue:
         """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
@@ -170,14 +168,12 @@ def sampled_cof(
 
     options = {"samples": samples, "seed": seed, "shares": False}
     spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)
-    odds = [joint[name] for name in (FILM, *ROUGH) if name in joint]
     return SampledCof(
         *spread.draws.T,
         share=_shares(spread),
         left_out=tuple(name for name in spread.left_out if SHEAR not in inputs),
         confidence=confidence,
         seed=seed,
-        film_odds=np.sum(odds, axis=0) if odds else None,
     )
 
 

@@ -1,0 +1,130 @@
+"""How unknown the film is: roughness that lets fluid leak, in its load, in COF and in previews."""
+
+import math
+
+import numpy as np
+import pytest
+
+from underfoot import Case, run
+from underfoot.case.surfaces import BEYOND_DEVIATION, FLOOR_RQ
+from underfoot.compute.continuation import Continuation
+from underfoot.compute.numbers import FILM_ERROR, GRID_NAMES, with_film_spread
+from underfoot.compute.prepare import prepared
+from underfoot.compute.resolve import resolved
+from underfoot.compute.solve import film_spreads, solved_motion
+from underfoot.core import SourcedValue
+from underfoot.friction.propagation import normal_draws
+from underfoot.friction.sampled_cof import LEAK
+
+FACTOR = "interface.roughness_beyond_cutoff"
+
+
+def heel(shoe: str = "full_tread", **values) -> Case:
+    return Case.from_text(
+        """
+        shoe = {from = "work_shoe_SHOE", roughness.ra = "4 um"}
+        floor = {from = "vinyl_g4", roughness.ra = "1 um"}
+        contaminant = "glycerol_90pct"
+        motion = "slip_tester_g4"
+        """.replace("SHOE", shoe)
+    ).replace({"numerics.tread_positions": 1, **values})
+
+
+def flat(**values) -> Case:
+    """Return a heel without lugs on coarse squares."""
+    return heel("untreaded", **{"numerics.cells_along": 1, **values})
+
+
+def odds(contact) -> float:
+    share = contact.fluid_load / contact.normal_force
+    return math.log(share / (1 - share))
+
+
+def test_an_assumed_factor_lies_between_one_and_four():
+    assert 2 * math.exp(1.96 * BEYOND_DEVIATION) == pytest.approx(4)
+    assert resolved(heel()).leak_deviation == pytest.approx(BEYOND_DEVIATION)
+    assert resolved(heel(**{FACTOR: 2.0})).leak_deviation == 0
+    given = heel(**{FACTOR: {"value": 2.0, "uncertainty": 0.5}})
+    assert resolved(given).leak_deviation == pytest.approx(0.25)
+    own = heel(**{"interface.effective_rq": {"value": "12 um", "uncertainty": "3 um"}})
+    assert resolved(own).leak_deviation == pytest.approx(0.25)
+
+
+def test_roughness_that_is_not_given_is_drawn_over_what_is_usual():
+    text = """
+    shoe = {from = "work_shoe_full_tread", roughness.ra = "4 um"}
+    floor.roughness = {}
+    contaminant = "glycerol_90pct"
+    motion = "slip_tester_g4"
+    interface.roughness_beyond_cutoff = 2.0
+    """
+    sole, usual = math.sqrt(math.pi / 2) * 4e-6, math.sqrt(math.prod(FLOOR_RQ))
+    share = usual**2 / (usual**2 + sole**2)
+    expected = share * math.log(FLOOR_RQ[1] / FLOOR_RQ[0]) / (2 * 1.96)
+    assert resolved(Case.from_text(text)).leak_deviation == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("case", [heel(), flat()], ids=["lugs", "flat"])
+def test_the_spread_is_that_of_marches_on_other_roughness(case):
+    spacing = case.numerics.quick_grid_spacing
+
+    def march(factor: float):
+        parts = prepared(case.replace(FACTOR, 2 * factor), spacing)
+        on = parts.sole, parts.compliance, parts.asperities, parts.film, parts.local_law
+        return solved_motion(parts.case, *on)
+
+    width = math.exp(BEYOND_DEVIATION)
+    contact = march(1.0)
+    spreads = film_spreads(prepared(case, spacing), contact)
+    expected = [odds(march(factor)) - odds(contact) for factor in (1 / width, width)]
+    assert expected[0] > 0.1 > -0.1 > expected[1]  # a rougher pair leaks more
+    assert spreads[LEAK] == pytest.approx(expected, rel=0.1)
+
+
+def test_a_known_roughness_leaves_the_model_alone():
+    known, assumed = (run(flat(**more), quick=True) for more in ({FACTOR: 2.0}, {}))
+    assert known["cof"].value == assumed["cof"].value
+    for name in GRID_NAMES:
+        low, high = known[name].interval or ()
+        lower, higher = assumed[name].interval or ()
+        assert lower < low < high < higher, name
+    assert "lets fluid leak" in assumed.labels["cof_spread_from"]
+    assert "lets fluid leak" not in known.labels["cof_spread_from"]
+    assert not any("interface roughness" in line for line in assumed.cautions())
+    # the film on the roughness at either end of a standard deviation is inside
+    for factor in (math.sqrt(2), 2 * math.sqrt(2)):
+        load = run(flat(**{FACTOR: factor}), quick=True).value("fluid_load")
+        low, high = assumed["fluid_load"].interval or ()
+        assert low < load < high
+
+
+def test_the_load_on_the_film_never_leaves_the_load():
+    """ln F / (W - F) is off by the draws: 0 leaves it, large ones end at W."""
+    values = {"normal_force": SourcedValue(500.0, "N"), "fluid_load": SourcedValue(300.0, "N")}
+    values |= {name: SourcedValue(None, "1") for name in GRID_NAMES if name not in values}
+    exact = with_film_spread(values, np.zeros(500))["fluid_load"]
+    assert exact.interval == pytest.approx((300, 300))
+    assert exact.uncertainty == pytest.approx(0)
+    draws = FILM_ERROR * normal_draws(0, "film load", 2000)
+    low, high = with_film_spread(values, draws)["fluid_load"].interval or ()
+    turned = [300 / (300 + 200 * math.exp(-sign * 1.96 * FILM_ERROR)) for sign in (-1, 1)]
+    assert (low, high) == pytest.approx([500 * each for each in turned], rel=0.01)
+    low, high = with_film_spread(values, 20 * draws)["fluid_load"].interval or ()
+    assert 0 < low < high <= 500
+    places = {"fluid_load": np.array([200.0, 400.0])}
+    low, high = with_film_spread(values, np.zeros(500), places)["fluid_load"].interval or ()
+    assert (low, high) == pytest.approx((200, 400))
+
+
+def test_a_preview_is_as_unsure_as_a_run():
+    case = flat()
+    march = Continuation(case)
+    run_spread = run(case.replace("numerics.tread_positions", 1), quick=True)["cof"].uncertainty
+    assert march.cof.uncertainty == pytest.approx(run_spread, rel=0.1)
+    seen = march.continued({"contaminant.viscosity": "150 cP"})
+    assert (seen.cof.uncertainty or 0) > 1.2 * _known(case)
+
+
+def _known(case: Case) -> float:
+    seen = Continuation(case.replace(FACTOR, 2.0)).continued({"contaminant.viscosity": "150 cP"})
+    return seen.cof.uncertainty or 0.0
