@@ -367,7 +367,7 @@ ROOMS = {
     ),
     "Measurements": (
         "underfoot.trials", "underfoot.trials.protocols", "underfoot.trials.stribeck_fit",
-        "underfoot.trials.pressure_map", "underfoot_trial_analysis.folder",
+        "underfoot_trial_analysis.pressure_map", "underfoot_trial_analysis.folder",
         "underfoot_trial_analysis.file_result", "underfoot_trial_analysis.study",
         "underfoot_trial_analysis.tables", "underfoot_trial_analysis.pin_on_disk",
         "underfoot_trial_analysis.boundary", "underfoot_trial_analysis.relaxation_test",

@@ -8,7 +8,6 @@ import pytest
 
 from underfoot.core import DataError, InputError
 from underfoot.trials import Channel, Marker, read_profile, read_trial
-from underfoot.trials.pressure_map import pressure_map, pressure_scan
 from underfoot.trials.protocols import protocol
 from underfoot_simulator import (
     Defects,
@@ -21,6 +20,7 @@ from underfoot_simulator import (
     walk_with_slip,
 )
 from underfoot_trial_analysis import analyse_folder
+from underfoot_trial_analysis.pressure_map import pressure_map, pressure_scan
 
 
 def _truth(folder: Path) -> dict[str, dict[str, str]]:

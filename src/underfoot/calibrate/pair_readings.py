@@ -17,7 +17,12 @@ import numpy as np
 from scipy.stats import norm
 
 from underfoot.case import Case
-from underfoot.compute.contact_friction import contact_friction, place_of_tread, sole_errors
+from underfoot.compute.contact_friction import (
+    contact_friction,
+    leak_name,
+    place_of_tread,
+    sole_errors,
+)
 from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import sole_map
@@ -36,6 +41,8 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part
 from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import DRY_PART, LABORATORY
+from underfoot.friction.propagation import normal_draws
+from underfoot.friction.sampled_cof import LEAK
 from underfoot.friction.tread_error import READING
 
 REPEATS = 20
@@ -101,7 +108,7 @@ class PairCalibration(Presentable):
             f"factor of {before:.2g} to one of {after:.2g} either way.",
             "It was taken from "
             + ", ".join(f"{name} ({then:.2f} to {now:.2f})" for name, then, now in self._taken())
-            + " (standard deviations of ln COF). Another tread keeps its own error.",
+            + " (standard deviations of logarithms). Another tread keeps its own error.",
         )
 
     def _taken(self) -> list[tuple[str, float, float]]:
@@ -222,10 +229,15 @@ def calibrated_pair(
     grid = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
     for reading, law in zip(readings, laws, strict=True):
         case, name = reading.case, law.pair.compound_and_floor
+        context = resolved(case)
         words[name] = f"the pair of {case.name}"
         errors[name] = wide.error(name, wide.sd_pair, seed)
         place = place_of_tread(case, sole_map(case, case.value(grid)))
-        for subject, error in sole_errors(case, resolved(case)).items():
+        if context.leak_deviation:
+            normal = normal_draws(seed, f"{LEAK} of the rough contact", wide.count)
+            errors[leak_name(context)] = context.leak_deviation * normal
+            words[leak_name(context)] = f"the roughness that lets fluid leak under {case.name}"
+        for subject, error in sole_errors(case, context).items():
             name = error.name(place)
             words[name] = f"the {subject.removesuffix('_error')} of {case.name}"
             errors[name] = error.draws(place, samples=wide.count, seed=seed, known=errors)

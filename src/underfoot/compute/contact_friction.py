@@ -19,7 +19,7 @@ from underfoot.friction import (
     sampled_cof,
 )
 from underfoot.friction.propagation import named_shares, normal_draws
-from underfoot.friction.sampled_cof import SAMPLES
+from underfoot.friction.sampled_cof import LEAK, SAMPLES
 from underfoot.friction.shoe_class import of_class
 from underfoot.friction.tread_error import SharedError, tread_error
 from underfoot.shoe import SoleMap
@@ -84,11 +84,12 @@ def contact_friction(
         name: error.draws(place, samples=samples, seed=seed, known=known)
         for name, error in sole_errors(case, context).items()
     }
-    rough = {
-        name: np.where(normal > 0, more, -less) * normal
-        for name, (less, more) in (spreads or {}).items()
-        for normal in [normal_draws(seed, f"{name} of the rough contact", samples)]
-    }
+    rough = {}
+    for name, (less, more) in (spreads or {}).items():
+        normal = normal_draws(seed, f"{name} of the rough contact", samples)
+        if name == LEAK and (leak := known.get(leak_name(context))) is not None:
+            normal = leak / context.leak_deviation
+        rough[name] = np.where(normal > 0, more, -less) * normal
     pressures = at.contact_pressure, at.fluid_pressure
     on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
     source = f"{plain.name} law: {plain.source}"
@@ -151,6 +152,12 @@ def sole_errors(case: Case, context: Context) -> dict[str, SharedError]:
     """
     film = SharedError(f"film load, {numbers.heel_name(case)}", numbers.FILM_ERROR)
     return {"film_error": film, "tread_error": tread_error(context.viscosity_value)}
+
+
+def leak_name(context: Context) -> str:
+    """Return the name of the error of ln of the Rq that lets fluid leak between two surfaces."""
+    sole, floor = (part.roughness.rq_or_estimate or 0.0 for part in (context.shoe, context.floor))
+    return f"{LEAK}: Rq {sole:.3g} m on {floor:.3g} m"
 
 
 def of_known_class(law: FrictionLaw, case: Case, sole: SoleMap) -> FrictionLaw:

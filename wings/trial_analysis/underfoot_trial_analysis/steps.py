@@ -13,7 +13,6 @@ from underfoot.trials.events import Stance, no_contact_reason, stances
 from underfoot.trials.gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
 from underfoot.trials.gait_context import gait_context, slip_course, stance_curves
 from underfoot.trials.measurement import MEAN_OF_STEPS, Measurement, mean_of
-from underfoot.trials.pressure_map import pressure_scan
 from underfoot.trials.pressures import sensor_array_reading
 from underfoot.trials.protocols import KINDS, Protocol
 from underfoot.trials.readers import Profile
@@ -28,6 +27,7 @@ from .edit_table import EDIT_COLUMNS, edit_log
 from .file_result import Draft, rates, refer_to
 from .person_measures import person_measures
 from .pin_on_disk import friction_point
+from .pressure_map import pressure_scan
 from .relaxation_test import RelaxationReading, relaxation_reading
 from .tester_checks import log_kind, scan_flags, slide_flags
 

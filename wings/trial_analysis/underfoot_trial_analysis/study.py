@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.trials.pressure_map import PressureScan, pressure_map
 from underfoot.trials.protocols import Protocol
 from underfoot.trials.stribeck_fit import METHODS as FIT_METHODS
 from underfoot.trials.stribeck_fit import master_curve, stribeck_fit
@@ -18,6 +17,7 @@ from .conditions import NUMBERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
+from .pressure_map import PressureScan, pressure_map
 from .readings import NOTED
 from .statistics import precision
 from .study_tests import comparison_findings, persons_of, slip_findings, varying

@@ -11,11 +11,12 @@ import numpy as np
 
 from underfoot.trials.measurement import Flag
 from underfoot.trials.plausibility import HELD, Limit
-from underfoot.trials.pressure_map import PressureScan
 from underfoot.trials.signals import longest_run, runs, unloaded
 from underfoot.trials.slip_friction import SlideFriction
 from underfoot.trials.tester_calibration import TesterCalibration
 from underfoot.trials.trial import Plate
+
+from .pressure_map import PressureScan
 
 ZERO = Limit("zero", 0.005, "1", "change of COF by the unloaded level at the slide; assumed")
 LOW = Limit("COF", 0.02, "1", "few shoes on lubricated floors lie below (lowest known 0.008)")

@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
-
-from .axes import Axes, axes_of
-from .measurement import Measurement, remark
-from .signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
-from .trial import Channel, Marker, Trial
+from underfoot.trials.axes import Axes, axes_of
+from underfoot.trials.measurement import Measurement, remark
+from underfoot.trials.signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
+from underfoot.trials.trial import Channel, Marker, Trial
 
 NARROW = 1.5  # spacings; pressure bumps narrower than this can hide between scans
 OUTER_SHARE = 0.02
