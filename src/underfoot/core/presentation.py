@@ -143,12 +143,19 @@ def percent(share: float) -> str:
         return "below 0.1 %"
     if 99.9 < value < 100.0:
         return "above 99.9 %"
-    return f"{value:.1f} %" if value < 9.95 else f"{value:.0f} %"
+    return f"{value:.0f} %" if 9.95 <= value < 99.5 or value == 100.0 else f"{value:.1f} %"
 
 
 def probability_text(probability: float) -> str:
     """Return a computed probability in percent: none is exactly 0 or 1."""
     return percent(min(max(probability, 1e-9), 1 - 1e-9))
+
+
+def drawn_probability_text(probability: float) -> str:
+    """Return a probability in percent that is told to 1 % at most, as by hundreds of draws."""
+    if probability < 0.01:
+        return "below 1 %"
+    return "above 99 %" if probability > 0.99 else percent(probability)
 
 
 def quantity_text(value: float, unit: str, uncertainty: float | None = None) -> str:

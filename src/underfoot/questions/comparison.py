@@ -15,7 +15,12 @@ from underfoot.compute import summary
 from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
-from underfoot.core.presentation import Presentable, Table, percent, value_text
+from underfoot.core.presentation import (
+    Presentable,
+    Table,
+    drawn_probability_text,
+    value_text,
+)
 from underfoot.core.progress import part
 from underfoot.friction.propagation import probability_higher
 from underfoot.friction.tread_error import READING
@@ -371,7 +376,7 @@ def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
 def _chance(probability: float | None, unknown: str) -> str:
     if probability is None:
         return unknown
-    return "above 99 %" if probability > 0.99 else percent(probability)
+    return drawn_probability_text(probability)
 
 
 def _with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:

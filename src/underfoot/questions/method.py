@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
-from underfoot.core.presentation import Presentable, Table, percent, value_text
+from underfoot.core.presentation import (
+    Presentable,
+    Table,
+    drawn_probability_text,
+    value_text,
+)
 from underfoot.core.progress import part
 
 from .outcomes import Outcome, outcomes
@@ -91,9 +96,8 @@ class Condition:
         )
         if self.probability is None or self.limit is None:
             return f"{text}; the method sets no limit."
-        return (
-            f"{text}; probability of at least {self.limit.value:g} is {_chance(self.probability)}."
-        )
+        chance = drawn_probability_text(self.probability)
+        return f"{text}; probability of at least {self.limit.value:g} is {chance}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +149,7 @@ class MethodPrediction(Presentable):
                 value_text("cof", each.cof),
                 "" if each.low is None else f"{each.low:.2f} to {each.high:.2f}",
                 "none" if each.limit is None else f"{each.limit.value:g}",
-                "" if each.probability is None else _chance(each.probability),
+                "" if each.probability is None else drawn_probability_text(each.probability),
             )
             for each in self.conditions
         ]
@@ -467,9 +471,3 @@ def probability_at_least(mean: float, deviation: float, limit: float) -> float:
     if deviation == 0:
         return 1.0 if mean >= limit else 0.0
     return 0.5 * math.erfc((limit - mean) / (deviation * math.sqrt(2.0)))
-
-
-def _chance(probability: float) -> str:
-    if probability < 0.01:
-        return "below 1 %"
-    return "above 99 %" if probability > 0.99 else percent(probability)

@@ -13,6 +13,7 @@ from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.presentation import (
     Presentable,
     Table,
+    drawn_probability_text,
     is_wide,
     percent,
     probability_text,
@@ -311,7 +312,7 @@ def _sure(effect: ChangeEffect) -> str:
     """Return the probability that a change raises COF; empty where it changes none."""
     if effect.higher is None or effect.change.lever == "walking":
         return ""
-    return probability_text(effect.higher)
+    return drawn_probability_text(effect.higher)
 
 
 def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
