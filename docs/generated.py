@@ -175,10 +175,11 @@ def sourced_texts() -> Iterator[tuple[str, str]]:
                 ):
                     yield _place(path), " ".join(found.split())
             elif isinstance(node, ast.Assign | ast.AnnAssign | ast.keyword):
+                if not isinstance(node.value, ast.Constant):
+                    continue
                 named = node.arg if isinstance(node, ast.keyword) else ast.unparse(_target(node))
-                value = node.value
-                if "source" in (named or "").casefold() and isinstance(value, ast.Constant):
-                    yield _place(path), str(value.value)
+                if "source" in (named or "").casefold():
+                    yield _place(path), str(node.value.value)
     for path in ROOT.glob("src/underfoot/data/**/*.toml"):
         for text in _stated(tomllib.loads(path.read_text("utf-8"))):
             yield _place(path), text

@@ -87,6 +87,15 @@ def pytest_terminal_summary(terminalreporter, config):
         terminalreporter.line(f"{len(skipped)} tests of the pages: {NO_BROWSER}", yellow=True)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _one_thread():
+    """The workers fill the cores: threads of BLAS would wait for each other, at full load."""
+    from underfoot.core.threads import threads_limited
+
+    with threads_limited(1):
+        yield
+
+
 @pytest.fixture(autouse=True)
 def _own_cache(tmp_path_factory, monkeypatch):
     """Keep every test out of the user's cache."""

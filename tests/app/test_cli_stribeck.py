@@ -123,14 +123,6 @@ def test_the_report_s_equations_are_named_and_found(name, text):
     assert text in found.output
 
 
-def test_study_g3_writes_its_tables(tmp_path):
-    out = tmp_path / "g3"
-    found = called("studies", "run", "g3", "--out", str(out))
-    assert found.exit_code == 0, found.output
-    assert {path.name for path in out.iterdir()} >= {"verdicts.csv", "eq26.csv", "study.json"}
-    assert "Eq. 26" in found.output
-
-
 def test_options_of_another_study_are_refused():
     found = RUNNER.invoke(app, ["studies", "run", "g3", "--explicit"])
     assert found.exit_code == 2

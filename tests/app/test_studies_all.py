@@ -50,6 +50,15 @@ def result(name):
     return StudyResult(study(name), computed, True, 1.0, 1.0)
 
 
+@pytest.fixture(scope="module")
+def g3_run(tmp_path_factory):
+    """Return the folder and the ended process of study g3."""
+    out = tmp_path_factory.mktemp("studies") / "g3"
+    done = process("studies", "run", "g3", "--out", out)
+    assert done.returncode == 0, done.stderr
+    return out, done
+
+
 @pytest.fixture
 def one_fails(monkeypatch):
     def run(chosen, options):
@@ -161,9 +170,8 @@ def test_the_list_names_all_and_wrong_names_are_refused():
     assert "--explicit" in explicit.stderr
 
 
-def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
-    out = tmp_path / "g3"
-    assert process("studies", "run", "g3", "--out", out).returncode == 0
+def test_a_finished_folder_is_judged_again(g3_run, tmp_path):
+    out, _ = g3_run
     found = called("studies", "summary", str(out), "--json")
     assert found.returncode == 0, found.stderr
     verdicts = {row["statement"]: row["verdict"] for row in json.loads(found.stdout)}
@@ -179,11 +187,11 @@ def test_a_finished_folder_is_judged_again_as_a_process(tmp_path):
     assert "studies run --out" in nothing.stderr
 
 
-def test_a_single_study_writes_its_page_with_figures_first(tmp_path):
-    out = tmp_path / "g3"
-    found = called("studies", "run", "g3", "--out", out)
-    assert found.returncode == 0, found.stderr
-    assert "report.html" in found.stdout
+def test_a_single_study_writes_its_tables_and_its_page_with_figures_first(g3_run):
+    out, done = g3_run
+    assert {path.name for path in out.iterdir()} >= {"verdicts.csv", "eq26.csv", "study.json"}
+    assert "report.html" in done.stdout
+    assert "Eq. 26" in done.stdout
     page = (out / "report.html").read_text(encoding="utf-8")
     assert page.index("data:image/png") < page.index("<th>Statement</th>")
     assert page.count("data:image/png") == len(list(out.glob("*.png")))
@@ -192,9 +200,8 @@ def test_a_single_study_writes_its_page_with_figures_first(tmp_path):
 
 @pytest.mark.browser
 @pytest.mark.parametrize("width", [1366, 390])
-def test_the_page_of_a_study_is_read_without_scrolling_sideways(tmp_path, width):
-    out = tmp_path / "g3"
-    assert process("studies", "run", "g3", "--out", out).returncode == 0
+def test_the_page_of_a_study_is_read_without_scrolling_sideways(g3_run, width):
+    out, _ = g3_run
     with opened(out / "report.html", width=width, height=800) as session:
         assert session.value("document.documentElement.scrollWidth") <= width
         seen = "[...document.querySelectorAll('details[open] tr')]"

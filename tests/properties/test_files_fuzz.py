@@ -138,7 +138,7 @@ def result_folder(tmp_path_factory):
 # h5netcdf's File that could not be opened fails once more where it is collected
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(damage=damages())
 @example(damage=("overwrite", True, 0.2, b"\xff" * 8, b""))

@@ -201,8 +201,12 @@ def test_the_one_curve_of_fig_16_leaves_little(found):
     )
 
 
-def test_study_g3_holds_eq_26_to_both_ends_of_the_printed_ranges():
-    computed = g3.compute(Options())
+@pytest.fixture(scope="module")
+def computed():
+    return g3.compute(Options())
+
+
+def test_study_g3_holds_eq_26_to_both_ends_of_the_printed_ranges(computed):
     said = verdicts("g3", computed)
     # 4.33 N under water whatever the dry adhesion; printed at most 2.76 N (G.3.2, Table 5)
     assert computed.quantities["eq26.polyurethane.highest"].values[0] >= 4.32
@@ -212,9 +216,8 @@ def test_study_g3_holds_eq_26_to_both_ends_of_the_printed_ranges():
     assert said["order_dry_real_contact_area_and_one_strength"] == "disagrees"
 
 
-def test_study_g3_judges_the_default_law():
+def test_study_g3_judges_the_default_law(computed):
     """Order of the soles dry as printed; floors and polymer are not in the law, and it says so."""
-    computed = g3.compute(Options())
     area = computed.quantities["default.adhesion"]
     assert list(area.names) == ["hard rubber", "soft rubber", "polyurethane"]
     assert area.values[0] > area.values[1] > area.values[2] > 0.0
@@ -231,7 +234,7 @@ def test_study_g3_judges_the_default_law():
     assert set(computed.figures) == figures
 
 
-def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does():
+def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does(computed):
     """What the compounds lose is what a case of the same pair gives at its loss tangent."""
     catalogue, draws = Catalogue.load(), default_law.draws_without_report()
     one = g3.split(catalogue, draws, "soft rubber", "vinyl", 0)
@@ -245,7 +248,6 @@ def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does():
     pins = [g3.split(catalogue, draws, sole, "vinyl", 0).loss for sole in g3.SOLES]
     apart = np.corrcoef(np.log(pins))  # they share the laboratory, not the loss
     assert apart[0, 1] < 0.8
-    computed = g3.compute(Options())
     said = verdicts("g3", computed)
     assert said["hysteresis_floor_loss_in_the_compound_alone"] == "disagrees"
     by_sole = computed.quantities["default.loss"].values

@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from underfoot.core import DataError, InputError
+from underfoot_trial_analysis.field_statistics import corrected_p
 from underfoot_trial_analysis.statistics import (
     bland_altman,
     detectable_difference,
@@ -170,6 +171,18 @@ def test_power_of_fishers_test_by_all_tables():
     assert power("slips", n, shares=(0.1, 0.7)) == pytest.approx(total, abs=1e-9)
     with pytest.raises(InputError, match="5000"):
         persons_needed(lambda n: power("slips", min(n, 9), shares=(0.1, 0.1)))
+
+
+@pytest.mark.parametrize("method", ["holm", "fdr_bh"])
+def test_p_of_several_tests_beside_statsmodels(method):
+    from statsmodels.stats.multitest import multipletests
+
+    # Benjamini and Hochberg 1995, section 3.2, and a tie
+    p = [0.0278, 0.0001, 0.0201, 0.0019, 0.0095, 0.0004, 0.0298, 0.0344, 0.0459, 0.3240, 0.4262,
+         0.5719, 0.6528, 0.7590, 1.0000, 0.0019]  # fmt: skip
+    found = corrected_p(p, false_discovery=method == "fdr_bh")
+    assert found == pytest.approx(multipletests(p, method=method)[1], abs=1e-15)
+    assert corrected_p([]) == []
 
 
 def test_equivalence_beside_statsmodels():

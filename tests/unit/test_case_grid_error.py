@@ -17,6 +17,7 @@ from underfoot.friction import SampledCof
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COARSE = {"numerics.grid_spacing": "2 mm", "numerics.quick_grid_spacing": "3 mm"}
+CHECKED = {**COARSE, "numerics.tread_positions": 1, "numerics.grid_check": True}
 
 
 def test_the_error_joins_spread_and_interval_and_is_told():
@@ -82,8 +83,8 @@ def test_every_run_tells_its_numerical_error(name):
 
 
 def test_a_grid_check_looks_at_finer_cells_and_steps():
-    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(COARSE)
-    words = run(case.replace("numerics.grid_check", True)).labels["grid_error"]
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(CHECKED)
+    words = run(case).labels["grid_error"]
     assert "cells of 3 mm, 16 along the sliding" in words
     assert "steps in time" in words
 
@@ -94,7 +95,5 @@ def test_a_march_that_does_not_converge_leaves_the_error_unknown(monkeypatch):
         return replace(contact, status=Status.NOT_CONVERGED) if finer > 1 else contact
 
     monkeypatch.setattr("underfoot.compute.solve.solved_motion", fails_with_more_steps)
-    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(
-        {**COARSE, "numerics.grid_check": True}
-    )
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(CHECKED)
     assert run(case).labels["grid_error"].startswith("not estimated: a march on cells of 3 mm")

@@ -176,13 +176,12 @@ def fluid_share(full_film: ArrayLike, dry_gap: ArrayLike) -> Array:
     film, dry = np.broadcast_arrays(
         np.asarray(full_film, dtype=float), np.asarray(dry_gap, dtype=float)
     )
-    low = np.full(film.shape, np.log(1e-300))
-    high = np.zeros(film.shape)
+    log_share = np.full(film.shape, 0.5 * np.log(1e-300))
+    step = -0.5 * log_share
     for _ in range(_STEPS):
-        middle = 0.5 * (low + high)
-        gap = film * np.exp(-FILM_EXPONENT * middle)
+        gap = film * np.exp(-FILM_EXPONENT * log_share)
         # roughness carries less than the load's rest: the film is too thick, f too small
-        too_thick = np.exp(-np.clip(gap - dry, -700.0, 700.0)) < -np.expm1(middle)
-        low = np.where(too_thick, middle, low)
-        high = np.where(too_thick, high, middle)
-    return np.where(film > 0, np.exp(0.5 * (low + high)), 0.0)
+        too_thick = np.exp(np.minimum(dry - gap, 700.0)) < -np.expm1(log_share)
+        log_share += np.where(too_thick, step, -step)
+        step *= 0.5
+    return np.where(film > 0, np.exp(log_share), 0.0)
