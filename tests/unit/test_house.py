@@ -177,7 +177,7 @@ def test_each_package_that_the_source_imports_is_declared():
 
 
 def imported_names(path):
-    """Yield the modules that statements import, and those that calls of ``optional_module`` name."""
+    """Yield the modules that statements import and calls of ``optional_module`` name."""
     for node in statements(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

@@ -13,8 +13,9 @@ def rolled_base(height: Array, spacing: float, radius: float, slopes: tuple[floa
 
     Grey opening by p(r) = -r^2 / (2 R): e(c) = min_x [z(x) + |x - c|^2 / (2 R)], base(x) =
     max_c [e(c) - |x - c|^2 / (2 R)]. A gap of width w is entered by w^2 / (8 R); a surface that is
-    convex downward, or hollow with a radius above R, is its own base. Both steps are separable
-    lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012, Theory of Computing 8).
+    convex downward, or hollow with a radius above R, is its own base. Both steps are separable:
+    along x lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012, Theory of Computing
+    8), between them both steps along y at once, a convex hull.
 
     Parameters:
         height: (nx, ny) m, z up, nan outside: there the paraboloid is free.
@@ -23,23 +24,16 @@ def rolled_base(height: Array, spacing: float, radius: float, slopes: tuple[floa
         slopes: Steepest slopes along x and y that it follows at the rim; places beyond the rim by
             slope times R.
     """
-    axes = [np.arange(count, dtype=np.float64) * spacing for count in height.shape]
-    places = [
-        np.arange(axis[0] - slope * radius, axis[-1] + slope * radius + _STEP, _STEP)
-        for axis, slope in zip(axes, slopes, strict=True)
-    ]
-    eroded = np.where(np.isfinite(height), height, np.inf)
-    for axis in (0, 1):
-        eroded = _along(eroded, axis, axes[axis], places[axis], radius)
-    base = -eroded
-    for axis in (1, 0):  # the last of above first: its lines lie together
-        base = _along(base, axis, places[axis], axes[axis], radius)
-    return np.where(np.isfinite(height), -base, np.nan)
+    x, y = (np.arange(count, dtype=np.float64) * spacing for count in height.shape)
+    beyond = slopes[0] * radius
+    places = np.arange(x[0] - beyond, x[-1] + beyond + _STEP, _STEP)
+    eroded = _along_x(np.where(np.isfinite(height), height, np.inf), x, places, radius)
+    opened = _opened(eroded, y, 0.5 / radius, slopes[1])
+    return np.where(np.isfinite(height), -_along_x(-opened, places, x, radius), np.nan)
 
 
-def _along(values: Array, axis: int, places: Array, at: Array, radius: float) -> Array:
-    lines = np.ascontiguousarray(np.moveaxis(values, axis, -1))
-    return np.moveaxis(_lower_envelopes(lines, places, at, 0.5 / radius), -1, axis)
+def _along_x(values: Array, places: Array, at: Array, radius: float) -> Array:
+    return _lower_envelopes(np.ascontiguousarray(values.T), places, at, 0.5 / radius).T
 
 
 @njit(cache=True, error_model="numpy")
@@ -79,3 +73,42 @@ def _lower_envelopes(lines: Array, places: Array, at: Array, curvature: float) -
             k = stack[part]
             lowest[n, m] = values[k] + curvature * (at[m] - places[k]) ** 2
     return lowest
+
+
+@njit(cache=True, error_model="numpy")
+def _opened(lines: Array, at: Array, curvature: float, slope: float) -> Array:
+    """Return what parabolas under each line of heights reach at ``at``; inf heights: free.
+
+    With curvature at^2 added a parabola is straight, and what it reaches is the lower convex hull,
+    whose slopes are those of places up to ``slope`` beyond the ends.
+    """
+    least, most = 2 * curvature * at[0] - slope, 2 * curvature * at[-1] + slope
+    reached = np.full(lines.shape, np.inf)
+    hull = np.empty(at.size, dtype=np.int64)
+    for n in range(lines.shape[0]):
+        raised = lines[n] + curvature * at**2
+        last = -1
+        for i in range(at.size):
+            if not np.isfinite(raised[i]):
+                continue
+            while last > 0:
+                a, b = hull[last - 1], hull[last]
+                if (raised[b] - raised[a]) * (at[i] - at[b]) < (raised[i] - raised[b]) * (
+                    at[b] - at[a]
+                ):
+                    break
+                last -= 1
+            last += 1
+            hull[last] = i
+        if last < 0:
+            continue
+        edges = np.diff(raised[hull[: last + 1]]) / np.diff(at[hull[: last + 1]])
+        part = np.sum(edges < least)
+        last -= np.sum(edges > most)
+        for m in range(at.size):
+            while part < last and at[m] > at[hull[part + 1]]:
+                part += 1
+            k = hull[part]
+            rise = least if at[m] < at[k] else most if part == last else edges[part]
+            reached[n, m] = raised[k] + rise * (at[m] - at[k]) - curvature * at[m] ** 2
+    return reached
