@@ -1,5 +1,6 @@
 """Sphinx: the documentation as one offline site (``make docs``)."""
 
+import re
 import sys
 from importlib import metadata
 from pathlib import Path
@@ -10,6 +11,9 @@ project = "Underfoot"
 author = "The Underfoot authors"
 copyright = author
 release = metadata.version("underfoot")
+root = Path(__file__).parents[1]
+released = re.search(r'date-released: "(.*)"', (root / "CITATION.cff").read_text("utf-8"))
+changed = "\n## Unreleased\n" in (root / "CHANGELOG.md").read_text("utf-8")
 
 extensions = [
     "myst_parser",
@@ -29,7 +33,18 @@ html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
-templates_path: list[str] = []
+templates_path = ["_templates"]
+html_context = {"released": released and released[1], "changed": changed}
+html_sidebars = {
+    "**": [
+        "sidebar/brand.html",
+        "version.html",
+        "sidebar/search.html",
+        "sidebar/scroll-start.html",
+        "sidebar/navigation.html",
+        "sidebar/scroll-end.html",
+    ]
+}
 
 napoleon_google_docstring = True
 napoleon_numpy_docstring = True

@@ -195,14 +195,17 @@ def main(page: str, *, mend: bool) -> None:
     source = Path(page).resolve()
     text = source.read_text()
     with tempfile.TemporaryDirectory() as folder, reader(Path(folder)) as session:
+        total = 0.0
         for block in blocks_of(source):
             start = os.times()
             printed = session.output(block)
             used = sum(os.times()[:4]) - sum(start[:4])
+            total += used
             print(f"--- line {block.line}, {used:.1f} s of processor\n{block.text}")
             print(f">>>\n{printed}", flush=True)
             if block.shown:
                 text = text.replace(block.shown, mended(block.shown, printed))
+        print(f"all blocks: {total:.0f} s of processor")
     if mend:
         source.write_text(text)
 

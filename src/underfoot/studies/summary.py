@@ -72,19 +72,25 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
             continue
         for kind, some in tables_by_kind(result.judgements):
             text += [f"### {kind.heading}", ""]
-            text += ["| statement | printed | tolerance | computed | outside by | verdict | why |"]
-            text += ["|---" * 7 + "|"]
+            table = ["| statement | printed | tolerance | computed | outside by | verdict | why |"]
+            table += ["|---" * 7 + "|"]
             for one in some:
                 s = one.statement
                 ours = (one.ours, one.difference, str(one.verdict), one.reason)
                 cells = (f"{s.text} ({s.place})", s.printed, s.tolerance_reason, *ours)
-                text.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
-            text.append("")
+                table.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
+            text += folded(f"Statements: {len(some)}", table)
         remarks = result.remarks()
         for key, title in (("Not taken as printed",) * 2, ("Assumptions", "Assumed")):
             if remarks[key]:
-                text += [f"{title}:", "", *(f"- {entry}" for entry in remarks[key]), ""]
+                entries = [f"- {entry}" for entry in remarks[key]]
+                text += folded(f"{title} ({len(entries)})", entries)
     return "\n".join(text).rstrip() + "\n"
+
+
+def folded(label: str, lines: Iterable[str]) -> list[str]:
+    """Return lines of Markdown that a page hides until their label is opened."""
+    return ["<details>", f"<summary>{label}</summary>", "", *lines, "", "</details>", ""]
 
 
 def write_summary(results: Sequence[StudyResult], folder: Path) -> None:

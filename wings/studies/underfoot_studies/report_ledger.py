@@ -25,6 +25,7 @@ from underfoot.friction import Pair, PairContactLaw, PairDraws, packaged_pair_dr
 from underfoot.friction.pair_contact import Family
 from underfoot.reference import soft_ehl_film
 from underfoot.studies import studies, study
+from underfoot.studies.summary import folded
 
 from .default_law import RQ_PER_RA, draws_without_report, viscosity_of
 from .g3 import FLOORS, split
@@ -235,33 +236,35 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         ]
         text += [f"   What would decide: {one.decides}"] if one.decides != "-" else []
         text += [f"   Evidence: {one.sources}.", ""]
-    text += [
-        "## Row by row",
-        "",
+    text += ["## Row by row", ""]
+    table = [
         "| row | what | what a person runs | rating | beside the print | cause |",
         "|---|---|---|---|---|---|",
     ]
     for row in every:
         cells = (row.number, row.what, f"`{row.how}`" if row.how != "-" else "-")
         cells += (RATINGS[row.rating], beside_the_print(row, verdicts), row.cause or " ")
-        text.append("| " + " | ".join(cells) + " |")
-    text += ["", "## The 27 equations", ""]
-    text += ["| equation | where | what | computed by |", "|---|---|---|---|"]
+        table.append("| " + " | ".join(cells) + " |")
+    text += [*folded(f"Rows: {len(every)}", table), "## The 27 equations", ""]
+    table = ["| equation | where | what | computed by |", "|---|---|---|---|"]
     for number, equation in EQUATIONS.items():
         code = ", ".join(f"`{path.removeprefix('underfoot.')}`" for path in equation.code) or "-"
-        text.append(f"| {number} | {equation.place} | {equation.title} | {code} |")
+        table.append(f"| {number} | {equation.place} | {equation.title} | {code} |")
     errata = [(name, entry) for name in studies() for entry in study(name).errata]
     text += [
-        "",
+        *folded(f"Equations: {len(EQUATIONS)}", table),
         f"## Not taken as printed ({len(errata)})",
         "",
         "As `underfoot studies errata` lists.",
         "",
     ]
-    text += ["| study | where | printed | used | why |", "|---|---|---|---|---|"]
+    table = ["| study | where | printed | used | why |", "|---|---|---|---|---|"]
     for name, entry in errata:
-        text.append("| " + " | ".join((name, *(re.sub(r"\|", "/", cell) for cell in entry))) + " |")
-    return "\n".join(text) + "\n"
+        table.append(
+            "| " + " | ".join((name, *(re.sub(r"\|", "/", cell) for cell in entry))) + " |"
+        )
+    text += folded(f"Corrections: {len(errata)}", table)
+    return "\n".join(text).rstrip() + "\n"
 
 
 def main(arguments: Sequence[str]) -> None:
