@@ -33,6 +33,7 @@ html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_split_index = True  # a page a letter
 templates_path = ["_templates"]
 html_context = {"released": released and released[1], "changed": changed}
 html_sidebars = {

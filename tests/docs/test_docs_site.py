@@ -10,26 +10,46 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "app"))
 
 import generated
+from chromium import opened
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 
 
-@pytest.mark.slow
-def test_the_documentation_is_read_without_a_warning(tmp_path):
-    # the figures are drawn by test_docs_pages.py
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "dummy"]
-    command += ["-D", "draw=0"]
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Return the folder of the built pages; their figures are drawn by test_docs_pages.py."""
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"]
     done = subprocess.run(
-        [*command, str(DOCS), str(tmp_path)],
+        [*command, "-D", "draw=0", str(DOCS), str(folder)],
         capture_output=True,
         text=True,
         check=False,
         env={**os.environ, "PYTHONPATH": ""},
     )
     assert done.returncode == 0, done.stderr
+    return folder
+
+
+@pytest.mark.slow
+def test_the_documentation_is_built_without_a_warning(site):
+    assert (site / "index.html").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_no_page_is_too_long_or_too_wide(site):
+    pages = [page for page in site.rglob("*.html") if "_static" not in page.parts]
+    assert len(pages) > 150
+    with opened(site / "index.html", width=1366, height=768) as session:
+        for page in pages:
+            session.go(page)
+            assert session.value("document.documentElement.scrollHeight") < 15_000, page
+            assert session.value("document.documentElement.scrollWidth") <= 1366, page
 
 
 def test_every_page_of_the_physics_belongs_to_a_topic():
