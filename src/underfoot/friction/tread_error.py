@@ -153,20 +153,12 @@ def tread_pairs() -> tuple[TreadPair, ...]:
 
 def learned_deviation(pairs: Sequence[TreadPair], prior: float) -> float:
     """Return the root mean square of s over its posterior, on a grid."""
-    s, log_density = _posterior(pairs, prior)
+    s, log_density = log_posterior(pairs, prior)
     density = np.exp(log_density - log_density.max())
     return float(np.sqrt(np.average(s**2, weights=density)))
 
 
-def log_evidence(pairs: Sequence[TreadPair], prior: float) -> float:
-    """Return ln p of published pairs over all s: how well a tread model foresees them."""
-    s, log_density = _posterior(pairs, prior)
-    density = np.exp(log_density - log_density.max())
-    of_prior = np.exp(-0.5 * (s / prior) ** 2).sum()
-    return float(log_density.max() + np.log(density.sum() / of_prior))
-
-
-def _posterior(pairs: Sequence[TreadPair], prior: float) -> tuple[Array, Array]:
+def log_posterior(pairs: Sequence[TreadPair], prior: float) -> tuple[Array, Array]:
     """Return s on a grid and ln of prior times likelihood there.
 
     An order counts by its probability, bounds by that between them, a value by its density (of the

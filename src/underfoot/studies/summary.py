@@ -83,8 +83,8 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
         remarks = result.remarks()
         for key, title in (("Not taken as printed",) * 2, ("Assumptions", "Assumed")):
             if remarks[key]:
-                entries = [f"- {entry}" for entry in remarks[key]]
-                text += folded(f"{title} ({len(entries)})", entries)
+                label = f"{title} ({len(remarks[key])})"
+                text += folded(label, (f"- {entry}" for entry in remarks[key]))
     return "\n".join(text).rstrip() + "\n"
 
 

@@ -13,7 +13,7 @@ from underfoot.compute.contact_friction import contact_friction
 from underfoot.compute.prepare import Prepared, prepared
 from underfoot.compute.solve import solved
 from underfoot.core.arrays import Array
-from underfoot.friction.tread_error import PRIOR, TreadPair, log_evidence
+from underfoot.friction.tread_error import PRIOR, TreadPair, log_posterior
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
@@ -65,10 +65,14 @@ def states_scores(stresses: Sequence[float] = STRESSES) -> list[StatesScore]:
 
 
 def _evidence(pairs: Sequence[TreadPair]) -> float:
-    return sum(
-        log_evidence([pair for pair in pairs if pair.fluid == fluid], prior)
-        for fluid, prior in PRIOR.items()
-    )
+    """Return ln p of published pairs over all s: how well a tread model foresees them."""
+    total = 0.0
+    for fluid, prior in PRIOR.items():
+        s, log_density = log_posterior([pair for pair in pairs if pair.fluid == fluid], prior)
+        highest = log_density.max()
+        of_prior = np.exp(-0.5 * (s / prior) ** 2).sum()
+        total += float(highest + np.log(np.exp(log_density - highest).sum() / of_prior))
+    return total
 
 
 if __name__ == "__main__":

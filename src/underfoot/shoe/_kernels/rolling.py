@@ -25,15 +25,14 @@ def rolled_base(height: Array, spacing: float, radius: float, slopes: tuple[floa
             slope times R.
     """
     x, y = (np.arange(count, dtype=np.float64) * spacing for count in height.shape)
-    beyond = slopes[0] * radius
-    places = np.arange(x[0] - beyond, x[-1] + beyond + _STEP, _STEP)
-    eroded = _along_x(np.where(np.isfinite(height), height, np.inf), x, places, radius)
-    opened = _opened(eroded, y, 0.5 / radius, slopes[1])
-    return np.where(np.isfinite(height), -_along_x(-opened, places, x, radius), np.nan)
-
-
-def _along_x(values: Array, places: Array, at: Array, radius: float) -> Array:
-    return _lower_envelopes(np.ascontiguousarray(values.T), places, at, 0.5 / radius).T
+    places = np.arange(x[0] - slopes[0] * radius, x[-1] + slopes[0] * radius + _STEP, _STEP)
+    bend, lines = 0.5 / radius, np.ascontiguousarray
+    eroded = _lower_envelopes(
+        lines(np.where(np.isfinite(height), height, np.inf).T), x, places, bend
+    )
+    opened = _opened(lines(eroded.T), y, bend, slopes[1])
+    base = -_lower_envelopes(lines(-opened.T), places, x, bend).T
+    return np.where(np.isfinite(height), base, np.nan)
 
 
 @njit(cache=True, error_model="numpy")
@@ -93,9 +92,8 @@ def _opened(lines: Array, at: Array, curvature: float, slope: float) -> Array:
                 continue
             while last > 0:
                 a, b = hull[last - 1], hull[last]
-                if (raised[b] - raised[a]) * (at[i] - at[b]) < (raised[i] - raised[b]) * (
-                    at[b] - at[a]
-                ):
+                turn = (raised[i] - raised[b]) * (at[b] - at[a])
+                if (raised[b] - raised[a]) * (at[i] - at[b]) < turn:
                     break
                 last -= 1
             last += 1
