@@ -1,5 +1,6 @@
 """Every command and Python block of the tutorials runs, and prints what the page says."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -9,15 +10,22 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from pages import ROOT, agrees, blocks_of, held, numbers_compared, reader
 
+from conftest import cpu_seconds
+
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
+MINUTES = {"one": 1, "two": 2, "four": 4}
 LONG_PAGES = {"lug_edges", "block", "coupled_contact"}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
-def test_a_tutorial_prints_what_it_says(page, tmp_path):
+def test_a_tutorial_prints_what_it_says_in_the_time_it_says(page, tmp_path):
+    told = re.search(r"take\s+at most (\w+) minutes? of one processor", page.read_text())
+    assert told
+    before = cpu_seconds()
     assert numbers_compared(page, tmp_path) >= 20
+    assert cpu_seconds() - before < 60 * MINUTES[told[1]]
 
 
 @pytest.mark.parametrize(
