@@ -13,15 +13,19 @@ from underfoot.core.provenance import Provenance
 
 
 def test_doctor_as_a_process(tmp_path):
+    given = {"UNDERFOOT_CACHE": str(tmp_path / "c"), "UNDERFOOT_SPARSE": "superlu"}
+    environment = {**os.environ, **given, "MKL_NUM_THREADS": "3"}
+    environment.pop("OMP_NUM_THREADS", None)
     ended = subprocess.run(
         [sys.executable, "-c", "from underfoot.cli import main; main()", "doctor"],
-        env={**os.environ, "UNDERFOOT_CACHE": str(tmp_path / "c"), "UNDERFOOT_SPARSE": "superlu"},
+        env=environment,
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     lines = {line[:20].strip(): line[21:] for line in ended.stdout.splitlines()}
     assert lines["h5py"] == package_version("h5py")
     assert lines["sparse solver"].startswith("superlu")
     assert f"{tmp_path / 'c'}: writable" in lines["cache"]
+    assert (lines["OMP_NUM_THREADS"], lines["MKL_NUM_THREADS"]) == ("1", "3")
 
 
 def test_missing_package_is_named_with_its_remedy(monkeypatch):
