@@ -88,6 +88,9 @@ def _outcome(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         "spreads": {
             name: each.uncertainty for name, each in scalars.items() if each.uncertainty is not None
         },
+        "errors": {
+            name: each.numerical for name, each in scalars.items() if each.numerical is not None
+        },
         "units": {name: each.unit for name, each in scalars.items()},
         "law": result.provenance.closures["friction"],
         "draws": np.empty(0) if drawn is None else drawn.values,
