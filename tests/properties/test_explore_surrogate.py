@@ -47,9 +47,9 @@ def test_quantiles_of_distributions_are_those_of_their_names(median, factor):
 
 def test_what_was_left_out_was_predicted_without_it(model):
     """A run that is far from all others moves the model, not its own prediction."""
-    values = model.values.copy()
+    values = model.runs.values.copy()
     values[17] += 50.0
-    other = fitted("cof", "1", model.dimensions, model.points, values)
+    other = fitted("cof", "1", model.dimensions, model.runs.points, values)
     assert other.error > 50.0 / np.sqrt(64) * 0.9
     assert other.q2 < 0.1
 
@@ -115,8 +115,8 @@ def test_error_is_honest_on_new_points_and_grows_with_noise(model):
     true = float(np.sqrt(np.mean((model.mean(fresh) - bend(fresh)) ** 2)))
     assert true < 2 * model.error
     assert model.q2 > 0.98
-    noisy = bend(model.points) + np.random.default_rng(0).normal(0, 0.5, 64)
-    rough = fitted("cof", "1", model.dimensions, model.points, noisy)
+    noisy = bend(model.runs.points) + np.random.default_rng(0).normal(0, 0.5, 64)
+    rough = fitted("cof", "1", model.dimensions, model.runs.points, noisy)
     assert rough.q2 < 0.9
     assert "too rough" in rough.reliability
 
@@ -134,7 +134,7 @@ def test_a_surrogate_refuses_what_lies_outside_its_box_and_too_few_runs(model):
     with pytest.raises(RangeError, match=r"shoe.tread.depth.*ends before 5 mm.*1 mm to 4 mm"):
         model.mean(np.array([[4 / 3, 0.4, 0.1]]))
     with pytest.raises(DataError, match="too few"):
-        fitted("cof", "1", model.dimensions, model.points[:9], model.values[:9])
+        fitted("cof", "1", model.dimensions, model.runs.points[:9], model.runs.values[:9])
 
 
 def test_shared_draws_decide_an_order_that_wide_intervals_hide():

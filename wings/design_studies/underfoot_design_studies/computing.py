@@ -119,7 +119,12 @@ def measures(case: Case, result: Result) -> Mapping[str, SourcedValue]:
         "stiffness": case.motion.normal_force / approach if approach > 0 else None,
     }
     return {
-        name: SourcedValue(value, MEASURES[name], "geometry of the sole")
+        name: SourcedValue(
+            value,
+            MEASURES[name],
+            "geometry of the sole",
+            numerical=None if name == "stiffness" else 0.0,
+        )
         for name, value in values.items()
     }
 

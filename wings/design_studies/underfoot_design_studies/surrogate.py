@@ -39,7 +39,7 @@ from scipy.spatial.distance import cdist
 
 from underfoot.case import unit_at
 from underfoot.core import DataError, RangeError, display
-from underfoot.core.arrays import Array, Mask
+from underfoot.core.arrays import AnyArray, Array, Mask
 from underfoot.core.presentation import quantity_text
 from underfoot.core.threads import threads_limited
 
@@ -71,13 +71,44 @@ JITTER = 1e-8
 Dimension = Input | Distribution
 
 
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Runs of designs as a surrogate takes them.
+
+    Attributes:
+        points: (runs, inputs) places in the unit cube.
+        values: (runs,) the output, SI.
+        errors: (runs,) its numerical errors, nan where a run states none.
+        finer: (runs,) which are on the finer grid.
+    """
+
+    points: Array
+    values: Array
+    errors: Array
+    finer: Mask
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, which: AnyArray) -> Runs:
+        """Return some of the runs, by index or mask."""
+        return Runs(self.points[which], self.values[which], self.errors[which], self.finer[which])
+
+    @property
+    def deviations(self) -> Array:
+        """Values without the mean of those on the same grid."""
+        result = self.values.copy()
+        for grid in (self.finer, ~self.finer):
+            result[grid] -= result[grid].mean() if grid.any() else 0.0
+        return result
+
+
 class Model:
     """A form fitted to runs.
 
     Parameters:
         form: One of ``FORMS``.
-        features, values: (runs, features) from 0 to 1; (runs,) SI.
-        errors: (runs,) numerical errors of the runs, SI; nan where one states none.
+        features: (runs, features) from 0 to 1.
         theta: Hyperparameters to begin at; with ``fit`` False, to take.
 
     Attributes:
@@ -89,18 +120,18 @@ class Model:
         self,
         form: str,
         features: Array,
-        values: Array,
-        errors: Array,
+        runs: Runs,
         theta: Array | None = None,
         *,
         fit: bool = True,
     ) -> None:
+        values = runs.values
         self.logarithm = form != "process" and bool((values > 0).all())
         wanted = np.log(values) if self.logarithm else values
         self.level, self.scale = float(wanted.mean()), float(wanted.std()) or 1.0
         self.form, self.features = form, features
         standard = (wanted - self.level) / self.scale
-        stated = errors / (self.scale * (values if self.logarithm else 1.0))
+        stated = runs.errors / (self.scale * (values if self.logarithm else 1.0))
         known = bool((stated > 0).all())
         variances, size = stated**2 if known else np.ones(len(values)), features.shape[1]
         lengths = LENGTHS[0] + 0.5 * math.log(size), LENGTHS[1]
@@ -148,7 +179,7 @@ class Model:
     def _covariance(self, first: Array, second: Array) -> Array:
         linear, quadratic, matern = _amplitudes(self.form, self.theta)
         lengths = np.exp(self.theta[4:])
-        apart = cdist(first / lengths, second / lengths)
+        apart: Any = cdist(first / lengths, second / lengths)
         return (
             linear * (1 + _centred(first) @ _centred(second).T)
             + quadratic * _products(first) @ _products(second).T
@@ -233,10 +264,7 @@ class Surrogate:
 
     Attributes:
         name, unit: Of the output.
-        points: (runs, inputs) places of the runs in the unit cube; ``values`` (runs,) SI.
-        errors: (runs,) numerical errors that the runs state, SI; nan where none.
-        finer: (runs,) which runs are on a finer grid and new positions of the tread.
-        model: What was fitted.
+        runs, model: What was fitted, and to which runs.
         q2: 1 - squared error of what was left out over the variance of the runs.
         error: Root mean square error of what was left out, SI.
         stretch: Factor of the deviation that the model states.
@@ -246,10 +274,7 @@ class Surrogate:
     name: str
     unit: str
     dimensions: tuple[Dimension, ...]
-    points: Array
-    values: Array
-    errors: Array
-    finer: Mask
+    runs: Runs
     model: Model
     q2: float
     error: float
@@ -261,7 +286,7 @@ class Surrogate:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
         mark = "" if self.q2 >= TRUSTED else ", too rough to rank designs by"
-        runs = f"surrogate of {len(self.values)} designs ({self.model.form})"
+        runs = f"surrogate of {len(self.runs)} designs ({self.model.form})"
         return f"{runs}: Q2 {self.q2:.3f}, error {error} (runs left out){mark}"
 
     def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
@@ -304,20 +329,19 @@ class Surrogate:
                 allowed=" to ".join(_text(one, end) for end in (0.0, 1.0)),
                 remedy="Widen the range of the study and run it again, or run the case itself",
             )
-        features = featured(self.dimensions, points)
-        return _with_grid(features, np.ones(len(points))) if self.finer.any() else features
+        return _features(self.dimensions, points, self.runs.finer.any() * np.ones(len(points)))
 
     def with_point(self, point: Array) -> Surrogate:
         """Return the surrogate that believes its own prediction at a further place."""
-        more = {
-            "points": np.vstack([self.points, point]),
-            "values": np.append(self.values, self.mean(point)),
-            "errors": np.append(self.errors, self.errors.mean()),
-            "finer": np.append(self.finer, False),
-        }
-        theta = self.model.theta
-        fitted_again = _model(self.model.form, self.dimensions, **more, theta=theta, fit=False)
-        return replace(self, **more, model=fitted_again)
+        runs = Runs(
+            np.vstack([self.runs.points, point]),
+            np.append(self.runs.values, self.mean(point)),
+            np.append(self.runs.errors, self.runs.errors.mean()),
+            np.append(self.runs.finer, self.runs.finer.any()),
+        )
+        features = _features(self.dimensions, runs.points, runs.finer)
+        model = Model(self.model.form, features, runs, self.model.theta, fit=False)
+        return replace(self, runs=runs, model=model)
 
     def to_dict(self) -> dict[str, Any]:
         """Return data and hyperparameters as plain data."""
@@ -325,10 +349,10 @@ class Surrogate:
             "output": self.name,
             "unit": self.unit,
             "inputs": [one.path for one in self.dimensions],
-            "points": self.points.tolist(),
-            "values": self.values.tolist(),
-            "errors": [None if math.isnan(one) else one for one in self.errors.tolist()],
-            "finer": self.finer.tolist(),
+            "points": self.runs.points.tolist(),
+            "values": self.runs.values.tolist(),
+            "errors": [None if math.isnan(one) else one for one in self.runs.errors.tolist()],
+            "finer": self.runs.finer.tolist(),
             "form": self.model.form,
             "theta": self.model.theta.tolist(),
             "q2": self.q2,
@@ -339,12 +363,12 @@ class Surrogate:
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any], dimensions: Sequence[Dimension]) -> Surrogate:
         """Return the surrogate of ``to_dict``; no hyperparameter is fitted anew."""
-        data = [np.array(plain[name], dtype=float) for name in ("points", "values", "errors")]
-        data.append(np.array(plain["finer"], dtype=bool))
-        theta = np.array(plain["theta"])
-        model = _model(plain["form"], dimensions, *data, theta=theta, fit=False)
+        data = (np.array(plain[name], dtype=float) for name in ("points", "values", "errors"))
+        runs = Runs(*data, finer=np.array(plain["finer"], dtype=bool))
+        features = _features(dimensions, runs.points, runs.finer)
+        model = Model(plain["form"], features, runs, np.array(plain["theta"]), fit=False)
         numbers = (plain[name] for name in ("q2", "error", "stretch"))
-        return cls(plain["output"], plain["unit"], tuple(dimensions), *data, model, *numbers)
+        return cls(plain["output"], plain["unit"], tuple(dimensions), runs, model, *numbers)
 
 
 @threads_limited(1)
@@ -378,77 +402,45 @@ def fitted(
         good = good[np.linspace(0, len(good) - 1, MOST).round().astype(int)]
     errors = np.full(len(values), np.nan) if errors is None else errors
     finer = np.zeros(len(values), dtype=bool) if finer is None else finer
-    data = points[good], values[good], errors[good], finer[good]
-    made = {form: _model(form, dimensions, *data) for form in FORMS}
-    left_out = {form: _left_out(made[form], dimensions, *data) for form in FORMS}
+    runs = Runs(points, values, errors, finer)[good]
+    features = _features(dimensions, runs.points, runs.finer)
+    made = {form: Model(form, features, runs) for form in FORMS}
+    left_out = {form: _left_out(one, runs) for form, one in made.items()}
     squares = {form: float(np.mean(one[0] ** 2)) for form, one in left_out.items()}
     form = min(FORMS, key=squares.__getitem__)
     error, deviation, without = left_out[form]
-    spread = float(np.mean(_about_its_grid(*data[1::2]) ** 2))
+    spread = float(np.mean(runs.deviations**2))
     q2 = 1.0 - squares[form] / spread if spread else 1.0
     ratios = np.abs(error) / np.maximum(deviation, 1e-9 * (np.sqrt(spread) or 1.0))
-    share = min(INSIDE * (1 + 1 / len(good)), 1.0)
+    share = min(INSIDE * (1 + 1 / len(runs)), 1.0)
     stretch = float(np.quantile(ratios, share)) / NORMAL or 1.0
-    numbers = (made[form], q2, math.sqrt(squares[form]), stretch, tuple(without))
-    return Surrogate(name, unit, tuple(dimensions), *data, *numbers)
+    numbers = (q2, math.sqrt(squares[form]), stretch, tuple(without))
+    return Surrogate(name, unit, tuple(dimensions), runs, made[form], *numbers)
 
 
-def _about_its_grid(values: Array, finer: Mask) -> Array:
-    """Return values without the mean of all on the same grid."""
-    means = [values[finer == one].mean() if (finer == one).any() else 0.0 for one in (False, True)]
-    return values - np.where(finer, means[1], means[0])
-
-
-def _left_out(
-    made: Model,
-    dimensions: Sequence[Dimension],
-    points: Array,
-    values: Array,
-    errors: Array,
-    finer: Mask,
-) -> tuple[Array, Array, list[Model]]:
+def _left_out(made: Model, runs: Runs) -> tuple[Array, Array, list[Model]]:
     """Return error and stated deviation (repeats x runs,) of what was left out, and the models.
 
     The models are those of the first division into parts.
     """
     missed, deviations, models = [], [], []
-    _, place = np.unique(points, axis=0, return_inverse=True)
-    features = _all_features(dimensions, points, finer)
+    _, place = np.unique(runs.points, axis=0, return_inverse=True)
     for repeat in range(REPEATS):
         order = np.random.default_rng(repeat).permutation(place.max() + 1)
         for part in np.array_split(order, FOLDS):
             out = np.isin(place.ravel(), part)
-            model = Model(made.form, features[~out], values[~out], errors[~out], made.theta)
-            mean, deviation = model.predicted(features[out])
-            missed.append(values[out] - mean)
+            model = Model(made.form, made.features[~out], runs[~out], made.theta)
+            mean, deviation = model.predicted(made.features[out])
+            missed.append(runs.values[out] - mean)
             deviations.append(deviation)
             models.append(model)
     return np.concatenate(missed), np.concatenate(deviations), models[:FOLDS]
 
 
-def _model(
-    form: str,
-    dimensions: Sequence[Dimension],
-    points: Array,
-    values: Array,
-    errors: Array,
-    finer: Mask,
-    theta: Array | None = None,
-    *,
-    fit: bool = True,
-) -> Model:
-    features = _all_features(dimensions, points, finer)
-    return Model(form, features, values, errors, theta, fit=fit)
-
-
-def _all_features(dimensions: Sequence[Dimension], points: Array, finer: Mask) -> Array:
-    """Return the features of runs, where any is on a finer grid with that as a column."""
+def _features(dimensions: Sequence[Dimension], points: Array, finer: AnyArray) -> Array:
+    """Return the features of places, with a column for the grid where any is on the finer one."""
     features = featured(dimensions, points)
-    return _with_grid(features, finer) if finer.any() else features
-
-
-def _with_grid(features: Array, finer: Array) -> Array:
-    return np.column_stack([features, finer])
+    return np.column_stack([features, finer]) if np.any(finer) else features
 
 
 def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
