@@ -63,8 +63,8 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     except DataError:  # too few usable runs for a surrogate: spread more of them
         return _jobs(plan, plan.sampled_points(count + left)[count:], count, batch)
     best = so_far.best(plan.method.again) if plan.goals and plan.method.again_on else []
-    chosen = [*((one.number, one.point) for one in best), (count, ())] if best else []
-    return [job for one in chosen for job in plan.jobs(*one, batch, again=True)]
+    points = {one.number: one.point for one in best} | ({count: ()} if best else {})
+    return [job for k, place in points.items() for job in plan.jobs(k, place, batch, again=True)]
 
 
 def first_points(plan: StudyPlan) -> list[tuple[float, ...]]:

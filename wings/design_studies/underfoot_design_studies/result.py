@@ -162,10 +162,15 @@ class StudyResult(Presentable):
         return next((one for one in self.all_designs if not one.point and one.usable), None)
 
     @cached_property
+    def again(self) -> list[Design]:
+        """The second run of those that had one, and have numbers."""
+        return [one for one in self.all_designs if one.again and one.point and one.usable]
+
+    @cached_property
     def shown(self) -> list[Design]:
-        """The designs that the front is made of: those that were run again, where any were."""
-        again = [one for one in self.all_designs if one.again and one.point]
-        return again if any(one.usable for one in again) else self.designs
+        """The last run of every design that has numbers, else the first."""
+        last = {one.number: one for one in self.again}
+        return [last.get(one.number, one) for one in self.designs]
 
     def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI; nan where a design has no numbers."""
@@ -226,12 +231,17 @@ class StudyResult(Presentable):
         return means, deviations
 
     def margins(self, designs: Sequence[Design]) -> Array:
-        """Return (designs, requirements): by how much each is met, SI; negative where not."""
-        values, _ = self.believed(designs, [each.goal for each in self.plan.require])
+        """Return (designs, requirements): by how much each is met, SI; negative where not.
+
+        As run or as believed, whichever is less.
+        """
+        goals = [each.goal for each in self.plan.require]
+        both = zip(self.values(designs, goals).T, self.believed(designs, goals)[0].T, strict=True)
         columns = [
-            each.margin(column) for each, column in zip(self.plan.require, values.T, strict=True)
+            np.minimum(each.margin(run), each.margin(believed))
+            for each, (run, believed) in zip(self.plan.require, both, strict=True)
         ]
-        return np.array(columns, dtype=float).reshape(values.shape[::-1]).T
+        return np.array(columns, dtype=float).reshape(len(goals), len(designs)).T
 
     def allowed(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
@@ -256,14 +266,16 @@ class StudyResult(Presentable):
     def best(self, count: int = 5) -> list[Design]:
         """Return up to ``count`` designs of the front, spread along it.
 
-        With one goal, the best ones in order.
+        With one goal, the best ones in order. Of those that were run again, where any were.
         """
+        runs = self.again or self.designs
         if len(self.plan.goals) == 1:
-            good = [one for one, ok in zip(self.shown, self.allowed(self.shown), strict=True) if ok]
+            good = [one for one, ok in zip(runs, self.allowed(runs), strict=True) if ok]
             values = self.believed(good, self.plan.goals)[0][:, 0] * self.plan.signs[0]
             return [good[k] for k in np.argsort(values, kind="stable")[:count]]
-        places = np.linspace(0, len(self.front) - 1, min(count, len(self.front))).round()
-        return [self.front[int(k)] for k in dict.fromkeys(places)]
+        front = self.front_of(runs)
+        places = np.linspace(0, len(front) - 1, min(count, len(front))).round()
+        return [front[int(k)] for k in dict.fromkeys(places)]
 
     def higher_cof(
         self, first: Design, second: Design, states: Sequence[int] | None = None
@@ -296,7 +308,7 @@ class StudyResult(Presentable):
         if self.start is None:
             return ""
         chances = {}
-        for one, ok in zip(self.shown, self.allowed(self.shown), strict=True):
+        for one, ok in zip(self.again, self.allowed(self.again), strict=True):
             each = [self.higher_cof(one, self.start, [state]) for state in one.states * bool(ok)]
             known = [chance for chance in each if chance is not None]
             if known and len(known) == len(each):

@@ -1,13 +1,16 @@
 """A surrogate in place of runs, with its error on runs that it did not see.
 
 A Gaussian process of values y over the features x of the inputs, from -1 to 1 (a name is one column
-a value, a finer grid a column too), with noise of each run (Rasmussen and Williams 2006, chapters 2
+a value), with noise of each run (Rasmussen and Williams 2006, chapters 2
 and 5)::
 
-    k(x, x') = l^2 (1 + x.x') + q^2 p(x).p(x') + m^2 Matern_5/2(x, x'),   noise^2 = (c s)^2
+    k(x, x') = l^2 (1 + x.x') + q^2 p(x).p(x') + m^2 Matern_5/2(x, x') + g^2 t t',
+    noise^2 = (c s)^2
 
-p(x) are squares and products, s is the numerical error that a run states (1 where none does), c how
-much of it differs from run to run: what a grid adds to all alike is no noise. Three forms:
+p(x) are squares and products. t is 1 on a finer grid, which may lie anywhere above or below the
+coarse one and differ in form by little (after Kennedy and O'Hagan 2000). s is the numerical error
+that a run states (1 where none does), c how much of it differs from run to run: what a grid adds to
+all alike is no noise. Three forms:
 
     quadratic   of ln y, without the Matern part
     process     of y, without p
@@ -62,6 +65,9 @@ STATED, UNSTATED = (math.log(0.5), 1.0), (math.log(0.1), 1.5)
 LENGTHS = math.sqrt(2), math.sqrt(3)
 """The same of the logarithm of a length; the mean grows by half of that of the number of features
 (Hvarfner, Hellsten and Nardi 2024)."""
+BETWEEN, FORM = 1.0, 0.1
+"""g, of standardised values, and the feature of a finer grid, whose range in another would be 1:
+what grids differ by changes over the box by a fifth of what the values do (assumed)."""
 SHORT = math.log(0.5)
 """Logarithm of the lengths of a second start."""
 WIDEST = 4.0
@@ -130,6 +136,7 @@ class Model:
         wanted = np.log(values) if self.logarithm else values
         self.level, self.scale = float(wanted.mean()), float(wanted.std()) or 1.0
         self.form, self.features = form, features
+        self.between = runs.finer.any() * (BETWEEN / FORM) ** 2
         standard = (wanted - self.level) / self.scale
         stated = runs.errors / (self.scale * (values if self.logarithm else 1.0))
         known = bool((stated > 0).all())
@@ -142,7 +149,8 @@ class Model:
             starts = [theta]
         self.theta = starts[0]
         if fit:
-            self.theta = _most_probable(form, features, standard, variances, prior, starts)
+            grids = self.between * np.outer(features[:, -1], features[:, -1])
+            self.theta = _most_probable(form, features, standard, variances, grids, prior, starts)
         noise = math.exp(2 * self.theta[3]) * variances
         self.noise = float(noise.mean())
         covariance = self._covariance(features, features) + np.diag(noise + JITTER)
@@ -184,12 +192,15 @@ class Model:
             linear * (1 + _centred(first) @ _centred(second).T)
             + quadratic * _products(first) @ _products(second).T
             + matern * _matern(math.sqrt(5) * apart)
+            + self.between * first[:, -1:] @ second[:, -1:].T
         )
 
     def _variance(self, features: Array) -> Array:
         linear, quadratic, matern = _amplitudes(self.form, self.theta)
         first, second = (np.sum(of(features) ** 2, axis=1) for of in (_centred, _products))
-        return linear * (1 + first) + quadratic * second + matern
+        return (
+            linear * (1 + first) + quadratic * second + matern + self.between * features[:, -1] ** 2
+        )
 
     def _in_si(self, standard: Array) -> Array:
         value = self.level + self.scale * standard
@@ -201,6 +212,7 @@ def _most_probable(
     features: Array,
     standard: Array,
     variances: Array,
+    grids: Array,
     prior: Array,
     starts: Sequence[Array],
 ) -> Array:
@@ -216,7 +228,8 @@ def _most_probable(
         scaled = apart * np.exp(-2 * theta[4:, None, None])
         distance = np.sqrt(scaled.sum(axis=0))
         matern, noise = third * _matern(distance), np.exp(2 * theta[3]) * variances
-        covariance = first * linear + second * quadratic + matern + np.diag(noise + JITTER)
+        covariance = first * linear + second * quadratic + matern + grids
+        covariance.flat[:: len(standard) + 1] += noise + JITTER
         factor = cholesky(covariance, lower=True)
         weights = cho_solve((factor, True), standard)
         inner = np.outer(weights, weights) - cho_solve((factor, True), np.eye(len(standard)))
@@ -440,7 +453,7 @@ def _left_out(made: Model, runs: Runs) -> tuple[Array, Array, list[Model]]:
 def _features(dimensions: Sequence[Dimension], points: Array, finer: AnyArray) -> Array:
     """Return the features of places, with a column for the grid where any is on the finer one."""
     features = featured(dimensions, points)
-    return np.column_stack([features, finer]) if np.any(finer) else features
+    return np.column_stack([features, FORM * finer]) if np.any(finer) else features
 
 
 def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
