@@ -73,6 +73,8 @@ def test_the_best_are_run_again_elsewhere_and_beside_the_start(small):
     assert [case.value(positions) for case in cases] == [8, 9]
     assert {one.number for one in small.best(3)} == {one.number for one in small.again}
     assert not list(next_batch(small.plan, small))
+    table = small.to_xarray()  # of the first runs alone
+    assert table["cof"].values.ravel().tolist() == small.goal_values(small.designs)[:, 0].tolist()
 
 
 def test_what_is_believed_lies_nearer_to_the_truth_than_the_runs():

@@ -463,10 +463,11 @@ class StudyResult(Presentable):
         return pandas.DataFrame(rows, columns=list(columns))
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return every output over (design, condition, draw), with the inputs of each design."""
+        """Return every output of first runs over (design, condition, draw), with their inputs."""
         frame, plan = self.cases(), self.plan
         units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
-        own = frame[frame["grid"] == plan.method.grid].set_index(list(PLACE[:3]))
+        first = frame[frame["design"].isin([one.number for one in self.designs])]
+        own = first.drop_duplicates(list(PLACE[:3])).set_index(list(PLACE[:3]))
         table = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
         for name, unit in units.items():
             table[name].attrs["units"] = unit
