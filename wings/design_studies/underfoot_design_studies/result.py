@@ -349,7 +349,7 @@ class StudyResult(Presentable):
         done = f"{total - self.endings[Ending.OPEN]} of {total} cases"
         parts = [f"{count} {name}" for name, count in self.endings.items() if name != Ending.OPEN]
         sentences = [
-            f"{done} of {len(self.all_designs)} designs ended: {', '.join(parts) or 'none'}."
+            f"{done} of {len(self.designs)} designs ended: {', '.join(parts) or 'none'}."
         ]
         if self.plan.goals and self.usable:
             best = self.best(2)
@@ -466,8 +466,9 @@ class StudyResult(Presentable):
         """Return every output of first runs over (design, condition, draw), with their inputs."""
         frame, plan = self.cases(), self.plan
         units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
-        first = frame[frame["design"].isin([one.number for one in self.designs])]
-        own = first.drop_duplicates(list(PLACE[:3])).set_index(list(PLACE[:3]))
+        place, numbers = list(PLACE[:3]), [one.number for one in self.designs]
+        first = frame["design"].isin(numbers) & ~frame[place].duplicated()
+        own = frame[first].set_index(place)
         table = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
         for name, unit in units.items():
             table[name].attrs["units"] = unit
