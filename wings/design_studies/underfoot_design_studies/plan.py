@@ -179,7 +179,8 @@ class StudyPlan:
         quick, fields = self.method.quick, self.method.fields
         if again:
             quick, count = self.method.again_on == "quick", self.base.numerics.tread_positions
-            own = {**own, POSITIONS: count + (1 if count < MOST_POSITIONS else -1)}
+            if count > 1:  # 1 is the tread as it lies, and stays so
+                own = {**own, POSITIONS: count + (1 if count < MOST_POSITIONS else -1)}
         for state, draw in product(range(len(self.states)), range(len(self.draws))):
             changes = {**own, **self.draws[draw], **self.states[state].changes}
             yield Job(

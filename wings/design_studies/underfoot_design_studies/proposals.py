@@ -37,7 +37,9 @@ SAMPLES = 64
 """Draws of the goals at a candidate, by which its growth of the hypervolume is averaged."""
 CANDIDATES = 80
 """Designs of a batch are chosen among so many of the surrogates' front ..."""
-SPREAD = 32
+NEAR = 0.1
+"""... as many near these, by this deviation in shares of every range, ..."""
+SPREAD = 64
 """... and so many spread evenly, where the front is a point or the surrogates know little."""
 SAME = 1e-3
 """Designs that lie nearer than this share of every range are one."""
@@ -114,8 +116,9 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     bounds = so_far.surrogates([each.goal for each in plan.require])
     generator = np.random.default_rng([plan.method.seed, len(so_far.designs)])
     spread = qmc.Sobol(len(plan.dimensions), rng=generator).random(SPREAD)
-    optimum = _surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES]
-    candidates = np.vstack([optimum, spread])
+    optimum = np.array(_surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES])
+    near = optimum + NEAR * generator.standard_normal(optimum.shape)
+    candidates = np.vstack([optimum, np.clip(near, 0.0, 1.0), spread])
     for one in so_far.designs:
         candidates = candidates[_apart(plan, candidates, one.point)]
     run = np.array([one.point for one in so_far.designs if one.usable])

@@ -348,9 +348,7 @@ class StudyResult(Presentable):
         total = self.endings.total()
         done = f"{total - self.endings[Ending.OPEN]} of {total} cases"
         parts = [f"{count} {name}" for name, count in self.endings.items() if name != Ending.OPEN]
-        sentences = [
-            f"{done} of {len(self.designs)} designs ended: {', '.join(parts) or 'none'}."
-        ]
+        sentences = [f"{done} of {len(self.designs)} designs ended: {', '.join(parts) or 'none'}."]
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:
