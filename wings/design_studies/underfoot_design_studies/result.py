@@ -28,7 +28,7 @@ from .jobs import Jobs
 from .plan import StudyPlan
 from .record import Ending, Job, Record, program
 from .records import Records
-from .surrogate import Surrogate, fitted
+from .surrogate import FEWEST, Surrogate, fitted
 
 if TYPE_CHECKING:
     import xarray
@@ -168,7 +168,9 @@ class StudyResult(Presentable):
 
     @cached_property
     def shown(self) -> list[Design]:
-        """The last run of every design that has numbers, else the first."""
+        """The last run of every design; those run again alone where no surrogate joins both."""
+        if self.again and sum(one.usable for one in self.designs) < FEWEST * len(self.plan.vary):
+            return self.again
         last = {one.number: one for one in self.again}
         return [last.get(one.number, one) for one in self.designs]
 
