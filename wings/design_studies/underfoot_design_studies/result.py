@@ -200,11 +200,12 @@ class StudyResult(Presentable):
     def _surrogate(self, goal: AnyGoal) -> Surrogate:
         if goal not in self._fitted:
             runs = [one for one in self.all_designs if one.point and one.usable]
-            points = np.array([one.point for one in runs]).reshape(len(runs), -1)
+            dimensions = self.plan.dimensions
+            points = np.array([one.point for one in runs]).reshape(len(runs), len(dimensions))
             errors = np.array([goal.error(one.records, self.plan.states) for one in runs])
             finer = np.array([one.again for one in runs], dtype=bool)
             own = points, self.values(runs, [goal])[:, 0], errors, finer
-            self._fitted[goal] = fitted(str(goal), goal.unit, self.plan.dimensions, *own)
+            self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
         return self._fitted[goal]
 
     @cached_property
