@@ -79,7 +79,7 @@ def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
 WITHOUT_EXTRAS = """\
 import sys
 
-for name in ("duckdb", "sklearn", "SALib", "pymoo", "moocore", "zarr", "emcee", "distributed"):
+for name in ("duckdb", "SALib", "pymoo", "moocore", "zarr", "emcee", "distributed"):
     sys.modules[name] = None
 from underfoot.cli import main
 

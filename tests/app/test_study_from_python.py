@@ -44,14 +44,15 @@ def test_an_optimisation_beats_the_designs_that_it_began_with(case, tmp_path):
         {"motion.speed": ("0.2 m/s", "0.8 m/s"), "shoe.material.shore_a": (50.0, 70.0)},
         minimise=["fluid_load"],
         require=["cof > 0.005"],
-        budget=13,
+        budget=18,
         folder=tmp_path,
     )
-    assert found.endings == {"computed": 13}
+    assert found.endings == {"computed": 18 + 10 + 1}  # the ten best again, and the start
     values = found.goal_values(found.designs)[:, 0]
     (best,) = found.best(1)
     assert best.number >= 10  # of those that the surrogate proposed
-    assert values[best.number] == values.min() < 0.99 * values[:10].min()
+    assert best.again
+    assert values[best.number] < 0.99 * values[:10].min()
     assert (found.margins([best]) >= 0).all()
     again = uf.Study.load(tmp_path).result()  # what it left in its folder
     assert np.array_equal(again.goal_values(again.designs)[:, 0], values)

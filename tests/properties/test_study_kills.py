@@ -28,6 +28,7 @@ base = "work_shoe_untreaded_glycerol.toml"
 kind = "optimise"
 budget = 12
 batch = 3
+front_grid = "none"
 [outputs]
 maximise = ["cof"]
 """

@@ -167,7 +167,7 @@ def test_each_package_that_the_source_imports_is_declared():
     for extra in project["optional-dependencies"].values():
         lines += extra
     declared = {re.split(r"[^\w.-]", line)[0].lower().replace("-", "_") for line in lines}
-    declared |= {"netgen", "pydantic_core", "sklearn"}  # of NGSolve, pydantic, scikit-learn
+    declared |= {"netgen", "pydantic_core"}  # of NGSolve, pydantic
     imported = {
         name.partition(".")[0].lower() for path in files().values() for name in imported_names(path)
     }

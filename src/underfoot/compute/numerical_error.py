@@ -56,7 +56,8 @@ class NumericalErrors:
         for name in self.grid:
             value, error = values[name], self.deviation(name)
             note = f"numerical error {_error(error, value)}"
-            change: dict[str, Any] = {"note": f"{value.note}; {note}" if value.note else note}
+            note = f"{value.note}; {note}" if value.note else note
+            change: dict[str, Any] = {"note": note, "numerical": error}
             if name != "cof" and value.value is not None:
                 known, ends = value.uncertainty or 0.0, value.interval
                 change |= {"uncertainty": math.hypot(known, error), "reason": ""}
@@ -77,10 +78,8 @@ class NumericalErrors:
                 for name, error in errors.items()
             )
 
-        text = f"grid: {parts(self.grid)} ({self.origin})"
-        if self.steps:
-            text += f"; steps in time: {parts(self.steps)} (from twice as many)"
-        return text
+        steps = f"; steps in time: {parts(self.steps)} (from twice as many)" if self.steps else ""
+        return f"grid: {parts(self.grid)} ({self.origin}){steps}"
 
 
 def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole: str) -> SampledCof:

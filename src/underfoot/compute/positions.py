@@ -310,9 +310,8 @@ def place_numbers(
     """Return the numbers of a result that depend on where the tread lies."""
     friction = friction_sums(law, contact, case.motion.speed)
     numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
-    fixed = ("normal_force", "slip_probability")
     return {
         name: each.value
         for name, each in numbers.items()
-        if each.value is not None and name not in fixed
+        if each.value is not None and name not in ("normal_force", "slip_probability")
     }

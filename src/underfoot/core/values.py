@@ -16,7 +16,8 @@ class SourcedValue:
     it was not estimated: then ``reason`` says why. ``unit`` is "1" when dimensionless. ``source``
     is a paper and table, a measurement, or the model that computed it; ``assumed`` is True when no
     measurement or publication stands behind it; ``note`` holds an erratum, convention or caution.
-    ``interval`` bounds the central 95 % of the sampled values, None when it was not sampled.
+    ``interval`` bounds the central 95 % of the sampled values, None when it was not sampled;
+    ``numerical`` is the part of the uncertainty by grid, steps and positions of a tread.
     """
 
     value: float | None
@@ -27,6 +28,7 @@ class SourcedValue:
     assumed: bool = False
     note: str = ""
     interval: tuple[float, float] | None = None
+    numerical: float | None = None
 
     def __post_init__(self) -> None:
         if self.uncertainty is None and not self.reason:
@@ -56,11 +58,11 @@ class SourcedValue:
     as_dict = renamed("as_dict", "to_dict", gone="0.3")
 
     def scaled(self, factor: float) -> "SourcedValue":
-        """Return the value, its uncertainty and its interval times a factor, 0 or more."""
+        """Return the value, its uncertainties and its interval times a factor, 0 or more."""
         ends = self.interval
+        numbers = {name: getattr(self, name) for name in ("value", "uncertainty", "numerical")}
         return replace(
             self,
-            value=None if self.value is None else factor * self.value,
-            uncertainty=None if self.uncertainty is None else factor * self.uncertainty,
+            **{name: None if one is None else factor * one for name, one in numbers.items()},
             interval=None if ends is None else (factor * ends[0], factor * ends[1]),
         )

@@ -46,7 +46,8 @@ def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
         return {**presented(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
     status = study_status(study)
     most = plan.designs * plan.cases_per_design
-    left = ended < most or status.endings["open"] > 0 or plan.method.front_grid is not None
+    more = ended < most or (plan.goals and plan.method.again_on and status.start is None)
+    left = bool(more) or status.endings["open"] > 0
     return {**presented(status), "ended": ended, "begun": True, "open": left}
 
 

@@ -27,6 +27,7 @@ class StudyCheck(Presentable):
     Attributes:
         designs, cases: At most, over the whole study.
         seconds: CPU seconds of all cases together, low and high.
+        again, again_seconds: The same of the cases that are run again after those.
         built: Cases that were built.
         infeasible: Why cases can't be built: how many of those built.
     """
@@ -37,6 +38,8 @@ class StudyCheck(Presentable):
     designs: int
     cases: int
     seconds: tuple[float, float]
+    again: int
+    again_seconds: tuple[float, float]
     built: int
     infeasible: Mapping[str, int]
 
@@ -48,13 +51,19 @@ class StudyCheck(Presentable):
         """Return the number of cases and their cost."""
         states, draws = len(self.plan.states), len(self.plan.draws)
         per = f" x {states} conditions" * (states > 1) + f" x {draws} draws" * (draws > 1)
-        cost = (
-            f"about {time_text(self.seconds[0])} to {time_text(self.seconds[1])} of one processor"
+        cost, more = (
+            f"about {time_text(low)} to {time_text(high)} of one processor"
+            for low, high in (self.seconds, self.again_seconds)
+        )
+        again = (
+            f"The best {self.plan.method.again} and the start are then run again on the "
+            f"{self.plan.method.again_on} grid: {self.again} cases at most, {more}."
         )
         bad = sum(self.infeasible.values())
         share = f"{bad} of {self.built} cases of the first designs can't be built"
         return (
             f"{self.designs} designs{per}: {self.cases} cases at most, {cost}.",
+            *[again] * bool(self.again),
             f"{share[0].upper()}{share[1:]}."
             if bad
             else f"All {self.built} cases tried can be built.",
@@ -93,6 +102,8 @@ class StudyCheck(Presentable):
             "designs": self.designs,
             "cases": self.cases,
             "cpu_seconds": list(self.seconds),
+            "again": self.again,
+            "again_cpu_seconds": list(self.again_seconds),
             "built": self.built,
             "infeasible": dict(self.infeasible),
         }
@@ -100,9 +111,14 @@ class StudyCheck(Presentable):
 
 def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
     """Return what a study will take; nothing is computed, about ``most`` cases are built."""
-    designs = plan.designs
-    low, high = run_cost(plan.base, quick=plan.method.quick).seconds
+    designs, method = plan.designs, plan.method
+    low, high = run_cost(plan.base, quick=method.quick).seconds
     cases = designs * plan.cases_per_design
+    again, (least, most_again) = 0, (0.0, 0.0)
+    if plan.goals and method.again_on:
+        again = (min(method.again, designs) + 1) * plan.cases_per_design
+        (job, *_) = plan.jobs(0, (), 0, again=True)
+        least, most_again = run_cost(plan.base.replace(job.changes), quick=job.quick).seconds
     reasons: Counter[str] = Counter()
     built = 0
     points = first_points(plan)
@@ -114,4 +130,5 @@ def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
                 plan.base.replace(job.changes)
             except InputError as error:
                 reasons[str(error)] += 1
-    return StudyCheck(plan, designs, cases, (low * cases, high * cases), built, dict(reasons))
+    costs = (low * cases, high * cases), again, (least * again, most_again * again)
+    return StudyCheck(plan, designs, cases, *costs, built, dict(reasons))

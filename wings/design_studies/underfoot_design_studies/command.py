@@ -111,11 +111,10 @@ def best(
 
     result = _study(study, out).result()
     designs = result.best(count)
-    chances = [result.higher_cof(*pair) for pair in pairwise(designs)]
+    chances = [result.higher_cof(one, other) for one, other in pairwise(designs)]
     if json:
-        known = {(one["design"], one["grid"]): one for one in result.to_dict()["designs"]}
-        grids = ["quick" if one.quick else "standard" for one in designs]
-        rows = [known[one.number, grid] for one, grid in zip(designs, grids, strict=True)]
+        known = {(one["design"], one["again"]): one for one in result.to_dict()["designs"]}
+        rows = [known[one.number, one.again] for one in designs]
         for row, chance in zip(rows, [*chances, None], strict=False):
             row["higher_cof_than_next"] = chance
         print(json_text.dumps(rows, indent=2))

@@ -88,6 +88,9 @@ def _outcome(case: Case, result: Result, keep_fields: bool) -> dict[str, Any]:
         "spreads": {
             name: each.uncertainty for name, each in scalars.items() if each.uncertainty is not None
         },
+        "errors": {
+            name: each.numerical for name, each in scalars.items() if each.numerical is not None
+        },
         "units": {name: each.unit for name, each in scalars.items()},
         "law": result.provenance.closures["friction"],
         "draws": np.empty(0) if drawn is None else drawn.values,
@@ -116,7 +119,12 @@ def measures(case: Case, result: Result) -> Mapping[str, SourcedValue]:
         "stiffness": case.motion.normal_force / approach if approach > 0 else None,
     }
     return {
-        name: SourcedValue(value, MEASURES[name], "geometry of the sole")
+        name: SourcedValue(
+            value,
+            MEASURES[name],
+            "geometry of the sole",
+            numerical=None if name == "stiffness" else 0.0,
+        )
         for name, value in values.items()
     }
 

@@ -10,7 +10,7 @@ runs give the variance (K - 1) / K sum (I_k - mean I)^2 (jackknife by groups; Ef
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -26,7 +26,7 @@ from underfoot.core.presentation import Presentable, Table
 from .goals import AnyGoal
 from .plan import StudyPlan
 from .result import StudyResult
-from .surrogate import NORMAL, Surrogate, fitted
+from .surrogate import NORMAL
 
 ON_SURROGATE = {"sobol": 1024, "morris": 200}
 """Base sample or trajectories on a surrogate."""
@@ -127,7 +127,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
                 remedy='Write on = "surrogate", which takes those that there are',
             )
     else:
-        (surrogate,) = surrogates(result, [goal])
+        (surrogate,) = result.surrogates([goal])
         points = _salib(plan, "sample")(ON_SURROGATE[method.analysis])
         values, basis = surrogate.mean(points), surrogate.reliability
         without = surrogate.means_without(points)
@@ -150,20 +150,6 @@ def _indices(plan: StudyPlan, points: Array, values: Array) -> Array:
     nothing = np.zeros(len(plan.dimensions))
     names = [part for name in KEYS[method] for part in (name, f"{name}_conf")]
     return np.nan_to_num(np.array([indices.get(name, nothing) for name in names], dtype=float))
-
-
-def surrogates(result: StudyResult, goals: Sequence[AnyGoal]) -> list[Surrogate]:
-    """Return the surrogate of each goal over what is varied, from the designs on the study's grid.
-
-    Raises:
-        DataError: Too few usable runs.
-    """
-    points = np.array([one.point for one in result.designs])
-    columns = result.values(result.designs, goals).T
-    return [
-        fitted(str(goal), goal.unit, result.plan.dimensions, points, values)
-        for goal, values in zip(goals, columns, strict=True)
-    ]
 
 
 def _salib(plan: StudyPlan, step: str) -> Callable[..., Any]:

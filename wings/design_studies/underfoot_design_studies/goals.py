@@ -85,6 +85,18 @@ class Goal:
             return float(output_array(records, chosen, self.output).mean())
         return float({"min": np.min, "max": np.max, "sd": np.std}[self.statistic](values))
 
+    def error(
+        self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
+    ) -> float:
+        """Return the numerical error of ``value``, SI: the mean of those of the runs that count.
+
+        Runs of one design share tread and grid, so no mean over them makes it smaller. nan where a
+        run states none.
+        """
+        chosen = _chosen(states, self.within)
+        runs = (record for (state, _), record in records.items() if state in chosen)
+        return float(np.mean([record.errors.get(self.output, np.nan) for record in runs]))
+
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
@@ -133,6 +145,10 @@ class WearLife:
             groups.setdefault(repr(rest), []).append((wear, float(margin)))
         lives = [_crossing(sorted(group)) for group in groups.values()]
         return float("nan") if np.isnan(lives).any() else min(lives)
+
+    def error(self, *_: object) -> float:
+        """Return nan: how far the error of a run moves a crossing is not known."""
+        return float("nan")
 
 
 AnyGoal = Goal | WearLife

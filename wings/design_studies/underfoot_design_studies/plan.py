@@ -23,6 +23,7 @@ from .inputs import Distribution, Follow, Input
 from .record import Job
 
 Count = Annotated[int, Field(ge=1, le=10**6, strict=True)]
+POSITIONS, MOST_POSITIONS = "numerics.tread_positions", 64
 
 
 class Method(Section):
@@ -37,7 +38,9 @@ class Method(Section):
         active: Share of the runs of a sweep that go where the surrogate is worst.
         draws: Of the uncertain inputs, the same for every design.
         batch: Designs that are proposed together.
-        grid: Of the runs; ``front_grid`` that on which a front is run again, None for none.
+        grid: Of the runs.
+        again: Best designs that are run again, on new positions of the tread and on ``front_grid``:
+            by default the standard grid after an optimisation, "none" after anything else.
         fields: Keep maps.
         seed: Of designs and draws.
     """
@@ -51,7 +54,8 @@ class Method(Section):
     draws: Count = 8
     batch: Count = 8
     grid: Literal["quick", "standard"] = "quick"
-    front_grid: Literal["quick", "standard"] | None = None
+    again: Count = 10
+    front_grid: Literal["none", "quick", "standard"] | None = None
     fields: Flag = False
     seed: Annotated[int, Field(ge=0, le=2**31, strict=True)] = 0
 
@@ -59,6 +63,13 @@ class Method(Section):
     def quick(self) -> bool:
         """Whether the runs are on the coarse grid."""
         return self.grid == "quick"
+
+    @property
+    def again_on(self) -> Literal["quick", "standard"] | None:
+        """Grid on which the best designs are run again; None where they are not."""
+        if self.front_grid is None:
+            return "standard" if self.kind in ("optimise", "robust") else None
+        return None if self.front_grid == "none" else self.front_grid
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,18 +155,32 @@ class StudyPlan:
         return [tuple(map(float, row)) for row in rows[:count]]
 
     def design_changes(self, point: Sequence[float]) -> dict[str, Any]:
-        """Return what a point of the unit cube changes in the case, followers included."""
+        """Return what a point of the unit cube changes in the case, followers included.
+
+        Without a point it is the case itself, where a study starts.
+        """
+        if not point:
+            return {}
         changes = {
             one.path: one.value(share) for one, share in zip(self.dimensions, point, strict=True)
         }
         return changes | {one.path: one.times * changes[one.of] for one in self.follow}
 
     def jobs(
-        self, design: int, point: Sequence[float], batch: int, *, quick: bool | None = None
+        self, design: int, point: Sequence[float], batch: int, *, again: bool = False
     ) -> Iterator[Job]:
-        """Yield the jobs of a design: every condition with every draw."""
+        """Yield the jobs of a design: every condition with every draw.
+
+        ``again`` takes the grid of ``Method.again_on`` and one position of the tread more, or less
+        where there are as many as can be: of their lattice (``underfoot.compute.positions``) only
+        the first is the same.
+        """
         own, place = self.design_changes(point), tuple(map(float, point))
-        quick, fields = self.method.quick if quick is None else quick, self.method.fields
+        quick, fields = self.method.quick, self.method.fields
+        if again:
+            quick, count = self.method.again_on == "quick", self.base.numerics.tread_positions
+            if count > 1:  # 1 is the tread as it lies, and stays so
+                own = {**own, POSITIONS: count + (1 if count < MOST_POSITIONS else -1)}
         for state, draw in product(range(len(self.states)), range(len(self.draws))):
             changes = {**own, **self.draws[draw], **self.states[state].changes}
             yield Job(

@@ -27,7 +27,6 @@ from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.progress import part
 from underfoot.core.threads import threads_limited
 
-from .effects import surrogates
 from .goals import Goal
 from .inputs import TAIL
 from .study import Study
@@ -163,7 +162,7 @@ def posterior(
         Goal(one.output, one.unit, within=state.parts)
         for one, state in zip(plan.readings, plan.states, strict=True)
     ]
-    models = surrogates(result, goals)
+    models = result.surrogates(goals)
     measured = np.array([one.value for one in plan.readings])
     deviation = np.array([one.sd for one in plan.readings])
     size = len(plan.uncertain)

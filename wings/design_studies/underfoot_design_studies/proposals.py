@@ -3,9 +3,11 @@
 A batch is proposed when the one before has ended, so that the same study proposes the same designs
 whichever machine computes them in whatever order. An optimisation begins with designs spread
 evenly, and then takes those of a genetic algorithm's front on the surrogates (NSGA-II; Deb et al.
-2002) that promise the largest growth of the hypervolume (Emmerich, Giannakoglou and Naujoks 2006),
-times the probability that every requirement holds. The front that grows is that of the surrogates'
-means at the designs, not of the runs as they came out: a lucky run is no front.
+2002) that promise the largest growth of the hypervolume, requirements met (Emmerich, Giannakoglou
+and Naujoks 2006). The front that grows is not that of the runs as they came out, which the luckiest
+would lead, but is drawn with the candidates from what the surrogates believe of the designs run
+(Daulton, Balandat and Bakshy 2021). At the end the best designs and the case where the study starts
+are run again on new positions of the tread and, by default, the standard grid.
 """
 
 from __future__ import annotations
@@ -14,15 +16,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr
 from scipy.stats import qmc
 
 from underfoot.core import DataError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.core.optional import optional_module
 from underfoot.core.threads import threads_limited
 
-from .effects import sampled_effect_points, surrogates
+from .effects import sampled_effect_points
 from .goals import Goal
 from .plan import StudyPlan
 from .record import Job
@@ -36,7 +37,9 @@ SAMPLES = 64
 """Draws of the goals at a candidate, by which its growth of the hypervolume is averaged."""
 CANDIDATES = 80
 """Designs of a batch are chosen among so many of the surrogates' front ..."""
-SPREAD = 32
+NEAR = 0.1
+"""... as many near these, by this deviation in shares of every range, ..."""
+SPREAD = 64
 """... and so many spread evenly, where the front is a point or the surrogates know little."""
 SAME = 1e-3
 """Designs that lie nearer than this share of every range are one."""
@@ -50,8 +53,8 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     if not so_far.jobs:
         return _jobs(plan, first_points(plan), 0, 0)
     last = so_far.jobs[-1]
-    if last.quick != plan.method.quick:
-        return []  # the front was the last
+    if not last.point or last.quick != plan.method.quick:
+        return []  # the best designs and the start were the last
     batch, count = last.batch + 1, last.design + 1
     left = min(plan.designs - count, plan.method.batch)
     try:
@@ -61,11 +64,9 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
             return _jobs(plan, _least_known(so_far, left), count, batch)
     except DataError:  # too few usable runs for a surrogate: spread more of them
         return _jobs(plan, plan.sampled_points(count + left)[count:], count, batch)
-    if plan.method.front_grid not in (None, plan.method.grid):
-        quick = plan.method.front_grid == "quick"
-        front = so_far.front_of(so_far.designs)
-        return [j for one in front for j in plan.jobs(one.number, one.point, batch, quick=quick)]
-    return []
+    best = so_far.best(plan.method.again) if plan.goals and plan.method.again_on else []
+    points = {one.number: one.point for one in best} | ({count: ()} if best else {})
+    return [job for k, place in points.items() for job in plan.jobs(k, place, batch, again=True)]
 
 
 def first_points(plan: StudyPlan) -> list[tuple[float, ...]]:
@@ -94,73 +95,67 @@ def _jobs(
 def _least_known(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     """Return the places where the surrogate of the first goal (or COF) is least sure."""
     plan = so_far.plan
-    (surrogate,) = surrogates(so_far, [*plan.goals, Goal("cof", "1")][:1])
+    (surrogate,) = so_far.surrogates([*plan.goals, Goal("cof", "1")][:1])
     candidates = qmc.Sobol(len(plan.dimensions), rng=plan.method.seed + 1).random(1024)
     chosen = []
     for _ in range(count):
-        point = candidates[int(np.argmax(surrogate.predicted(candidates)[1]))]
+        point = candidates[int(np.argmax(surrogate.predicted(candidates, noise=False)[1]))]
         surrogate = surrogate.with_point(point)
         chosen.append(tuple(map(float, point)))
     return chosen
 
 
 def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
-    """Return the designs that promise the largest growth of the hypervolume, one after another."""
-    plan = so_far.plan
-    goals = surrogates(so_far, plan.goals)
-    bounds = surrogates(so_far, [each.goal for each in plan.require])
-    known, signs = so_far.goal_values(so_far.designs) * plan.signs, plan.signs
-    usable = np.isfinite(known).all(axis=1)
-    low, high = known[usable].min(axis=0), known[usable].max(axis=0)
-    span = np.where(high > low, high - low, 1.0)
-    places = np.array([one.point for one in so_far.designs])
-    believed = np.column_stack([one.mean(places) for one in goals]) * signs
-    front = ((believed - low) / span)[so_far.allowed(so_far.designs)]
+    """Return the designs that promise the largest growth of the hypervolume, one after another.
+
+    Its mean over joint draws of every goal and requirement at the designs run, those chosen before
+    and a candidate; in each draw the front that grows is that of the draw.
+    """
+    plan, signs = so_far.plan, so_far.plan.signs
+    goals = so_far.surrogates(plan.goals)
+    bounds = so_far.surrogates([each.goal for each in plan.require])
+    generator = np.random.default_rng([plan.method.seed, len(so_far.designs)])
+    spread = qmc.Sobol(len(plan.dimensions), rng=generator).random(SPREAD)
+    optimum = np.array(_surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES])
+    near = optimum + NEAR * generator.standard_normal(optimum.shape)
+    candidates = np.vstack([optimum, np.clip(near, 0.0, 1.0), spread])
+    for one in so_far.designs:
+        candidates = candidates[_apart(plan, candidates, one.point)]
+    run = np.array([one.point for one in so_far.designs if one.usable])
+    places, known = np.vstack([run, candidates]), len(run)
+    normal = generator.standard_normal((len(goals) + len(bounds), SAMPLES, len(places)))
+    drawn = [one.drawn(places, z) for one, z in zip([*goals, *bounds], normal, strict=True)]
+    values = np.stack(drawn[: len(goals)], axis=-1) * signs
+    met = np.ones(values.shape[:2], dtype=bool)
+    for requirement, each in zip(plan.require, drawn[len(goals) :], strict=True):
+        met &= np.asarray(requirement.margin(each)) >= 0
+    low, high = values[:, :known].min(axis=(0, 1)), values[:, :known].max(axis=(0, 1))
+    scaled = (values - low) / np.where(high > low, high - low, 1.0)
     measure = optional_module("moocore", "study", "An optimisation").Hypervolume(
         ref=[1.0 + BEYOND] * len(signs)
     )
-    generator = np.random.default_rng([plan.method.seed, len(so_far.designs)])
-    spread = qmc.Sobol(len(plan.dimensions), rng=generator).random(SPREAD)
-    optimum = _surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES]
-    candidates = np.vstack([optimum, spread])
-    for one in so_far.designs:
-        candidates = _apart(plan, candidates, one.point)
+    fronts = [one[:known][ok[:known]] for one, ok in zip(scaled, met, strict=True)]
     chosen: list[tuple[float, ...]] = []
-    while len(chosen) < count and len(candidates):
-        holds = _probability_met(plan, bounds, candidates)
-        predicted = [one.predicted(candidates) for one in goals]
-        mean = np.array([m for m, _ in predicted]).T * signs
-        deviation = np.array([d for _, d in predicted]).T
-        normal = generator.standard_normal((SAMPLES, 1, len(signs)))
-        drawn = (mean + deviation * normal - low) / span
-        volume = measure(front) if len(front) else 0.0
-        growth = np.array(
-            [
-                np.mean([measure(np.vstack([front, draw])) for draw in drawn[:, k]]) - volume
-                for k in range(len(candidates))
-            ]
-        )
-        best = int(np.argmax(growth * holds))
-        chosen.append(tuple(map(float, candidates[best])))
-        goals = [one.with_point(candidates[best]) for one in goals]
-        front = np.vstack([front, (mean[best] - low) / span])
-        candidates = _apart(plan, candidates, chosen[-1])
+    left = np.arange(known, len(places))
+    while len(chosen) < count and len(left):
+        growth = np.zeros(len(left))
+        for front, row, ok in zip(fronts, scaled, met, strict=True):
+            volume = measure(front) if len(front) else 0.0
+            growth += [ok[k] and measure(np.vstack([front, row[k]])) - volume for k in left]
+        best = left[int(np.argmax(growth))]
+        chosen.append(tuple(map(float, places[best])))
+        fronts = [
+            np.vstack([front, row[best]]) if ok[best] else front
+            for front, row, ok in zip(fronts, scaled, met, strict=True)
+        ]
+        left = left[_apart(plan, places[left], chosen[-1])]
     return chosen
 
 
-def _apart(plan: StudyPlan, points: Array, taken: Sequence[float]) -> Array:
-    """Return the places that make another design than one that is taken."""
+def _apart(plan: StudyPlan, points: Array, taken: Sequence[float]) -> Mask:
+    """Return which places make another design than one that is taken."""
     own = featured(plan.dimensions, np.array([taken]))
-    return points[np.abs(featured(plan.dimensions, points) - own).max(axis=1) > SAME]
-
-
-def _probability_met(plan: StudyPlan, bounds: Sequence[Surrogate], points: Array) -> Array:
-    """Return (n,) the probability that every requirement holds, taken as independent."""
-    holds = np.ones(len(points))
-    for requirement, surrogate in zip(plan.require, bounds, strict=True):
-        mean, deviation = surrogate.predicted(points)
-        holds *= ndtr(requirement.margin(mean) / np.maximum(deviation, 1e-12))
-    return holds
+    return np.abs(featured(plan.dimensions, points) - own).max(axis=1) > SAME
 
 
 def _surrogate_front(

@@ -82,6 +82,7 @@ class Record:
         ending, reason: How it ended, and why it has no numbers.
         numbers: Name of a scalar: its value in SI; None where it was not determined.
         spreads: Name of a scalar: its standard deviation, where it was estimated.
+        errors: The part of it that is the run's own: grid, steps, positions of the tread.
         units: Name of a scalar: its SI unit.
         law: Friction law; draws of COF of one law are shared between cases.
         draws: (n,) joint draws of COF, empty where the law has no spread.
@@ -98,6 +99,7 @@ class Record:
     reason: str = ""
     numbers: Mapping[str, float | None] = field(default_factory=dict)
     spreads: Mapping[str, float] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     law: str = ""
     draws: Array = field(default_factory=lambda: np.empty(0))

@@ -27,7 +27,7 @@ from underfoot.report.viewer import viewer_script, viewer_section
 from underfoot.report.writing import Written
 
 from . import Study, StudyResult
-from .effects import Effects, effects, surrogates
+from .effects import Effects, effects
 from .goals import AnyGoal, Goal
 from .result import Design
 from .surrogate import Surrogate
@@ -66,7 +66,7 @@ def shown(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> Sho
         if plan.method.kind == "sensitivity":
             indices = [effects(result, goal) for goal in goals]
         if plan.method.kind != "sensitivity" or plan.method.on == "surrogate":
-            models = surrogates(result, goals)
+            models = result.surrogates(goals)
     except UnderfootError as error:
         missing = str(error)
     own = (plan, result.jobs, result.records, result.sessions)
@@ -192,7 +192,7 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     for path in paths:
         values = [one.changes.get(path) for one in designs]
         add(path.split(".", 1)[-1], unit_at(path), values, False)
-    for goal, values in zip(goals, result.values(designs, goals).T.tolist(), strict=True):
+    for goal, values in zip(goals, result.believed(designs, goals)[0].T.tolist(), strict=True):
         add(str(goal), goal.unit, values, goal in plan.goals)
     listed = [
         {
@@ -221,7 +221,9 @@ def _template(name: str) -> Template:
 def front_figure(result: StudyResult) -> Figure:
     """Return the first two goals of every design, the front joined by a line."""
     goals, designs = result.plan.goals[:2], result.shown
-    values, front = result.goal_values(designs), result.goal_values(result.front)
+    values, front = (
+        result.believed(each, result.plan.goals)[0] for each in (designs, result.front)
+    )
     figure = new_figure(6.5, 4.2)
     axes = figure.add_subplot()
     allowed = result.allowed(designs)
@@ -241,7 +243,7 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
     grid = figure.subplots(len(models), len(dimensions), squeeze=False, sharey="row")
     shares = np.linspace(0.0, 1.0, SLICE)
     for row, model in zip(grid, models, strict=True):
-        scale, shown_unit = display_unit(float(np.abs(model.values).max()), model.unit)
+        scale, shown_unit = display_unit(float(np.abs(model.runs.values).max()), model.unit)
         for axes, one, k in zip(row, dimensions, range(len(dimensions)), strict=True):
             points = np.tile(centre, (SLICE, 1))
             points[:, k] = shares

@@ -1,10 +1,16 @@
-"""What came of a study: its designs with their goals, the front, and how sure their order is."""
+"""What came of a study: its designs with their goals, the front, and how sure their order is.
+
+A run has noise: its grid, and where the lugs of a tread lie. The best of many runs is then the
+luckiest. So designs are ranked by what their surrogate believes of them, a mean over the noise of
+all runs, and the best are run again on new positions of the tread.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -12,8 +18,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from underfoot.case import unit_at
+from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.presentation import Presentable, Table, percent, quantity_text
+from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
@@ -21,6 +28,7 @@ from .jobs import Jobs
 from .plan import StudyPlan
 from .record import Ending, Job, Record, program
 from .records import Records
+from .surrogate import FEWEST, Surrogate, fitted
 
 if TYPE_CHECKING:
     import xarray
@@ -29,6 +37,8 @@ if TYPE_CHECKING:
 PLACE = ("design", "condition", "draw", "grid", "ending")
 MOST_ROWS = 12
 """Designs of a table on the terminal."""
+DECIDED = 0.95
+"""Share of draws from which on a design is said to be above the start."""
 
 
 class DesignRecords(Mapping[tuple[int, int], Record]):
@@ -50,12 +60,16 @@ class DesignRecords(Mapping[tuple[int, int], Record]):
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """One design: what it changes, and its records by (condition, draw), open ones too."""
+    """One design: what it changes, and its records by (condition, draw), open ones too.
+
+    ``again`` tells a second run of it, on new positions of the tread and the grid for that.
+    """
 
     number: int
     point: tuple[float, ...]
     changes: Mapping[str, Any]
     quick: bool
+    again: bool
     records: Mapping[tuple[int, int], Record]
 
     @property
@@ -74,11 +88,15 @@ class Design:
         """Why it has no numbers."""
         return next((r.reason for r in self.records.values() if not r.usable), "")
 
-    def cof_draws(self) -> Array | None:
+    @property
+    def states(self) -> list[int]:
+        """The conditions that it was run in."""
+        return sorted({state for state, _ in self.records})
+
+    def cof_draws(self, states: Sequence[int]) -> Array | None:
         """Return (conditions x draws x law's draws,) joint draws of COF; None without."""
         if not self.usable or any(r.draws.size == 0 for r in self.records.values()):
             return None
-        states = sorted({state for state, _ in self.records})
         return output_array(self.records, states, "cof", law=True).ravel()
 
 
@@ -113,33 +131,48 @@ class StudyResult(Presentable):
 
     @cached_property
     def all_designs(self) -> list[Design]:
-        """Every design on every grid, in the order in which they were set."""
-        keys: dict[tuple[int, bool], dict[tuple[int, int], str]] = {}
-        points: dict[int, tuple[float, ...]] = {}
+        """Every design by number, after its first run the second."""
+        keys: dict[tuple[int, int], dict[tuple[int, int], str]] = {}
+        first: dict[tuple[int, int], Job] = {}
         for job in self.jobs:
-            keys.setdefault((job.design, job.quick), {})[job.condition, job.draw] = job.key
-            points[job.design] = job.point
+            run = job.design, job.batch
+            keys.setdefault(run, {})[job.condition, job.draw] = job.key
+            first.setdefault(run, job)
+        begun = dict(sorted(keys, reverse=True))
         return [
             Design(
                 number,
-                points[number],
-                self.plan.design_changes(points[number]),
-                quick,
-                DesignRecords(keys[number, quick], self.records),
+                first[number, batch].point,
+                self.plan.design_changes(first[number, batch].point),
+                first[number, batch].quick,
+                batch != begun[number] or not first[number, batch].point,
+                DesignRecords(keys[number, batch], self.records),
             )
-            for number, quick in sorted(keys)
+            for number, batch in sorted(keys)
         ]
 
     @cached_property
     def designs(self) -> list[Design]:
-        """The designs on the grid of the study, by number."""
-        return [one for one in self.all_designs if one.quick == self.plan.method.quick]
+        """The first run of every design, by number."""
+        return [one for one in self.all_designs if not one.again]
+
+    @cached_property
+    def start(self) -> Design | None:
+        """The base case as it is, run beside the best designs; None before."""
+        return next((one for one in self.all_designs if not one.point and one.usable), None)
+
+    @cached_property
+    def again(self) -> list[Design]:
+        """The second run of those that had one, and have numbers."""
+        return [one for one in self.all_designs if one.again and one.point and one.usable]
 
     @cached_property
     def shown(self) -> list[Design]:
-        """The designs that the front is made of: those on the front's grid, where it has one."""
-        quick = (self.plan.method.front_grid or self.plan.method.grid) == "quick"
-        return [one for one in self.all_designs if one.quick == quick]
+        """The last run of every design; those run again alone where no surrogate joins both."""
+        if self.again and sum(one.usable for one in self.designs) < FEWEST * len(self.plan.vary):
+            return self.again
+        last = {one.number: one for one in self.again}
+        return [last.get(one.number, one) for one in self.designs]
 
     def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI; nan where a design has no numbers."""
@@ -156,13 +189,62 @@ class StudyResult(Presentable):
         """Return (designs, goals) of the plan's goals, as ``values``."""
         return self.values(designs, self.plan.goals)
 
+    def surrogates(self, goals: Sequence[AnyGoal]) -> list[Surrogate]:
+        """Return the surrogate of each goal over what is varied, from all runs of designs.
+
+        Raises:
+            DataError: Too few usable runs.
+        """
+        return [self._surrogate(goal) for goal in goals]
+
+    def _surrogate(self, goal: AnyGoal) -> Surrogate:
+        if goal not in self._fitted:
+            runs = [one for one in self.all_designs if one.point and one.usable]
+            dimensions = self.plan.dimensions
+            points = np.array([one.point for one in runs]).reshape(len(runs), len(dimensions))
+            errors = np.array([goal.error(one.records, self.plan.states) for one in runs])
+            finer = np.array([one.again for one in runs], dtype=bool)
+            own = points, self.values(runs, [goal])[:, 0], errors, finer
+            self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
+        return self._fitted[goal]
+
+    @cached_property
+    def _fitted(self) -> dict[AnyGoal, Surrogate]:
+        return {}
+
+    def believed(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> tuple[Array, Array]:
+        """Return mean and standard deviation (designs, goals) of what runs scatter about, SI.
+
+        By the surrogate of all runs, on the finest grid; nan where a design has no numbers. An
+        output without numerical error is as it was run, and so is any where runs are too few for a
+        surrogate, with an unknown deviation (nan).
+        """
+        means = self.values(designs, goals)
+        deviations = np.full_like(means, np.nan)
+        points = np.array([one.point for one in designs])
+        for k, goal in enumerate(goals):
+            errors = [goal.error(one.records, self.plan.states) for one in designs if one.usable]
+            if not np.any(errors):  # not of nan
+                deviations[:, k] = 0.0
+                continue
+            with suppress(DataError):
+                mean, deviation = self._surrogate(goal).predicted(points, noise=False)
+                known = np.isfinite(means[:, k])
+                means[known, k], deviations[known, k] = mean[known], deviation[known]
+        return means, deviations
+
     def margins(self, designs: Sequence[Design]) -> Array:
-        """Return (designs, requirements): by how much each is met, SI; negative where not."""
-        values = self.values(designs, [each.goal for each in self.plan.require])
+        """Return (designs, requirements): by how much each is met, SI; negative where not.
+
+        As run or as believed, whichever is less.
+        """
+        goals = [each.goal for each in self.plan.require]
+        both = zip(self.values(designs, goals).T, self.believed(designs, goals)[0].T, strict=True)
         columns = [
-            each.margin(column) for each, column in zip(self.plan.require, values.T, strict=True)
+            np.minimum(each.margin(run), each.margin(believed))
+            for each, (run, believed) in zip(self.plan.require, both, strict=True)
         ]
-        return np.array(columns, dtype=float).reshape(values.shape[::-1]).T
+        return np.array(columns, dtype=float).reshape(len(goals), len(designs)).T
 
     def allowed(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
@@ -173,7 +255,8 @@ class StudyResult(Presentable):
         """Return the designs that no other beats in every goal, best in the first goal first."""
         if not self.plan.goals:
             return []
-        values, good = self.goal_values(designs) * self.plan.signs, self.allowed(designs)
+        values, good = self.believed(designs, self.plan.goals)[0], self.allowed(designs)
+        values = values * self.plan.signs
         kept = [k for k in np.flatnonzero(good).tolist() if not _beaten(values[k], values[good])]
         unique = {tuple(values[k]): k for k in reversed(kept)}
         return [designs[k] for k in sorted(unique.values(), key=lambda k: values[k, 0])]
@@ -186,31 +269,65 @@ class StudyResult(Presentable):
     def best(self, count: int = 5) -> list[Design]:
         """Return up to ``count`` designs of the front, spread along it.
 
-        With one goal, the best ones in order.
+        With one goal, the best ones in order. Of those that were run again, where any were.
         """
+        runs = self.again or self.designs
         if len(self.plan.goals) == 1:
-            good = [one for one, ok in zip(self.shown, self.allowed(self.shown), strict=True) if ok]
-            values = self.goal_values(good)[:, 0] * self.plan.signs[0]
+            good = [one for one, ok in zip(runs, self.allowed(runs), strict=True) if ok]
+            values = self.believed(good, self.plan.goals)[0][:, 0] * self.plan.signs[0]
             return [good[k] for k in np.argsort(values, kind="stable")[:count]]
-        places = np.linspace(0, len(self.front) - 1, min(count, len(self.front))).round()
-        return [self.front[int(k)] for k in dict.fromkeys(places)]
+        front = self.front_of(runs)
+        places = np.linspace(0, len(front) - 1, min(count, len(front))).round()
+        return [front[int(k)] for k in dict.fromkeys(places)]
 
-    def higher_cof(self, first: Design, second: Design) -> float | None:
-        """Return the probability that the first design has the higher COF.
+    def higher_cof(
+        self, first: Design, second: Design, states: Sequence[int] | None = None
+    ) -> float | None:
+        """Return the probability that the first design has the higher COF in some conditions.
 
         Counted over the draws that both share: condition, uncertain inputs and the friction law's
-        own. None where no uncertainty is known.
+        own; the numerical errors of both and the error of the tread model are in them. None where
+        no uncertainty is known.
         """
-        laws = {r.law for one in (first, second) for r in one.records.values()}
-        values = [
-            np.mean([r.number("cof") for r in one.records.values()]) for one in (first, second)
+        states = first.states if states is None else states
+        both = [
+            [r for (state, _), r in one.records.items() if state in states]
+            for one in (first, second)
         ]
-        spreads = [[r.spreads.get("cof") for r in one.records.values()] for one in (first, second)]
+        values = [float(np.mean([r.number("cof") for r in records])) for records in both]
+        spreads = [[r.spreads.get("cof") for r in records] for records in both]
         known = [None if None in row else float(np.mean(np.array(row, float))) for row in spreads]
         return probability_higher(
-            (float(values[0]), known[0], first.cof_draws()),
-            (float(values[1]), known[1], second.cof_draws()),
-            shared=laws == {"pair"},
+            (values[0], known[0], first.cof_draws(states)),
+            (values[1], known[1], second.cof_draws(states)),
+            shared={r.law for records in both for r in records} == {"pair"},
+        )
+
+    def above_start(self) -> str:
+        """Return in a sentence whether a design run again has a higher COF than the start.
+
+        In every condition, with ``DECIDED`` of the draws; empty where the start was not run.
+        """
+        if self.start is None:
+            return ""
+        chances = {}
+        for one, ok in zip(self.again, self.allowed(self.again), strict=True):
+            each = [self.higher_cof(one, self.start, [state]) for state in one.states * bool(ok)]
+            known = [chance for chance in each if chance is not None]
+            if known and len(known) == len(each):
+                chances[one.number] = min(known)
+        if not chances:
+            return "Whether a design has a higher COF than the start is not estimated."
+        number = max(chances, key=chances.__getitem__)
+        labels = [state.label for state in self.plan.states if state.label]
+        where = f" in each condition ({'; '.join(labels)})" if labels else ""
+        errors = "the errors of the tread model and of the runs are in the draws"
+        if chances[number] >= DECIDED:
+            text = f"Design {number} has a higher COF than the start in {of_100(chances[number])}"
+            return f"{text} draws{where}; {errors}."
+        return (
+            f"No design has a higher COF than the start in {of_100(DECIDED)} draws{where}: at most "
+            f"in {of_100(chances[number])} (design {number}); {errors}."
         )
 
     # --- how it is shown ---
@@ -234,25 +351,24 @@ class StudyResult(Presentable):
         total = self.endings.total()
         done = f"{total - self.endings[Ending.OPEN]} of {total} cases"
         parts = [f"{count} {name}" for name, count in self.endings.items() if name != Ending.OPEN]
-        sentences = [
-            f"{done} of {len(self.all_designs)} designs ended: {', '.join(parts) or 'none'}."
-        ]
+        sentences = [f"{done} of {len(self.designs)} designs ended: {', '.join(parts) or 'none'}."]
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:
                 sentences.append("No design meets every requirement.")
             elif len(self.plan.goals) == 1:
                 sentences.append(f"Best: design {best[0].number}, {self._goals_text(best[0])}.")
-                if len(best) > 1 and (chance := self.higher_cof(*best)) is not None:
+                if len(best) > 1 and (chance := self.higher_cof(best[0], best[1])) is not None:
                     sentences.append(
-                        f"Its COF is higher than that of design {best[1].number} with a "
-                        f"probability of {percent(chance)} (shared draws)."
+                        f"Its COF is higher than that of design {best[1].number} in "
+                        f"{of_100(chance)} draws that both share."
                     )
             else:
                 sentences.append(
                     f"The front has {len(self.front)} designs, each run in full: from "
                     f"{self._goals_text(self.front[0])} to {self._goals_text(self.front[-1])}."
                 )
+            sentences += filter(None, [self.above_start()])
         return tuple(sentences)
 
     def cautions(self) -> tuple[str, ...]:
@@ -268,7 +384,7 @@ class StudyResult(Presentable):
         if lost:
             have = "1 case has" if lost == 1 else f"{lost} cases have"
             reasons.append(f"{have} no numbers: underfoot study status tells why.")
-        if self.plan.method.quick and self.plan.method.front_grid != "standard":
+        if self.plan.method.quick and self.plan.method.again_on != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)
 
@@ -286,10 +402,10 @@ class StudyResult(Presentable):
             for path in paths
         ]
         rows = []
-        for one, values in zip(designs, self.values(designs, goals), strict=True):
+        units = [goal.unit for goal in goals]
+        for one, *values in zip(designs, *self.believed(designs, goals), strict=True):
             inputs = [value_text(path, one.changes.get(path)) for path in paths]
-            units = [goal.unit for goal in goals]
-            texts = map(quantity_text, values, units) if one.usable else [one.ending] * len(goals)
+            texts = map(_goal_text, *values, units) if one.usable else [one.ending] * len(goals)
             rows.append([str(one.number), *inputs, *texts])
         return Table(title, ("Design", *short, *map(str, goals)), rows)
 
@@ -299,9 +415,14 @@ class StudyResult(Presentable):
         return {"Without numbers": [f"{n} x {text}" for text, n in reasons.most_common()]}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain data: endings, and every design with inputs, goals and margins."""
-        values, margins = self.goal_values(self.all_designs), self.margins(self.all_designs)
-        front = {(one.number, one.quick) for one in self.front}
+        """Return plain data: endings, and every run of a design with inputs, goals and margins.
+
+        Goals as they were run, and what is believed of them with its standard deviation.
+        """
+        runs = [one for one in self.all_designs if one.point]
+        values, margins = self.goal_values(runs), self.margins(runs)
+        believed, deviations = self.believed(runs, self.plan.goals)
+        front = {(one.number, one.again) for one in self.front}
         return {
             "endings": dict(self.endings),
             "goals": [str(goal) for goal in self.plan.goals],
@@ -312,11 +433,14 @@ class StudyResult(Presentable):
                     "grid": "quick" if one.quick else "standard",
                     "ending": one.ending,
                     "inputs": dict(one.changes),
-                    "goals": row.tolist(),
-                    "margins": margin.tolist(),
-                    "front": (one.number, one.quick) in front,
+                    "again": one.again,
+                    "goals": rows[0].tolist(),
+                    "believed": rows[1].tolist(),
+                    "believed_sd": rows[2].tolist(),
+                    "margins": rows[3].tolist(),
+                    "front": (one.number, one.again) in front,
                 }
-                for one, row, margin in zip(self.all_designs, values, margins, strict=True)
+                for one, *rows in zip(runs, values, believed, deviations, margins, strict=True)
             ],
         }
 
@@ -340,10 +464,12 @@ class StudyResult(Presentable):
         return pandas.DataFrame(rows, columns=list(columns))
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return every output over (design, condition, draw), with the inputs of each design."""
+        """Return every output of first runs over (design, condition, draw), with their inputs."""
         frame, plan = self.cases(), self.plan
         units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
-        own = frame[frame["grid"] == plan.method.grid].set_index(list(PLACE[:3]))
+        place, numbers = list(PLACE[:3]), [one.number for one in self.designs]
+        first = frame["design"].isin(numbers) & ~frame[place].duplicated()
+        own = frame[first].set_index(place)
         table = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
         for name, unit in units.items():
             table[name].attrs["units"] = unit
@@ -357,9 +483,20 @@ class StudyResult(Presentable):
         return table.assign(ending=table["ending"].astype(str)).assign_attrs(title=plan.name)
 
     def _goals_text(self, design: Design) -> str:
-        values = self.goal_values([design])[0]
-        pairs = zip(self.plan.goals, values, strict=True)
-        return ", ".join(f"{goal} {quantity_text(value, goal.unit)}" for goal, value in pairs)
+        means, deviations = self.believed([design], self.plan.goals)
+        return ", ".join(
+            f"{goal} {_goal_text(mean, deviation, goal.unit)}"
+            for goal, mean, deviation in zip(self.plan.goals, means[0], deviations[0], strict=True)
+        )
+
+
+def of_100(share: float) -> str:
+    """Return a share of draws as "n of 100", rounded down."""
+    return f"{math.floor(100 * share + 1e-9)} of 100"
+
+
+def _goal_text(value: float, deviation: float, unit: str) -> str:
+    return quantity_text(value, unit, deviation if deviation > 0 else None)
 
 
 def value_text(path: str, value: Any) -> str:

@@ -1,37 +1,48 @@
 """A surrogate in place of runs, with its error on runs that it did not see.
 
-Three forms, of values y over the features x of the inputs (a name is one column a value)::
+A Gaussian process of values y over the features x of the inputs, from -1 to 1 (a name is one column
+a value), with noise of each run (Rasmussen and Williams 2006, chapters 2
+and 5)::
 
-    quadratic   ln y = b0 + b.x + x.B.x + noise, weights and noise by evidence (MacKay 1992)
-    process     y a Gaussian process: Matern (nu = 5/2) with a length for each input, a linear
-                trend, noise; by maximum likelihood (Rasmussen and Williams 2006, chapters 2, 5)
-    both        the process on what the quadratic leaves
+    k(x, x') = l^2 (1 + x.x') + q^2 p(x).p(x') + m^2 Matern_5/2(x, x') + g^2 t t',
+    noise^2 = (c s)^2
 
-(y itself where a value is not positive.) Runs are left out in ``FOLDS`` parts, ``REPEATS`` times,
-and each form is fitted anew without them, hyperparameters and all; the form with the least squared
-error e of what was left out is taken, and
+p(x) are squares and products. t is 1 on a finer grid, which may lie anywhere above or below the
+coarse one and differ in form by little (after Kennedy and O'Hagan 2000). s is the numerical error
+that a run states (1 where none does), c how much of it differs from run to run: what a grid adds to
+all alike is no noise. Three forms:
+
+    quadratic   of ln y, without the Matern part
+    process     of y, without p
+    both        of ln y, all parts
+
+(y itself where a value is not positive.) Amplitudes, lengths and c are the most probable under the
+data and wide log-normal priors. Runs are left out in ``FOLDS`` parts, ``REPEATS`` times, all of one
+place together, and each form is fitted anew without them, hyperparameters and all; the form with
+the least squared error e of what was left out is taken, and
 
     Q2 = 1 - sum e^2 / sum (y - mean y)^2
 
-The deviation that a form states is multiplied by the factor with which 95 % of what was left out
-lies within 1.96 of it (conformal; Vovk 2015, Barber et al. 2021). Noise of the runs, fitted
-and not taken from their numerical error, is a part of each form and of its deviation.
+The deviation of a fresh run that a form states, its noise included, is multiplied by the factor
+with which 95 % of what was left out lies within 1.96 of it (conformal, with its correction for n
+runs: the quantile at 0.95 (1 + 1/n); Vovk 2015, Barber et al. 2021).
 """
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.optimize import minimize
+from scipy.spatial.distance import cdist
 
 from underfoot.case import unit_at
 from underfoot.core import DataError, RangeError, display
-from underfoot.core.arrays import Array
-from underfoot.core.optional import optional_module
+from underfoot.core.arrays import AnyArray, Array, Mask
 from underfoot.core.presentation import quantity_text
 from underfoot.core.threads import threads_limited
 
@@ -39,69 +50,234 @@ from .inputs import Choice, Distribution, Input
 
 FEWEST = 5
 """Runs for each input below which no surrogate is made."""
+MOST = 400
+"""Runs of a surrogate; of more it takes so many, evenly: its cost grows as their cube."""
 TRUSTED = 0.9
 """Q2 below which a surrogate is named with a caution."""
 FORMS = ("quadratic", "process", "both")
 FOLDS, REPEATS = 8, 2
 INSIDE, NORMAL = 0.95, 1.959964
 """Share of fresh runs within a band, and its half width in deviations."""
+AMPLITUDES = math.log(0.5), 1.0
+"""Mean and deviation of ln l, ln q and ln m, of standardised values (assumed)."""
+STATED, UNSTATED = (math.log(0.5), 1.0), (math.log(0.1), 1.5)
+"""The same of ln c, for errors that runs state and for runs that state none (assumed)."""
+LENGTHS = math.sqrt(2), math.sqrt(3)
+"""The same of the logarithm of a length; the mean grows by half of that of the number of features
+(Hvarfner, Hellsten and Nardi 2024)."""
+BETWEEN, FORM = 1.0, 0.1
+"""g, of standardised values, and the feature of a finer grid, whose range in another would be 1:
+what grids differ by changes over the box by a fifth of what the values do (assumed)."""
+SHORT = math.log(0.5)
+"""Logarithm of the lengths of a second start."""
+WIDEST = 4.0
+"""Deviations of its prior within which a hyperparameter is sought."""
+JITTER = 1e-8
+"""Variance of standardised values that keeps the covariance regular."""
 Dimension = Input | Distribution
 
 
 @dataclass(frozen=True, eq=False)
+class Runs:
+    """Runs of designs as a surrogate takes them.
+
+    Attributes:
+        points: (runs, inputs) places in the unit cube.
+        values: (runs,) the output, SI.
+        errors: (runs,) its numerical errors, nan where a run states none.
+        finer: (runs,) which are on the finer grid.
+    """
+
+    points: Array
+    values: Array
+    errors: Array
+    finer: Mask
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, which: AnyArray) -> Runs:
+        """Return some of the runs, by index or mask."""
+        return Runs(self.points[which], self.values[which], self.errors[which], self.finer[which])
+
+    @property
+    def deviations(self) -> Array:
+        """Values without the mean of those on the same grid."""
+        result = self.values.copy()
+        for grid in (self.finer, ~self.finer):
+            result[grid] -= result[grid].mean() if grid.any() else 0.0
+        return result
+
+
 class Model:
-    """A fitted form over features.
+    """A form fitted to runs.
+
+    Parameters:
+        form: One of ``FORMS``.
+        features: (runs, features) from 0 to 1.
+        theta: Hyperparameters to begin at; with ``fit`` False, to take.
 
     Attributes:
         logarithm: Whether it is of ln y; ``level`` and ``scale`` make y or ln y standard.
-        trend: The quadratic, or None. ``process``: the Gaussian process, or None.
+        theta: Logarithms of l, q, m, c and the length of each feature.
     """
 
-    form: str
-    logarithm: bool
-    level: float
-    scale: float
-    trend: Any
-    process: Any
-
-    @property
-    def theta(self) -> Array:
-        """Hyperparameters of the process, none of a quadratic."""
-        return np.empty(0) if self.process is None else np.asarray(self.process.kernel_.theta)
-
-    def predicted(self, features: Array) -> tuple[Array, Array]:
-        """Return mean and standard deviation (n,) of a run, SI."""
-        mean, variance = np.zeros(len(features)), np.zeros(len(features))
-        if self.trend is not None:
-            mean, deviation = self.trend.predict(_quadratic(features), return_std=True)
-            variance = deviation**2 - (self.process is not None) / self.trend.alpha_
-        if self.process is not None:
-            rest, deviation = self.process.predict(features, return_std=True)
-            mean, variance = mean + rest, variance + deviation**2
-        middle, deviation = self._in_si(mean), self.scale * np.sqrt(np.maximum(variance, 0.0))
-        return middle, middle * deviation if self.logarithm else deviation
+    def __init__(
+        self,
+        form: str,
+        features: Array,
+        runs: Runs,
+        theta: Array | None = None,
+        *,
+        fit: bool = True,
+    ) -> None:
+        values = runs.values
+        self.logarithm = form != "process" and bool((values > 0).all())
+        wanted = np.log(values) if self.logarithm else values
+        self.level, self.scale = float(wanted.mean()), float(wanted.std()) or 1.0
+        self.form, self.features = form, features
+        self.between = runs.finer.any() * (BETWEEN / FORM) ** 2
+        standard = (wanted - self.level) / self.scale
+        stated = runs.errors / (self.scale * (values if self.logarithm else 1.0))
+        known = bool((stated > 0).all())
+        variances, size = stated**2 if known else np.ones(len(values)), features.shape[1]
+        lengths = LENGTHS[0] + 0.5 * math.log(size), LENGTHS[1]
+        prior = np.array([*[AMPLITUDES] * 3, STATED if known else UNSTATED, *[lengths] * size])
+        if theta is None:
+            starts = [prior[:, 0], np.append(prior[:4, 0], np.full(size, SHORT))]
+        else:
+            starts = [theta]
+        self.theta = starts[0]
+        if fit:
+            grids = self.between * np.outer(features[:, -1], features[:, -1])
+            self.theta = _most_probable(form, features, standard, variances, grids, prior, starts)
+        noise = math.exp(2 * self.theta[3]) * variances
+        self.noise = float(noise.mean())
+        covariance = self._covariance(features, features) + np.diag(noise + JITTER)
+        self.factor = cholesky(covariance, lower=True)
+        self.weights = cho_solve((self.factor, True), standard)
 
     def mean(self, features: Array) -> Array:
-        """Return the mean (n,) alone, which costs a tenth."""
-        mean = np.zeros(len(features))
-        if self.trend is not None:
-            mean += self.trend.predict(_quadratic(features))
-        if self.process is not None:
-            mean += self.process.predict(features)
-        return self._in_si(mean)
+        """Return the mean (n,), SI."""
+        return self._in_si(self._covariance(features, self.features) @ self.weights)
+
+    def predicted(self, features: Array, *, noise: bool = True) -> tuple[Array, Array]:
+        """Return mean and standard deviation (n,), SI, of a run, or without its ``noise``."""
+        mean, variance = self._conditional(features, alone=True)
+        middle = self._in_si(mean)
+        deviation = self.scale * np.sqrt(np.maximum(variance, 0.0) + noise * self.noise)
+        return middle, middle * deviation if self.logarithm else deviation
+
+    def drawn(self, features: Array, normal: Array) -> Array:
+        """Return joint draws (draws, n) without noise, SI, of standard normal ones (draws, n)."""
+        mean, covariance = self._conditional(features, alone=False)
+        values, vectors = np.linalg.eigh(covariance)
+        return self._in_si(mean + normal * np.sqrt(np.maximum(values, 0.0)) @ vectors.T)
+
+    def _conditional(self, features: Array, *, alone: bool) -> tuple[Array, Array]:
+        """Return mean and covariance, standardised; ``alone`` its diagonal."""
+        across = self._covariance(features, self.features)
+        known = solve_triangular(self.factor, across.T, lower=True)
+        if alone:
+            rest = self._variance(features) - np.sum(known**2, axis=0)
+        else:
+            rest = self._covariance(features, features) - known.T @ known
+        return across @ self.weights, rest
+
+    def _covariance(self, first: Array, second: Array) -> Array:
+        linear, quadratic, matern = _amplitudes(self.form, self.theta)
+        lengths = np.exp(self.theta[4:])
+        apart: Any = cdist(first / lengths, second / lengths)
+        return (
+            linear * (1 + _centred(first) @ _centred(second).T)
+            + quadratic * _products(first) @ _products(second).T
+            + matern * _matern(math.sqrt(5) * apart)
+            + self.between * first[:, -1:] @ second[:, -1:].T
+        )
+
+    def _variance(self, features: Array) -> Array:
+        linear, quadratic, matern = _amplitudes(self.form, self.theta)
+        first, second = (np.sum(of(features) ** 2, axis=1) for of in (_centred, _products))
+        return (
+            linear * (1 + first) + quadratic * second + matern + self.between * features[:, -1] ** 2
+        )
 
     def _in_si(self, standard: Array) -> Array:
         value = self.level + self.scale * standard
         return np.exp(value) if self.logarithm else value
 
 
+def _most_probable(
+    form: str,
+    features: Array,
+    standard: Array,
+    variances: Array,
+    grids: Array,
+    prior: Array,
+    starts: Sequence[Array],
+) -> Array:
+    """Return the hyperparameters of the highest posterior density, from the best of some starts."""
+    linear = 1 + _centred(features) @ _centred(features).T
+    quadratic = _products(features) @ _products(features).T
+    apart = 5 * (features.T[:, :, None] - features.T[:, None, :]) ** 2
+    centre, width = prior.T
+
+    def lost(theta: Array) -> tuple[float, Array]:
+        """Return -ln p and its gradient."""
+        first, second, third = _amplitudes(form, theta)
+        scaled = apart * np.exp(-2 * theta[4:, None, None])
+        distance = np.sqrt(scaled.sum(axis=0))
+        matern, noise = third * _matern(distance), np.exp(2 * theta[3]) * variances
+        covariance = first * linear + second * quadratic + matern + grids
+        covariance.flat[:: len(standard) + 1] += noise + JITTER
+        factor = cholesky(covariance, lower=True)
+        weights = cho_solve((factor, True), standard)
+        inner = np.outer(weights, weights) - cho_solve((factor, True), np.eye(len(standard)))
+        slope = third / 6 * inner * (1 + distance) * np.exp(-distance)
+        gradient = [
+            first * np.sum(inner * linear),
+            second * np.sum(inner * quadratic),
+            np.sum(inner * matern),
+            np.diag(inner) @ noise,
+            *np.tensordot(scaled, slope, 2),
+        ]
+        z = (theta - centre) / width
+        value = 0.5 * (standard @ weights + z @ z) + np.log(np.diag(factor)).sum()
+        return float(value), z / width - np.array(gradient)
+
+    bounds = np.column_stack([centre - WIDEST * width, centre + WIDEST * width])
+    ends = [minimize(lost, start, jac=True, method="L-BFGS-B", bounds=bounds) for start in starts]
+    return min(ends, key=lambda end: end.fun).x
+
+
+def _amplitudes(form: str, theta: Array) -> Array:
+    """Return l^2, q^2, m^2 of a form."""
+    return np.exp(2 * theta[:3]) * [1.0, form != "process", form != "quadratic"]
+
+
+def _matern(distance: Array) -> Array:
+    """Return the correlation at distances in lengths times the root of 5."""
+    return (1 + distance + distance**2 / 3) * np.exp(-distance)
+
+
+def _centred(features: Array) -> Array:
+    return 2.0 * features - 1.0
+
+
+def _products(features: Array) -> Array:
+    """Return (n, terms) squares and products of the features from -1 to 1."""
+    centred = _centred(features)
+    first, second = np.triu_indices(centred.shape[1])
+    return centred[:, first] * centred[:, second]
+
+
 @dataclass(frozen=True, eq=False)
 class Surrogate:
-    """A fitted model of one output over the unit cube of the inputs.
+    """A fitted model of one output over the unit cube of the inputs, on the finest grid run.
 
     Attributes:
         name, unit: Of the output.
-        points: (runs, inputs) places of the runs in the unit cube; ``values`` (runs,) SI.
+        runs, model: What was fitted, and to which runs.
         q2: 1 - squared error of what was left out over the variance of the runs.
         error: Root mean square error of what was left out, SI.
         stretch: Factor of the deviation that the model states.
@@ -111,8 +287,7 @@ class Surrogate:
     name: str
     unit: str
     dimensions: tuple[Dimension, ...]
-    points: Array
-    values: Array
+    runs: Runs
     model: Model
     q2: float
     error: float
@@ -124,23 +299,31 @@ class Surrogate:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
         mark = "" if self.q2 >= TRUSTED else ", too rough to rank designs by"
-        runs = f"surrogate of {len(self.values)} designs ({self.model.form})"
+        runs = f"surrogate of {len(self.runs)} designs ({self.model.form})"
         return f"{runs}: Q2 {self.q2:.3f}, error {error} (runs left out){mark}"
 
-    def predicted(self, points: Array) -> tuple[Array, Array]:
+    def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
         """Return mean and standard deviation (n,) at places (n, inputs) of the unit cube, SI.
 
-        95 % of fresh runs lie within 1.96 of these deviations.
+        95 % of fresh runs lie within 1.96 of these deviations; without ``noise`` they are those of
+        what the runs scatter about.
 
         Raises:
             RangeError: A place outside the cube: there the surrogate knows nothing.
         """
-        mean, deviation = self.model.predicted(self._features(points))
+        mean, deviation = self.model.predicted(self._features(points), noise=noise)
         return mean, self.stretch * deviation
 
     def mean(self, points: Array) -> Array:
-        """Return the mean (n,) alone, which costs a tenth; otherwise as ``predicted``."""
+        """Return the mean (n,) alone, which costs less; otherwise as ``predicted``."""
         return self.model.mean(self._features(points))
+
+    def drawn(self, points: Array, normal: Array) -> Array:
+        """Return joint draws (draws, n) of what runs at places scatter about, SI.
+
+        Made of standard normal draws (draws, n).
+        """
+        return self.model.drawn(self._features(points), self.stretch * normal)
 
     def means_without(self, points: Array) -> list[Array]:
         """Return the mean (n,) of the surrogate without each part of the runs."""
@@ -159,17 +342,19 @@ class Surrogate:
                 allowed=" to ".join(_text(one, end) for end in (0.0, 1.0)),
                 remedy="Widen the range of the study and run it again, or run the case itself",
             )
-        return featured(self.dimensions, points)
+        return _features(self.dimensions, points, self.runs.finer.any() * np.ones(len(points)))
 
     def with_point(self, point: Array) -> Surrogate:
         """Return the surrogate that believes its own prediction at a further place."""
-        points = np.vstack([self.points, point])
-        values = np.append(self.values, self.mean(point))
-        return replace(self, points=points, values=values, model=self._again(points, values))
-
-    def _again(self, points: Array, values: Array) -> Model:
-        features = featured(self.dimensions, points)
-        return _model(self.model.form, features, values, self.model.theta, fit=False)
+        runs = Runs(
+            np.vstack([self.runs.points, point]),
+            np.append(self.runs.values, self.mean(point)),
+            np.append(self.runs.errors, self.runs.errors.mean()),
+            np.append(self.runs.finer, self.runs.finer.any()),
+        )
+        features = _features(self.dimensions, runs.points, runs.finer)
+        model = Model(self.model.form, features, runs, self.model.theta, fit=False)
+        return replace(self, runs=runs, model=model)
 
     def to_dict(self) -> dict[str, Any]:
         """Return data and hyperparameters as plain data."""
@@ -177,8 +362,10 @@ class Surrogate:
             "output": self.name,
             "unit": self.unit,
             "inputs": [one.path for one in self.dimensions],
-            "points": self.points.tolist(),
-            "values": self.values.tolist(),
+            "points": self.runs.points.tolist(),
+            "values": self.runs.values.tolist(),
+            "errors": [None if math.isnan(one) else one for one in self.runs.errors.tolist()],
+            "finer": self.runs.finer.tolist(),
             "form": self.model.form,
             "theta": self.model.theta.tolist(),
             "q2": self.q2,
@@ -189,102 +376,84 @@ class Surrogate:
     @classmethod
     def from_dict(cls, plain: Mapping[str, Any], dimensions: Sequence[Dimension]) -> Surrogate:
         """Return the surrogate of ``to_dict``; no hyperparameter is fitted anew."""
-        points, values = np.array(plain["points"]), np.array(plain["values"])
-        features = featured(dimensions, points)
-        model = _model(plain["form"], features, values, np.array(plain["theta"]), fit=False)
+        data = (np.array(plain[name], dtype=float) for name in ("points", "values", "errors"))
+        runs = Runs(*data, finer=np.array(plain["finer"], dtype=bool))
+        features = _features(dimensions, runs.points, runs.finer)
+        model = Model(plain["form"], features, runs, np.array(plain["theta"]), fit=False)
         numbers = (plain[name] for name in ("q2", "error", "stretch"))
-        return cls(
-            plain["output"], plain["unit"], tuple(dimensions), points, values, model, *numbers
-        )
+        return cls(plain["output"], plain["unit"], tuple(dimensions), runs, model, *numbers)
 
 
 @threads_limited(1)
 def fitted(
-    name: str, unit: str, dimensions: Sequence[Dimension], points: Array, values: Array
+    name: str,
+    unit: str,
+    dimensions: Sequence[Dimension],
+    points: Array,
+    values: Array,
+    errors: Array | None = None,
+    finer: Mask | None = None,
 ) -> Surrogate:
     """Return the surrogate of an output from runs at places of the unit cube.
+
+    Parameters:
+        errors: (runs,) numerical errors of the runs, SI, nan where one states none.
+        finer: (runs,) which are on the finer grid; the surrogate is then of that grid.
 
     Raises:
         DataError: Fewer than five usable runs an input.
     """
-    good = np.isfinite(values)
+    good = np.flatnonzero(np.isfinite(values))
     least = FEWEST * len(dimensions)
-    if np.count_nonzero(good) < least:
+    if len(good) < least:
         raise DataError(
-            f"{np.count_nonzero(good)} usable runs are too few for a surrogate of {name}",
+            f"{len(good)} usable runs are too few for a surrogate of {name}",
             allowed=f"at least {least} ({FEWEST} for each of {len(dimensions)} inputs)",
             remedy="Raise the budget of the study",
         )
-    points, values = points[good], values[good]
-    features = featured(dimensions, points)
-    made = {form: _model(form, features, values, None, fit=True) for form in FORMS}
-    left_out = {form: _left_out(made[form], features, values) for form in FORMS}
-    errors = {form: float(np.mean(one[0] ** 2)) for form, one in left_out.items()}
-    form = min(FORMS, key=errors.__getitem__)
+    if len(good) > MOST:
+        good = good[np.linspace(0, len(good) - 1, MOST).round().astype(int)]
+    errors = np.full(len(values), np.nan) if errors is None else errors
+    finer = np.zeros(len(values), dtype=bool) if finer is None else finer
+    runs = Runs(points, values, errors, finer)[good]
+    features = _features(dimensions, runs.points, runs.finer)
+    made = {form: Model(form, features, runs) for form in FORMS}
+    left_out = {form: _left_out(one, runs) for form, one in made.items()}
+    squares = {form: float(np.mean(one[0] ** 2)) for form, one in left_out.items()}
+    form = min(FORMS, key=squares.__getitem__)
     error, deviation, without = left_out[form]
-    spread = float(np.var(values))
-    q2 = 1.0 - errors[form] / spread if spread else 1.0
+    spread = float(np.mean(runs.deviations**2))
+    q2 = 1.0 - squares[form] / spread if spread else 1.0
     ratios = np.abs(error) / np.maximum(deviation, 1e-9 * (np.sqrt(spread) or 1.0))
-    stretch = float(np.quantile(ratios, INSIDE)) / NORMAL or 1.0
-    own = (made[form], q2, math.sqrt(errors[form]), stretch, tuple(without))
-    return Surrogate(name, unit, tuple(dimensions), points, values, *own)
+    share = min(INSIDE * (1 + 1 / len(runs)), 1.0)
+    stretch = float(np.quantile(ratios, share)) / NORMAL or 1.0
+    numbers = (q2, math.sqrt(squares[form]), stretch, tuple(without))
+    return Surrogate(name, unit, tuple(dimensions), runs, made[form], *numbers)
 
 
-def _left_out(made: Model, features: Array, values: Array) -> tuple[Array, Array, list[Model]]:
+def _left_out(made: Model, runs: Runs) -> tuple[Array, Array, list[Model]]:
     """Return error and stated deviation (repeats x runs,) of what was left out, and the models.
 
     The models are those of the first division into parts.
     """
-    errors, deviations, models = [], [], []
+    missed, deviations, models = [], [], []
+    _, place = np.unique(runs.points, axis=0, return_inverse=True)
     for repeat in range(REPEATS):
-        order = np.random.default_rng(repeat).permutation(len(values))
+        order = np.random.default_rng(repeat).permutation(place.max() + 1)
         for part in np.array_split(order, FOLDS):
-            rest = np.setdiff1d(order, part)
-            model = _model(made.form, features[rest], values[rest], made.theta, fit=True)
-            mean, deviation = model.predicted(features[part])
-            errors.append(values[part] - mean)
+            out = np.isin(place.ravel(), part)
+            model = Model(made.form, made.features[~out], runs[~out], made.theta)
+            mean, deviation = model.predicted(made.features[out])
+            missed.append(runs.values[out] - mean)
             deviations.append(deviation)
             models.append(model)
-    return np.concatenate(errors), np.concatenate(deviations), models[:FOLDS]
+    return np.concatenate(missed), np.concatenate(deviations), models[:FOLDS]
 
 
-def _model(form: str, features: Array, values: Array, theta: Array | None, *, fit: bool) -> Model:
-    """Return a form fitted to runs; with ``theta`` from there, or as it is unless ``fit``."""
-    logarithm = form != "process" and bool((values > 0).all())
-    wanted = np.log(values) if logarithm else values
-    level, scale = float(wanted.mean()), float(wanted.std()) or 1.0
-    standard, trend, process = (wanted - level) / scale, None, None
-    if form != "process":
-        linear = optional_module("sklearn.linear_model", "study", "A surrogate")
-        trend = linear.BayesianRidge().fit(_quadratic(features), standard)
-        standard = standard - trend.predict(_quadratic(features))
-    if form != "quadratic":
-        process = _process(features, standard, theta, fit=fit)
-    return Model(form, logarithm, level, scale, trend, process)
-
-
-def _process(features: Array, standard: Array, theta: Array | None, *, fit: bool) -> Any:
-    process = optional_module("sklearn.gaussian_process", "study", "A surrogate")
-    kernels = process.kernels
-    size, lengths = kernels.ConstantKernel(1.0, (1e-4, 1e3)), np.ones(features.shape[1])
-    kernel = (
-        size * kernels.Matern(lengths, (0.05, 50.0), nu=2.5)
-        + size * kernels.DotProduct(1.0, (1e-2, 1e2))
-        + kernels.WhiteKernel(1e-3, (1e-8, 1.0))
-    )
-    options: dict[str, Any] = {"n_restarts_optimizer": 3, "random_state": 0}
-    if theta is not None:
-        kernel, options = kernel.clone_with_theta(theta), {} if fit else {"optimizer": None}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # lengths at a bound: an input without effect
-        return process.GaussianProcessRegressor(kernel, **options).fit(features, standard)
-
-
-def _quadratic(features: Array) -> Array:
-    """Return (n, terms) of the features from -1 to 1, their squares and products."""
-    centred = 2.0 * features - 1.0
-    first, second = np.triu_indices(centred.shape[1])
-    return np.hstack([centred, centred[:, first] * centred[:, second]])
+def _features(dimensions: Sequence[Dimension], points: Array, finer: AnyArray) -> Array:
+    """Return the features of places, with a column for the grid where any is on the finer one."""
+    features = featured(dimensions, points)
+    return np.column_stack([features, FORM * finer]) if np.any(finer) else features
 
 
 def featured(dimensions: Sequence[Dimension], points: Array) -> Array:

@@ -78,7 +78,8 @@ def optimise(
         require: Requirements, as ``"cof > 0.16 in canola_oil"``.
         uncertain: Dotted path: distribution, as ``{"lognormal": 2.0, "factor": 1.3}``; goals are
             then taken over common draws of them.
-        budget: Full runs at most.
+        budget: Full runs at most, before the ten best designs and the case are run again on new
+            positions of the tread and the standard grid.
 
     Raises:
         CaseError: Everything that is wrong with what is asked.

@@ -38,7 +38,7 @@ METHOD = {
     "budget": (),
     "draws": (),
     "grid": ("quick", "standard"),
-    "front_grid": ("", "quick", "standard"),
+    "front_grid": ("", "none", "quick", "standard"),
 }
 WIDE = 0.3
 """Share of a value by which a new range goes to either side of it."""
@@ -198,7 +198,7 @@ class _Study:
         value, label = given.get(key, ""), self.text(f"studies.{key}")
         field: Any
         if options:
-            words = {each: self.text(f"studies.{key}_{each or 'none'}") for each in options}
+            words = {each: self.text(f"studies.{key}_{each or 'usual'}") for each in options}
             field = ui.select(words, value=value if value in options else options[0], label=label)
             field.props("options-dense")
         else:
