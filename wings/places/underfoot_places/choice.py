@@ -199,7 +199,11 @@ class Choice(Presentable):
             for each in sorted(self.shoes, key=lambda each: -each.best)
         ]
         heads = ("Shoe", "Best", f"Slips per {PER} and year", "95 % from", "to", "Price")
-        return Table("Shoes", (*heads, "Price a month", "Replace", "Reported"), rows)
+        heads = (*heads, "Price a month", "Replace", "Reported")
+        told = [i for i in range(len(heads)) if any(row[i] for row in rows)]
+        return Table(
+            "Shoes", tuple(heads[i] for i in told), [[row[i] for i in told] for row in rows]
+        )
 
     def tables(self) -> tuple[Table, ...]:
         """Return shoes, changes, measurements, where slips happen, friction."""
@@ -217,7 +221,7 @@ class Choice(Presentable):
             self.table(),
             Table(f"What a change leaves of the slips with {self.present}",
                   ("Change", "Slips left (95 %)"), levers),
-            Table("What one measurement would change",
+            Table("What one measurement would change of the shoe with the fewest slips on average",
                   ("Measurement", "Chance of another choice", "Slips saved by it"), measures),
             Table(f"Where the slips with {self.present} happen",
                   ("Floor and fluid", "Share"), where),
@@ -276,7 +280,7 @@ def _count(value: float) -> str:
 
 
 def _ratio(value: float) -> str:
-    """Return a ratio of slips; beyond a factor of 100 the tail of the slip model is all there is."""
+    """Return a ratio of slips; beyond a factor of 100 it is of the slip model's tails."""
     if value < 1 / MOST_RATIO:
         return f"below {1 / MOST_RATIO:g}"
     return f"above {MOST_RATIO:g}" if value > MOST_RATIO else f"{value:.2g}"
@@ -586,9 +590,12 @@ def _replaced(
     place: Place,
     joint: JointDraws,
 ) -> str:
-    """Return when the shoe slips twice as often as new, ln of slips even in time between."""
+    """Return when the shoe slips twice as often as new, ln of slips even in time between.
+
+    "" where no wear is given.
+    """
     if worn is None or shoe.months is None:
-        return "no wear rate given"
+        return ""
     new = _sum(_slips(place, joint, states[False]))
     growth = np.log(np.maximum(worn, 1e-300) / np.maximum(new, 1e-300))
     with np.errstate(divide="ignore"):

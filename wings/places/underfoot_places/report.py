@@ -9,7 +9,7 @@ import numpy as np
 from underfoot.report.dispatch import FigureMakers, figures
 from underfoot.report.html import new_figure
 
-from .choice import PER, Choice
+from .choice import LEAST, PER, Choice
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +26,7 @@ def slips_figure(choice: Choice) -> Figure:
     figure = new_figure(7.0, 1.2 + 0.45 * len(shoes))
     axes = figure.subplots()
     at = np.arange(len(shoes))
-    low, median, high = np.maximum(np.array([each.slips for each in shoes]).T, 1e-3)
+    low, median, high = np.maximum(np.array([each.slips for each in shoes]).T, LEAST)
     axes.hlines(at, low, high, color="C0", lw=2)
     axes.plot(median, at, "o", color="C0")
     axes.set_yticks(at, [f"{each.shoe.name} ({100 * each.best:.0f} %)" for each in shoes])
