@@ -49,6 +49,7 @@ PER = 100
 """Workers that slips are counted of."""
 DECIDED = 0.75
 """Chance of being best from which a shoe is called the best."""
+UNLIKELY = 0.05
 TWICE = 2.0
 """Slips of the worn shoe over those of the new one from which it is to be replaced."""
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
@@ -143,6 +144,8 @@ class Choice(Presentable):
                 f"Which of the {count} shoes is best can't be told: {first.shoe.name} is ahead "
                 f"with a chance of {probability_text(first.best)} ({rate})."
             ]
+        if unlikely := [each.shoe.name for each in self.shoes if each.best < UNLIKELY]:
+            lines.append(f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}.")
         told = [each for each in self.levers if each.left[2] < 1]
         if told:
             best = min(told, key=lambda each: each.left[1])

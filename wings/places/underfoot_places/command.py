@@ -71,7 +71,7 @@ def calibrate_machine(
     """Narrow the law of the pair by a machine's reading of the floor: PTV, ramp angle, DCOF.
 
     Every case on this floor, whatever its shoe, takes the file with friction.draws_file = "FILE";
-    risk, test, compare and calibrate pair then know the reading.
+    risk, test and compare then know the reading.
     """
     from underfoot.cli.options import loaded
     from underfoot.core import InputError
