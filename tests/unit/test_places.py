@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
+from underfoot.compute.run import run
 from underfoot.core import InputError, RangeError
 from underfoot.questions.method import method_name
 from underfoot_places.calibration import calibrated_floor
@@ -170,6 +171,16 @@ def test_the_treaded_heel_is_the_better_one_in_a_thick_fluid(choice):
     assert "treaded is best" in choice.headline()[0]
     # the fluid is on a tenth of the steps
     assert all(each.slips[2] <= 0.1 * 100 * choice.place.steps * 1.0001 for each in choice.shoes)
+
+
+def test_a_cell_is_the_whole_run_of_its_case(choice):
+    """The draws that every shoe shares spread as those of a run do, about the same COF."""
+    case = choice.place.case(choice.place.shoes[0], choice.place.floors[0], "glycerol_90pct")
+    whole = run(case, quick=True).scalars["cof"]
+    *_, low, median, high, film = next(row for row in choice.cofs if row[0] == "smooth")
+    assert median == pytest.approx(whole.value, rel=0.1)
+    assert (low, high) == pytest.approx(whole.interval, rel=0.25)
+    assert film > 0.5
 
 
 def test_slips_are_in_proportion_to_how_often_the_fluid_is_there(choice):

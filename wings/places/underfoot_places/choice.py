@@ -50,6 +50,7 @@ PER = 100
 DECIDED = 0.75
 """Chance of being best from which a shoe is called the best."""
 UNLIKELY = 0.05
+LESS_FLUID = "fluids half as often"
 TWICE = 2.0
 """Slips of the worn shoe over those of the new one from which it is to be replaced."""
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
@@ -145,16 +146,18 @@ class Choice(Presentable):
                 f"with a chance of {probability_text(first.best)} ({rate})."
             ]
         if unlikely := [each.shoe.name for each in self.shoes if each.best < UNLIKELY]:
-            lines.append(f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}.")
-        told = [each for each in self.levers if each.left[2] < 1]
+            lines.append(
+                f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
+            )
+        told = [each for each in self.levers if each.name != LESS_FLUID and each.left[2] < 1]
         if told:
             best = min(told, key=lambda each: each.left[1])
             lines.append(
-                f"Surest to help: {best.name}, which leaves {_share(best.left)} of the slips of "
+                f"Most is gained by {best.name}, which leaves {_share(best.left)} of the slips of "
                 "today."
             )
         else:
-            lines.append("No change of shoe, floor or cleaning is sure to leave fewer slips.")
+            lines.append("No other shoe or floor is sure to leave fewer slips; half the fluid is.")
         helpful = [each for each in self.measurements if each.changes >= 0.05]
         if helpful:
             one = helpful[0]
@@ -476,7 +479,7 @@ def chosen(
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
         levers.append(Lever(f"{other} for {present.name}", _left(rates[other], today)))
-    levers.append(Lever("fluids half as often", (0.5, 0.5, 0.5)))
+    levers.append(Lever(LESS_FLUID, (0.5, 0.5, 0.5)))
     new = _sum(_slips(place, joint, states[present.name][False]))
     fluids = dict.fromkeys(place.fluids(), 1.0)
     one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
@@ -605,7 +608,7 @@ def _replaced(
         months = np.where(growth > 0, shoe.months * math.log(TWICE) / growth, np.inf)
     low, median, _ = (float(x) for x in np.quantile(months, (0.025, 0.5, 0.975), method="nearest"))
     if median > shoe.months:
-        return f"after its {shoe.months:g} months"
+        return f"not within its {shoe.months:g} months"
     return f"after {median:.2g} months (95 %: from {low:.2g})"
 
 
