@@ -1,7 +1,7 @@
 """Pictures of the app and of the pages that commands write, for ``docs/images``.
 
 ``.venv/bin/python docs/screenshots.py`` makes them anew (some minutes), with names only those:
-``app``, ``measured``, ``place``, ``designer``, ``ergonomist``. Tutorials: the pages their blocks leave.
+``app``, ``measured``, ``place``, ``designer``, ``ergonomist``. Tutorials: pages of their blocks.
 Chromium is needed (``make chromium``).
 """
 
