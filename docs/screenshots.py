@@ -1,7 +1,7 @@
 """Pictures of the app and of the pages that commands write, for ``docs/images``.
 
 ``.venv/bin/python docs/screenshots.py`` makes them anew (some minutes), with names only those:
-``app``, ``measured``, ``designer``, ``ergonomist``. Tutorials: the pages that their blocks leave.
+``app``, ``measured``, ``place``, ``designer``, ``ergonomist``. Tutorials: pages of their blocks.
 Chromium is needed (``make chromium``).
 """
 
@@ -20,6 +20,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 
 from pages import ROOT, blocks_of, reader
 from web_app import begin, drawn, page_of, served
+
+from underfoot_places.choice import chosen
+from underfoot_places.place import read_place
 
 IMAGES = ROOT / "docs" / "images"
 
@@ -181,6 +184,15 @@ def page_picture(name: str, file: Path) -> None:
         store(name, page.screenshot())
 
 
+def place_picture() -> None:
+    """Choose a shoe for the hospital corridor of the examples."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "place"
+        file = ROOT / "examples" / "places" / "hospital_corridor.toml"
+        chosen(read_place(file)).report(out)
+        page_picture("place_hospital", out / "report.html")
+
+
 def tutorial_pictures(tutorial: str) -> None:
     """Run the blocks of a tutorial and look at each page as soon as it is there."""
     waiting = dict(PAGES[tutorial])
@@ -197,6 +209,6 @@ def tutorial_pictures(tutorial: str) -> None:
 
 
 if __name__ == "__main__":
-    of_the_app = {"app": app_pictures, "measured": measured_picture}
+    of_the_app = {"app": app_pictures, "measured": measured_picture, "place": place_picture}
     for wanted in sys.argv[1:] or [*of_the_app, *PAGES]:
         of_the_app[wanted]() if wanted in of_the_app else tutorial_pictures(wanted)

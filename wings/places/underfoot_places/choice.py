@@ -1,0 +1,673 @@
+"""Which shoe for a place: slips of every shoe over its floors, fluids and people, in joint draws.
+
+A step of a person who needs the friction r on a floor of slope alpha slips with
+
+    P = logistic(k (A - r' + c)),   r' = tan(alpha + atan r)
+
+(``underfoot.slip``), A the available friction of shoe, floor and fluid. Its median is that of the
+solved case; its draws are the law's, with the load on the film off by the model's error:
+
+    A = g mu_c (1 - phi) exp(t) + A_v phi / phi_0
+
+g what lugs and pressure make of the law's contact friction mu_c, phi the film's share of the load,
+t the error of the tread model. Slips a year are steps times the mean of P over floors (by area),
+fluids (by share of the steps) and tasks. k and c are drawn as far as publications differ. Steps on
+a dry floor count as safe: the law's dry friction has an interval too wide to say more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.special import expit
+
+from underfoot.compute.contact_friction import place_of_tread, sole_errors
+from underfoot.compute.continuation import Continuation
+from underfoot.compute.resolve import resolved
+from underfoot.compute.sole import sole_map
+from underfoot.core import ConvergenceError, InputError, Progress, silent
+from underfoot.core.arrays import Array
+from underfoot.core.presentation import Presentable, Table, probability_text
+from underfoot.friction import PairContactLaw
+from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms
+from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
+from underfoot.friction.tread_error import tread_error
+
+from .joint import JointDraws, Reading, interval
+from .machines import FLUIDS, Machine, machines
+from .place import Place, PlaceFloor, PlaceShoe, same_shoe
+
+SLOPE, HALF = (math.log(48.0), 0.2), (-0.085, 0.05)
+"""ln of minus the slope, and ACOF - RCOF at even odds, each with its spread between publications
+(report, G.6.3: -41.2 to -54.7; -0.06 and -0.11)."""
+NODES, NODE_WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
+PER = 100
+"""Workers that slips are counted of."""
+DECIDED = 0.75
+"""Chance of being best from which a shoe is called the best."""
+UNLIKELY = 0.05
+LESS_FLUID = "fluids half as often"
+TWICE = 2.0
+"""Slips of the worn shoe over those of the new one from which it is to be replaced."""
+ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
+"""The floor that a change of floors is computed with: clay quarry tile of the catalogue."""
+BINS = 10
+LEAST, MOST_RATIO = 0.01, 100.0
+"""Slips below which, and ratio of slips beyond which, no number is printed."""
+CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A shoe on a floor under a fluid: draws (count,) of the available friction."""
+
+    acof: Array
+    solved: float
+    film_share: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShoeAnswer:
+    """What is said of a shoe: slips per 100 workers and year, and the chance that it is best.
+
+    ``reported`` are the slips that people will report, where those of today are given and reports
+    go with slips.
+    """
+
+    shoe: PlaceShoe
+    slips: tuple[float, float, float]
+    best: float
+    replaced: str
+    reported: str
+
+
+@dataclass(frozen=True, slots=True)
+class Lever:
+    """A change: slips that are left of those of today, median and 95 %."""
+
+    name: str
+    left: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """A measurement that could be made: chance that the choice changes, slips that this saves."""
+
+    name: str
+    changes: float
+    saves: float
+
+
+@dataclass(frozen=True, slots=True)
+class Choice(Presentable):
+    """Which shoe suits a place, how sure that is, and what else would help."""
+
+    kind: ClassVar[str] = "choice"
+
+    place: Place
+    shoes: tuple[ShoeAnswer, ...]
+    levers: tuple[Lever, ...]
+    measurements: tuple[Measurement, ...]
+    sources: tuple[tuple[str, float], ...]
+    cofs: tuple[tuple[str, str, str, float, float, float, float], ...]
+    present: str
+    effective: float
+    floors_before_after: tuple[tuple[str, str, str], ...] = ()
+
+    def heading(self) -> str:
+        """Return the title."""
+        return f"Which shoe: {self.place.name}"
+
+    @property
+    def first(self) -> ShoeAnswer:
+        """The shoe with the highest chance of being best."""
+        return max(self.shoes, key=lambda each: each.best)
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the answer, or that there is none."""
+        first, count = self.first, len(self.shoes)
+        low, median, high = first.slips
+        rate = f"{_count(median)} slips per {PER} workers and year (95 %: {_count(low)} to "
+        rate += f"{_count(high)})"
+        if count == 1:
+            lines = [f"{first.shoe.name}: {rate}."]
+        elif first.best >= DECIDED:
+            lines = [
+                f"{first.shoe.name} is best with a chance of {probability_text(first.best)}: "
+                f"{rate}."
+            ]
+        else:
+            lines = [
+                f"Which of the {count} shoes is best can't be told: {first.shoe.name} is ahead "
+                f"with a chance of {probability_text(first.best)} ({rate})."
+            ]
+        if unlikely := [each.shoe.name for each in self.shoes if each.best < UNLIKELY]:
+            lines.append(
+                f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
+            )
+        told = [each for each in self.levers if each.name != LESS_FLUID and each.left[2] < 1]
+        if told:
+            best = min(told, key=lambda each: each.left[1])
+            lines.append(
+                f"Most is gained by {best.name}, which leaves {_share(best.left)} of the slips of "
+                "today."
+            )
+        else:
+            lines.append("No other shoe or floor is sure to leave fewer slips; half the fluid is.")
+        helpful = [each for each in self.measurements if each.changes >= 0.05]
+        if helpful:
+            one = helpful[0]
+            lines.append(
+                f"Measure first: {one.name}; it changes the choice with a chance of "
+                f"{probability_text(one.changes)}."
+            )
+        return tuple(lines)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what the numbers are not."""
+        lines = [
+            "A slip is a heel faster than 0.2 m/s of people who walk as if no fluid were there: "
+            "many more than people report. Compare shoes by their ratio, not reports with the "
+            "count. Steps on dry floors count as safe.",
+        ]
+        twins = [
+            f"{one.shoe.name} and {two.shoe.name}"
+            for number, one in enumerate(self.shoes)
+            for two in self.shoes[number + 1 :]
+            if same_shoe(one.shoe, two.shoe)
+        ]
+        if twins:
+            lines.append(f"The same shoe twice, which shares its chance: {'; '.join(twins)}.")
+        for floor in self.place.floors:
+            if not floor.known:
+                lines.append(
+                    f"{floor.name} has neither roughness nor reading: it was drawn over all usual "
+                    "floors."
+                )
+        return tuple(lines)
+
+    def table(self) -> Table:
+        """Return the shoes, the likeliest best first."""
+        rows = [
+            (
+                each.shoe.name,
+                probability_text(each.best),
+                *(_count(x) for x in (each.slips[1], each.slips[0], each.slips[2])),
+                "" if each.shoe.price is None else f"{each.shoe.price:g}",
+                _monthly(each.shoe),
+                each.replaced,
+                each.reported,
+            )
+            for each in sorted(self.shoes, key=lambda each: -each.best)
+        ]
+        heads = ("Shoe", "Best", f"Slips per {PER} and year", "95 % from", "to", "Price")
+        heads = (*heads, "Price a month", "Replace", "Reported")
+        told = [i for i in range(len(heads)) if any(row[i] for row in rows)]
+        return Table(
+            "Shoes", tuple(heads[i] for i in told), [[row[i] for i in told] for row in rows]
+        )
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return shoes, changes, measurements, where slips happen, friction."""
+        levers = [(one.name, _share(one.left)) for one in self.levers]
+        measures = [
+            (one.name, probability_text(one.changes), _count(one.saves))
+            for one in self.measurements
+        ]
+        where = [(name, probability_text(share)) for name, share in self.sources]
+        cofs = [
+            (*names, f"{median:.2f}", f"{low:.2f} to {high:.2f}", probability_text(film))
+            for *names, low, median, high, film in self.cofs
+        ]
+        tables = [
+            self.table(),
+            Table(f"What a change leaves of the slips with {self.present}",
+                  ("Change", "Slips left (95 %)"), levers),
+            Table("What one measurement would change of the shoe with the fewest slips on average",
+                  ("Measurement", "Chance of another choice", "Slips saved by it"), measures),
+            Table(f"Where the slips with {self.present} happen",
+                  ("Floor and fluid", "Share"), where),
+            Table("Available friction",
+                  ("Shoe", "Floor", "Fluid", "Median", "95 %", "Load on film"), cofs),
+        ]  # fmt: skip
+        if self.floors_before_after:
+            heads = ("Floor", "Rq before, um", "after its readings, um")
+            tables.append(Table("Floors", heads, self.floors_before_after))
+        return tuple(table for table in tables if table.rows)
+
+    def remarks(self) -> Mapping[str, Sequence[str]]:
+        """Return what was assumed."""
+        used = {each.machine.name for floor in self.place.floors for each in floor.readings}
+        notes = [f"{machines()[name].title}: {machines()[name].source}" for name in sorted(used)]
+        memory = [
+            f"{machines()[name].title}, from memory: {'; '.join(machines()[name].memory)}"
+            for name in sorted(used)
+        ]
+        return {
+            "Assumed": (
+                *self.place.assumed,
+                f"Readings leave {self.effective:.0f} of the draws",
+                "Shoes are worn evenly over their months; half of them are new on the mean day",
+            ),
+            "Machines": (*notes, *memory),
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {
+            "kind": self.kind,
+            "name": self.place.name,
+            "shoes": [
+                {
+                    "name": each.shoe.name,
+                    "chance_best": each.best,
+                    "slips_per_100_and_year": each.slips[1],
+                    "interval_95": [each.slips[0], each.slips[2]],
+                    "replace": each.replaced,
+                }
+                for each in self.shoes
+            ],
+            "changes": [{"name": one.name, "left": list(one.left)} for one in self.levers],
+            "measurements": [
+                {"name": one.name, "changes": one.changes, "saves": one.saves}
+                for one in self.measurements
+            ],
+        }
+
+
+def _count(value: float) -> str:
+    if value < LEAST:
+        return f"below {LEAST:g}"
+    return f"{value:.2g}" if value < 10 else f"{float(f'{value:.2g}'):,.0f}"
+
+
+def _ratio(value: float) -> str:
+    """Return a ratio of slips; beyond a factor of 100 it is of the slip model's tails."""
+    if value < 1 / MOST_RATIO:
+        return f"below {1 / MOST_RATIO:g}"
+    return f"above {MOST_RATIO:g}" if value > MOST_RATIO else f"{value:.2g}"
+
+
+def _share(left: tuple[float, float, float]) -> str:
+    low, median, high = map(_ratio, left)
+    return median if low == high else f"{median} ({low} to {high})"
+
+
+def _monthly(shoe: PlaceShoe) -> str:
+    return "" if not shoe.price or not shoe.months else f"{shoe.price / shoe.months:.2g}"
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """Cells of a place: one march a sole, continued to every floor and fluid."""
+
+    place: Place
+    joint: JointDraws
+    quick: bool
+
+    def cells(
+        self, shoe: PlaceShoe, floors: Sequence[PlaceFloor], worn: bool
+    ) -> dict[tuple[str, str], Cell]:
+        """Return the cell of each floor and fluid, by their names."""
+        wanted = [(floor, fluid) for floor in floors for fluid in floor.fluids if fluid != "dry"]
+        cases = [self.place.case(shoe, floor, fluid, worn) for floor, fluid in wanted]
+        # a thick film is where continuation begins from best
+        order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
+        march = Continuation(cases[order[0]], quick=self.quick)
+        found = {}
+        for number in order:
+            case, (floor, fluid) = cases[number], wanted[number]
+            if number == order[0]:
+                values = march.values
+            else:
+                changes = {
+                    "floor": dict(floor.section), "contaminant": fluid
+                }  # fmt: skip
+                try:
+                    values = march.continued(changes).values
+                except (InputError, ConvergenceError):
+                    values = Continuation(case, quick=self.quick).values
+            found[floor.name, fluid] = self._cell(case, values, shoe, floor)
+        return found
+
+    def _cell(
+        self, case: Any, values: Mapping[str, float], shoe: PlaceShoe, floor: PlaceFloor
+    ) -> Cell:
+        context = resolved(case)
+        law = case.friction.build(context)
+        assert isinstance(law, PairContactLaw)
+        joint, viscosity = self.joint, law.viscosity
+        drag = None if viscosity is None else viscosity * case.motion.speed
+        film = 0.0
+        if viscosity is not None:
+            film = float(np.clip(values["fluid_load"] / case.motion.normal_force, 0.0, 0.999))
+        viscous = max(values["cof_viscous"], 0.0) if film else 0.0
+        terms = ContactTerms(*(np.asarray(law.medians[name]) for name in TERMS))
+        reference = float(terms.adhesion(CONTACT_PRESSURE, drag) + terms.hysteresis)
+        solved = max(values["cof"], 1e-4)
+        factor = max(solved - viscous, 1e-4) / (1 - film) / reference
+        mu = joint.contact_cof(
+            law.pair, laboratory="the place", floor=floor.name, sole=shoe_name(shoe),
+            pressure=CONTACT_PRESSURE, drag=drag,
+        )  # fmt: skip
+        place = place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
+        errors = {
+            name: joint.error(error, place) for name, error in sole_errors(case, context).items()
+        }
+        share = np.zeros(joint.count)
+        if film > 0:
+            share = expit(math.log(film / (1 - film)) + errors["film_error"])
+        acof = factor * mu * (1 - share) * np.exp(errors["tread_error"])
+        if film > 0:
+            acof = acof + viscous * share / film
+        return Cell(np.clip(acof, 0.0, law.highest), solved, film)
+
+
+def shoe_name(shoe: PlaceShoe) -> str:
+    """Return the name of a sole's errors: the same sole twice has the same."""
+    return repr((sorted(shoe.section.items()), shoe.known_class, shoe.readings))
+
+
+def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: JointDraws) -> Array:
+    """Return the share (count,) of steps that slip.
+
+    Parameters:
+        acof: Draws (count,) of the available friction.
+        rcof, sd: Required friction on the level, mean and standard deviation between people.
+        slope: Of the floor, rad; the friction that a step needs there is tan(slope + atan r).
+    """
+    k = np.exp(SLOPE[0] + SLOPE[1] * joint.normal("slope of the slip model"))
+    half = HALF[0] + HALF[1] * joint.normal("even odds of the slip model")
+    share = np.zeros(joint.count)
+    for node, weight in zip(NODES, NODE_WEIGHTS / NODE_WEIGHTS.sum(), strict=True):
+        needed = np.tan(slope + np.arctan(max(rcof + sd * node, 0.0)))
+        share += weight * expit(-k * (acof - needed - half))
+    return share
+
+
+def test_cof(
+    joint: JointDraws, case: Any, law: PairContactLaw, shoe: PlaceShoe, test: SlipTest
+) -> Array:
+    """Return draws (count,) of the COF that a test house reads of the new sole of a case."""
+    pair = replace(law.pair, floor_rq=test.floor_rq, family=test.family, floor_slope=None)
+    cof = joint.contact_cof(
+        pair, laboratory=f"test house of {shoe.name}", floor=test.name, sole=shoe_name(shoe),
+        pressure=CONTACT_PRESSURE, drag=test.viscosity * SPEED,
+    )  # fmt: skip
+    place = place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
+    return cof * np.exp(joint.error(tread_error(test.viscosity), place))
+
+
+test_cof.__test__ = False  # type: ignore[attr-defined]
+
+
+def chosen(
+    place: Place, *, seed: int = 0, quick: bool = True, progress: Progress = silent
+) -> Choice:
+    """Return which shoe suits a place.
+
+    Parameters:
+        place: As its file describes it.
+        seed: Of the draws.
+        quick: Solve on the coarse grid.
+
+    Raises:
+        InputError: A case that cannot be; readings that contradict each other.
+    """
+    joint = JointDraws(seed=seed)
+    solver = _Solver(place, joint, quick)
+    new_cases = {shoe.name: place.case(shoe, place.floors[0], "water") for shoe in place.shoes}
+    floor_rq = {
+        floor.name: _law(place.case(place.shoes[0], floor, "water")).pair.floor_rq
+        for floor in place.floors
+    }
+    before = {name: interval(joint.between(f"roughness of floor {name}", rq))
+              for name, rq in floor_rq.items()}  # fmt: skip
+    _learn(place, joint, floor_rq, new_cases)
+    shares: dict[str, dict[tuple[str, str], Array]] = {}
+    worn_rate: dict[str, Array] = {}
+    cofs = []
+    present = next((shoe for shoe in place.shoes if shoe.present), place.shoes[0])
+    count = 1 + sum(1 + (shoe.wear_depth > 0) for shoe in place.shoes)
+    done = 0
+
+    def step(what: str) -> None:
+        nonlocal done
+        progress(what, done / count)
+        done += 1
+
+    states: dict[str, dict[bool, dict[tuple[str, str], Cell]]] = {}
+    for shoe in place.shoes:
+        states[shoe.name] = {}
+        for worn in (False, True) if shoe.wear_depth > 0 else (False,):
+            step(f"{shoe.name}{', worn' if worn else ''}")
+            states[shoe.name][worn] = solver.cells(shoe, place.floors, worn)
+        new = states[shoe.name][False]
+        shares[shoe.name] = _slips(place, joint, new)
+        for (floor_named, fluid), cell in new.items():
+            ends = interval(cell.acof)
+            cofs.append((shoe.name, floor_named, fluid, *ends, cell.film_share))
+        if True in states[shoe.name]:
+            worn_slips = _slips(place, joint, states[shoe.name][True])
+            worn_rate[shoe.name] = _sum(worn_slips)
+            shares[shoe.name] = {
+                key: 0.5 * (value + worn_slips[key]) for key, value in shares[shoe.name].items()
+            }
+    rates = {name: _sum(each) for name, each in shares.items()}
+    per_year = PER * place.steps
+    matrix = np.array([rates[shoe.name] for shoe in place.shoes])
+    lowest = matrix <= matrix.min(axis=0) * (1 + 1e-9)
+    best = (lowest / lowest.sum(axis=0)).mean(axis=1)
+    answers = tuple(
+        ShoeAnswer(
+            shoe,
+            interval(per_year * rates[shoe.name]),
+            float(chance),
+            _replaced(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
+            _reported(place, rates[shoe.name], rates[present.name]),
+        )
+        for shoe, chance in zip(place.shoes, best, strict=True)
+    )
+    step("another floor")
+    today = rates[present.name]
+    levers = []
+    others = [each for each in answers if each.shoe.name != present.name]
+    if others:
+        other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
+        levers.append(Lever(f"{other} for {present.name}", _left(rates[other], today)))
+    levers.append(Lever(LESS_FLUID, (0.5, 0.5, 0.5)))
+    new = _sum(_slips(place, joint, states[present.name][False]))
+    fluids = dict.fromkeys(place.fluids(), 1.0)
+    one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
+    cells = solver.cells(present, [one], False)
+    tiled = {
+        (floor.name, fluid): cells[one.name, fluid]
+        for floor in place.floors
+        for fluid in floor.fluids
+        if fluid != "dry"
+    }
+    rougher = _sum(_slips(place, joint, tiled))
+    levers.append(Lever("floors of clay quarry tile (Rq 9 um)", _left(rougher, new)))
+    measurements = _measurements(place, joint, floor_rq, new_cases, matrix * per_year)
+    mean = {key: float(value.mean()) for key, value in shares[present.name].items()}
+    total = sum(mean.values())
+    sources = tuple(
+        (f"{floor}, {fluid}", value / total)
+        for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
+    )
+    return Choice(
+        place, answers, tuple(levers), measurements, sources, tuple(cofs), present.name,
+        joint.fewest, _floors(place, joint, floor_rq, before),
+    )  # fmt: skip
+
+
+def _law(case: Any) -> PairContactLaw:
+    law = case.friction.build(resolved(case))
+    assert isinstance(law, PairContactLaw)
+    return law
+
+
+def _learn(
+    place: Place,
+    joint: JointDraws,
+    floor_rq: Mapping[str, tuple[float, float]],
+    cases: Mapping[str, Any],
+) -> None:
+    """Teach the draws every reading of floors and shoes, in the order of names."""
+    used = {each.machine.offset: each.machine for f in place.floors for each in f.readings}
+    for name in sorted(used):
+        used[name].learn_anchors(joint)
+    for floor in sorted(place.floors, key=lambda each: each.name):
+        for one in floor.readings:
+            log = one.machine.log_likelihood(
+                joint, floor.name, floor_rq[floor.name], one.fluid, one.value,
+                kind=one.kind, sd=one.sd,
+            )  # fmt: skip
+            joint.learn(log, f"floor {floor.name}")
+    learned = []
+    for shoe in sorted(place.shoes, key=lambda each: each.name):
+        if any(same_shoe(shoe, other) for other in learned):
+            continue
+        learned.append(shoe)
+        case = cases[shoe.name]
+        law = _law(case)
+        for one in shoe.readings:
+            cof = test_cof(joint, case, law, shoe, slip_tests()[one.test])
+            joint.learn(joint.log_likelihood(cof, one.reading), f"shoe {shoe.name}")
+        known = shoe.known_class
+        if known is not None:
+            passed = np.zeros(joint.count)
+            for one in known.readings:
+                cof = test_cof(joint, case, law, shoe, one.test)
+                passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
+            log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
+            joint.learn(log, f"shoe {shoe.name}, class {known.name}")
+
+
+def _slips(
+    place: Place, joint: JointDraws, cells: Mapping[tuple[str, str], Cell]
+) -> dict[tuple[str, str], Array]:
+    """Return the share of all steps that slip on each floor under each fluid, (count,)."""
+    shares = {}
+    for floor in place.floors:
+        for fluid, often in floor.fluids.items():
+            if fluid == "dry":
+                continue
+            at, steps = cells[floor.name, fluid].acof, floor.share * often
+            shares[floor.name, fluid] = sum(
+                steps * task.share * slip_share(at, task.rcof, place.rcof_sd, floor.slope, joint)
+                for task in place.tasks
+            )
+    return shares
+
+
+def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
+    # in the order of names: the sum does not hang on the order of floors in the file
+    return np.sum([shares[key] for key in sorted(shares)], axis=0)
+
+
+def _left(after: Array, before: Array) -> tuple[float, float, float]:
+    return interval(after / np.maximum(before, 1e-300))
+
+
+def _reported(place: Place, after: Array, today: Array) -> str:
+    if place.reported is None:
+        return ""
+    ends = (1 / MOST_RATIO, MOST_RATIO)
+    low, median, high = np.clip(_left(after, today), *ends)
+    texts = (
+        f"below {_count(place.reported * low)}" if low == ends[0] else _count(place.reported * low),
+        f"above {_count(place.reported * high)}"
+        if high == ends[1]
+        else _count(place.reported * high),
+    )
+    middle = _count(place.reported * median)
+    return middle if low == high else f"{middle} ({texts[0]} to {texts[1]})"
+
+
+def _replaced(
+    shoe: PlaceShoe,
+    states: Mapping[bool, Mapping[tuple[str, str], Cell]],
+    worn: Array | None,
+    place: Place,
+    joint: JointDraws,
+) -> str:
+    """Return when the shoe slips twice as often as new, ln of slips even in time between.
+
+    "" where no wear is given.
+    """
+    if worn is None or shoe.months is None:
+        return ""
+    new = _sum(_slips(place, joint, states[False]))
+    growth = np.log(np.maximum(worn, 1e-300) / np.maximum(new, 1e-300))
+    with np.errstate(divide="ignore"):
+        months = np.where(growth > 0, shoe.months * math.log(TWICE) / growth, np.inf)
+    low, median, _ = (float(x) for x in np.quantile(months, (0.025, 0.5, 0.975), method="nearest"))
+    if median > shoe.months:
+        return f"not within its {shoe.months:g} months"
+    return f"after {median:.2g} months (95 %: from {low:.2g})"
+
+
+def _measurements(
+    place: Place,
+    joint: JointDraws,
+    floor_rq: Mapping[str, tuple[float, float]],
+    cases: Mapping[str, Any],
+    slips: Array,
+) -> tuple[Measurement, ...]:
+    """Return what each reading that was not made would change, the most first."""
+    if len(slips) < 2:
+        return ()
+    now, found = int(np.argmin(slips.mean(axis=1))), []
+    device: Machine = machines()[CHECKED[0][0]]
+    readings = [
+        (f"{CHECKED[0][1]} {f.name}",
+         device.cof(joint, f.name, floor_rq[f.name], FLUIDS[device.fluids[0]]))
+        for f in place.floors if not f.readings
+    ]  # fmt: skip
+    test = slip_tests()[CHECKED[1][0]]
+    readings += [
+        (f"{CHECKED[1][1]} {shoe.name}",
+         test_cof(joint, cases[shoe.name], _law(cases[shoe.name]), shoe, test))
+        for shoe in place.shoes if not shoe.readings
+    ]  # fmt: skip
+    for name, cof in readings:
+        noise = joint.normal(f"reading: {name}") * np.hypot(0.1, joint.constants.sd_reading)
+        read = np.log(np.maximum(cof, 1e-6)) + noise
+        edges = np.quantile(read, np.linspace(0, 1, BINS + 1)[1:-1])
+        bins = np.searchsorted(edges, read)
+        changes = saved = 0.0
+        for number in range(BINS):
+            here = (bins == number) / joint.count
+            inside = slips @ here
+            other = int(np.argmin(inside))
+            if inside[other] < inside[now] * (1 - 1e-9):
+                changes += float(here.sum())
+                saved += float(inside[now] - inside[other])
+        found.append(Measurement(name, changes, saved))
+    return tuple(sorted(found, key=lambda one: (-one.saves, one.name)))
+
+
+def _floors(
+    place: Place,
+    joint: JointDraws,
+    floor_rq: Mapping[str, tuple[float, float]],
+    before: Mapping[str, tuple[float, float, float]],
+) -> tuple[tuple[str, str, str], ...]:
+    """Return the roughness of each floor with readings, before and after them."""
+    rows = []
+    for floor in place.floors:
+        if floor.readings:
+            after = interval(
+                joint.between(f"roughness of floor {floor.name}", floor_rq[floor.name])
+            )
+            texts = [
+                "{1:.2g} ({0:.2g} to {2:.2g})".format(*(1e6 * x for x in each))
+                for each in (before[floor.name], after)
+            ]
+            rows.append((floor.name, *texts))
+    return tuple(rows)

@@ -1,0 +1,368 @@
+"""A place as its file describes it: floors, fluids, shoes and people."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from underfoot.case import Case
+from underfoot.core import InputError, RangeError, nearest_match, to_si, unknown_name
+from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
+
+from .joint import Reading
+from .machines import RZ_OVER_RQ, RZ_SPREAD, Fluid, Machine, machine, machine_fluid
+
+STEEPEST_SLOPE = math.radians(15.0)
+"""Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
+MOTION = "whole_shoe_g6"
+"""The setting of the slip tester whose friction the slip model was fitted to."""
+KEYS = {
+    "": ("name", "people", "fluids", "floor", "shoe"),
+    "people": ("rcof_mean", "rcof_sd", "steps_per_day", "days_per_year", "task", "reported_slips"),
+    "people.task": ("name", "share", "rcof"),
+    "floor": ("name", "from", "area", "slope", "rz", "roughness", "fluids", "reading"),
+    "floor.reading": ("machine", "value", "kind", "sd", "fluid"),
+    "shoe": (
+        "name", "from", "class", "present", "price", "months", "wear_per_month", "reading",
+        "material", "roughness", "heel", "tread", "sole", "outsole", "wear",
+    ),
+    "shoe.reading": ("test", "cof", "kind", "sd"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class FloorReading:
+    """What a machine read on a floor."""
+
+    machine: Machine
+    fluid: Fluid
+    value: float
+    kind: str
+    sd: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ShoeReading:
+    """COF of a sole in one of the tests of certificates."""
+
+    test: str
+    reading: Reading
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceFloor:
+    """A floor: ``share`` of the steps, slope in rad, share of the steps under each fluid."""
+
+    name: str
+    section: Mapping[str, Any]
+    share: float
+    slope: float
+    known: bool
+    fluids: Mapping[str, float]
+    readings: tuple[FloorReading, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceShoe:
+    """A shoe; ``wear_depth`` (m) is worn off when it is replaced after ``months``."""
+
+    name: str
+    section: Mapping[str, Any]
+    present: bool
+    price: float | None
+    months: float | None
+    wear_depth: float
+    known_class: ShoeClass | None
+    readings: tuple[ShoeReading, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What people do: share of the steps, and the mean friction it needs."""
+
+    name: str
+    share: float
+    rcof: float
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place with everything that the choice depends on.
+
+    ``steps`` of a worker in a year; ``reported`` slips per 100 workers and year of today.
+    """
+
+    name: str
+    floors: tuple[PlaceFloor, ...]
+    shoes: tuple[PlaceShoe, ...]
+    tasks: tuple[Task, ...]
+    rcof_sd: float
+    steps: float
+    assumed: tuple[str, ...]
+    reported: float | None = None
+
+    def fluids(self) -> tuple[str, ...]:
+        """Return every fluid of the place once, in alphabetical order."""
+        return tuple(sorted({fluid for floor in self.floors for fluid in floor.fluids} - {"dry"}))
+
+    def case(self, shoe: PlaceShoe, floor: PlaceFloor, fluid: str, worn: bool = False) -> Case:
+        """Return the case of a shoe on a floor under a fluid, as the slip tester slides it."""
+        section = dict(shoe.section)
+        if worn:
+            section["wear"] = {"depth": f"{1e3 * shoe.wear_depth:.6g} mm", "angle": "7 deg"}
+        return Case.from_mapping(
+            {
+                "name": f"{shoe.name} on {floor.name}, {fluid}",
+                "shoe": section,
+                "floor": dict(floor.section),
+                "contaminant": fluid,
+                "motion": MOTION,
+                "friction": {"model": "pair"},
+                "numerics": {"tread_positions": 1},
+            }
+        )
+
+
+def read_place(path: Path) -> Place:
+    """Return the place of a file.
+
+    Raises:
+        InputError: No such file; an unknown key; shares that do not add to 1; a floor, shoe or
+            reading that cannot be.
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError:
+        near = nearest_match(path.name, [file.name for file in path.parent.glob("*.toml")])
+        raise InputError(f"there is no file {path}", where="PLACE", nearest=near) from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path.name} can't be read ({error})", where="PLACE") from error
+    return place_of(table, name=path.stem)
+
+
+def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
+    """Return the place of the contents of a file; raises as ``read_place``."""
+    _check_keys(table, "", "")
+    assumed: list[str] = []
+    common = _shares(table.get("fluids"), "fluids") if "fluids" in table else None
+    floors = tuple(_floor(each, common, assumed) for each in _tables(table, "floor"))
+    shoes = tuple(_shoe(each) for each in _tables(table, "shoe"))
+    for kind, each in (("floor", floors), ("shoe", shoes)):
+        names = [one.name for one in each]
+        twice = next((one for one in names if names.count(one) > 1), None)
+        if twice is not None:
+            raise InputError(f'"{twice}" stands twice', where=kind, allowed="one name each")
+    area = sum(floor.share for floor in floors)
+    floors = tuple(
+        PlaceFloor(
+            each.name, each.section, each.share / area, each.slope, each.known, each.fluids,
+            each.readings,
+        )
+        for each in floors
+    )  # fmt: skip
+    if all(set(floor.fluids) == {"dry"} for floor in floors):
+        raise InputError(
+            "every floor is dry",
+            where="fluids",
+            allowed="a fluid on some steps",
+            remedy="On dry, clean floors no shoe can be told from another by this model",
+        )
+    people = table.get("people", {})
+    _check_keys(people, "people", "people")
+    mean = _number(people, "rcof_mean", "people", 0.20, (0.05, 0.6))
+    if "rcof_mean" not in people:
+        assumed.append("people.rcof_mean: not given; 0.20 of adults who walk straight on the level")
+    steps = _number(people, "steps_per_day", "people", 8000.0, (1, 1e5))
+    days = _number(people, "days_per_year", "people", 220.0, (1, 366))
+    if "steps_per_day" not in people:
+        assumed.append("people.steps_per_day: not given; 8000 assumed")
+    tasks = tuple(_task(each) for each in people.get("task", [])) or (Task("walking", 1.0, mean),)
+    _adds_to_one([task.share for task in tasks], "people.task")
+    return Place(
+        str(table.get("name", name)),
+        floors,
+        shoes,
+        tasks,
+        _number(people, "rcof_sd", "people", 0.03, (0.001, 0.2)),
+        steps * days,
+        tuple(assumed),
+        _number(people, "reported_slips", "people", 0.0, (0.0, 1e6))
+        if "reported_slips" in people
+        else None,
+    )
+
+
+def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
+    entries = table.get(key)
+    if not isinstance(entries, list) or not entries:
+        raise InputError(
+            "is missing", where=key, allowed=f"tables [[{key}]]", remedy=f"Write [[{key}]] and name"
+        )
+    for number, entry in enumerate(entries, start=1):
+        _check_keys(entry, key, f"{key} {number}")
+        if not isinstance(entry.get("name"), str) or not entry["name"].strip():
+            raise InputError("is missing", where=f"{key} {number}.name", allowed="a name")
+    return entries
+
+
+def _check_keys(table: Any, section: str, where: str) -> None:
+    if not isinstance(table, Mapping):
+        raise InputError(f"{table!r} is no table", where=where or "PLACE")
+    for key in table:
+        if key not in KEYS[section]:
+            raise unknown_name("key", key, KEYS[section], where=where or "PLACE")
+
+
+def _number(
+    table: Mapping[str, Any], key: str, where: str, usual: float, ends: tuple[float, float]
+) -> float:
+    value = table.get(key, usual)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{value!r}", where=f"{where}.{key}", allowed="a number")
+    if not ends[0] <= value <= ends[1]:
+        allowed = f"{ends[0]:g} to {ends[1]:g}"
+        raise RangeError(f"{value:g}", where=f"{where}.{key}", allowed=allowed)
+    return float(value)
+
+
+def _shares(table: Any, where: str) -> Mapping[str, float]:
+    if not isinstance(table, Mapping) or not table:
+        raise InputError(
+            f"{table!r}", where=where, allowed="shares of the steps, as { dry = 0.9, water = 0.1 }"
+        )
+    shares = {name: _number(table, name, where, 0.0, (0.0, 1.0)) for name in table}
+    _adds_to_one(list(shares.values()), where)
+    return {name: share for name, share in sorted(shares.items()) if share > 0}
+
+
+def _adds_to_one(shares: Sequence[float], where: str) -> None:
+    if abs(sum(shares) - 1) > 0.005:
+        raise InputError(
+            f"the shares add to {sum(shares):.3g}",
+            where=where,
+            allowed="shares of all steps, which add to 1",
+            remedy="dry = takes what no fluid has",
+        )
+
+
+def _task(entry: Any) -> Task:
+    _check_keys(entry, "people.task", "people.task")
+    name = str(entry.get("name", "task"))
+    where = f"people.task {name}"
+    return Task(
+        name,
+        _number(entry, "share", where, 1.0, (0.0, 1.0)),
+        _number(entry, "rcof", where, 0.20, (0.05, 0.6)),
+    )
+
+
+def _floor(
+    entry: Mapping[str, Any], common: Mapping[str, float] | None, assumed: list[str]
+) -> PlaceFloor:
+    name = entry["name"]
+    where = f"floor {name}"
+    fluids = _shares(entry["fluids"], f"{where}.fluids") if "fluids" in entry else common
+    if fluids is None:
+        raise InputError(
+            "is missing", where=f"{where}.fluids", allowed="shares, or [fluids] of all"
+        )
+    slope = to_si(entry.get("slope", "0 deg"), "rad", where=f"{where}.slope")
+    if not 0 <= slope <= STEEPEST_SLOPE:
+        raise RangeError(
+            f"{math.degrees(slope):.3g} deg is no floor that people walk on as on the level",
+            where=f"{where}.slope",
+            allowed=f"0 deg to {math.degrees(STEEPEST_SLOPE):.0f} deg",
+            remedy="Stairs and steeper ramps need their own required friction",
+        )
+    section: dict[str, Any] = {key: entry[key] for key in ("from", "roughness") if key in entry}
+    if "rz" in entry:
+        rz = to_si(entry["rz"], "m", where=f"{where}.rz")
+        rq, spread = rz / RZ_OVER_RQ, rz * (1 / RZ_SPREAD[0] - 1 / RZ_SPREAD[1]) / 4
+        rq_text = {"value": f"{1e6 * rq:.4g} um", "uncertainty": f"{1e6 * spread:.4g} um"}
+        section["roughness"] = {**section.get("roughness", {}), "rq": rq_text}
+        assumed.append(f"{where}.roughness: Rq is Rz over 4 to 8")
+    readings = tuple(
+        _floor_reading(each, f"{where}.reading {number}")
+        for number, each in enumerate(entry.get("reading", []), start=1)
+    )
+    if not section and not readings:
+        assumed.append(
+            f"{where}: neither roughness nor reading; it was drawn over all usual floors"
+        )
+    share = _number(entry, "area", where, 1.0, (1e-9, 1e9))
+    known = bool(section or readings)
+    if not section:
+        section["roughness"] = {}
+    return PlaceFloor(name, section, share, slope, known, fluids, readings)
+
+
+def _floor_reading(entry: Any, where: str) -> FloorReading:
+    _check_keys(entry, "floor.reading", where)
+    device = machine(str(entry.get("machine", "")), f"{where}.machine")
+    fluid = machine_fluid(str(entry.get("fluid", device.fluids[0])), f"{where}.fluid")
+    if fluid.name not in device.fluids:
+        raise InputError(
+            f"a {device.title.lower()} does not read {fluid.name}",
+            where=f"{where}.fluid",
+            allowed=", ".join(device.fluids),
+            remedy=f"Outside {device.standard} the model of the machine is not held to anything",
+        )
+    value = device.checked(entry.get("value", 0), f"{where}.value")
+    kind = str(entry.get("kind", "value"))
+    sd = entry.get("sd")
+    spread = None if sd is None else device.checked(sd, f"{where}.sd")
+    Reading(float(device.scale.cof(value)), kind)  # refuses what is none
+    return FloorReading(device, fluid, value, kind, spread)
+
+
+def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
+    name = entry["name"]
+    where = f"shoe {name}"
+    own = {"name", "class", "present", "price", "months", "wear_per_month", "reading"}
+    section = {key: value for key, value in entry.items() if key not in own}
+    months = _number(entry, "months", where, 0.0, (0.1, 240)) if "months" in entry else None
+    rate = 0.0
+    if "wear_per_month" in entry:
+        rate = to_si(entry["wear_per_month"], "m", where=f"{where}.wear_per_month")
+        if months is None:
+            raise InputError(
+                "is missing", where=f"{where}.months", allowed="months in use until it is replaced"
+            )
+        if not 0 < rate * months < 20e-3:
+            raise RangeError(
+                f"{1e3 * rate * months:.3g} mm worn off",
+                where=f"{where}.wear_per_month",
+                allowed="above 0, below 20 mm in all its months",
+            )
+    readings = []
+    for number, each in enumerate(entry.get("reading", []), start=1):
+        at = f"{where}.reading {number}"
+        _check_keys(each, "shoe.reading", at)
+        test = str(each.get("test", ""))
+        if test not in slip_tests():
+            raise unknown_name("test", test, slip_tests(), where=f"{at}.test")
+        cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
+        readings.append(
+            ShoeReading(test, Reading(cof, str(each.get("kind", "value")), each.get("sd")))
+        )
+    known = shoe_class(entry["class"], f"{where}.class") if "class" in entry else None
+    return PlaceShoe(
+        name,
+        section,
+        bool(entry.get("present", False)),
+        _number(entry, "price", where, 0.0, (0.0, 1e5)) if "price" in entry else None,
+        months,
+        rate * (months or 0.0),
+        known,
+        tuple(readings),
+    )
+
+
+def same_shoe(first: PlaceShoe, second: PlaceShoe) -> bool:
+    """Return whether two shoes differ in name and price alone."""
+    parts = ("section", "wear_depth", "known_class", "readings")
+    return all(getattr(first, part) == getattr(second, part) for part in parts)
