@@ -88,8 +88,6 @@ class Study:
             self.store.adopt(self.plan)
             compute, count = engine(on, workers)
             self._compute(compute, count, progress, leads=True)
-            if not any(one["ended"] is None for one in self.store.sessions()):
-                self.store.records().pack(self.store.jobs().keys)
         return self.result()
 
     def work(self, workers: int | None = 1, progress: Progress = silent) -> int:
@@ -168,6 +166,7 @@ class Study:
             batch = next_batch(self.plan, StudyResult(self.plan, jobs, records))
             if not self.store.add_batch(jobs, batch):
                 self.store.begin_round(jobs, ended=True)
+                records.pack(jobs.keys)
                 return False
             jobs = self.store.jobs()
         return True
