@@ -154,13 +154,26 @@ class StudyPlan:
         self, design: int, point: Sequence[float], batch: int, *, quick: bool | None = None
     ) -> Iterator[Job]:
         """Yield the jobs of a design: every condition with every draw."""
-        own, place = self.design_changes(point), tuple(map(float, point))
-        quick, fields = self.method.quick if quick is None else quick, self.method.fields
         for state, draw in product(range(len(self.states)), range(len(self.draws))):
-            changes = {**own, **self.draws[draw], **self.states[state].changes}
-            yield Job(
-                self._key(changes, quick), design, state, draw, batch, place, changes, quick, fields
-            )
+            yield self.job(design, point, batch, state, draw, quick=quick)
+
+    def job(
+        self,
+        design: int,
+        point: Sequence[float],
+        batch: int,
+        state: int,
+        draw: int,
+        *,
+        quick: bool | None = None,
+    ) -> Job:
+        """Return the job of a design in one condition with one draw."""
+        own = self.design_changes(point)
+        changes = {**own, **self.draws[draw], **self.states[state].changes}
+        quick, fields = self.method.quick if quick is None else quick, self.method.fields
+        place = tuple(map(float, point))
+        key = self._key(changes, quick)
+        return Job(key, design, state, draw, batch, place, changes, quick, fields)
 
     def _key(self, changes: Mapping[str, Any], quick: bool) -> str:
         try:

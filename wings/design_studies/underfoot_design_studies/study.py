@@ -11,6 +11,7 @@ from underfoot.core import InputError, Progress, nearest_match, silent
 
 from .claims import Round
 from .computing import computed, crashed
+from .cost import spread_jobs
 from .engines import Engine, engine
 from .plan import StudyPlan
 from .proposals import first_points, next_batch
@@ -104,6 +105,22 @@ class Study:
                 if latest is None or not len(latest.places):
                     self._begin_next()  # not begun, or finished: is every case still there?
         return self._compute(*engine(None, workers), progress, leads=False)
+
+    def compute_some(self, count: int, progress: Progress = silent) -> None:
+        """Compute a few cases, spread over the first batch, and keep them.
+
+        Where another process leads the study none is computed: those that it finished tell enough.
+        """
+        self.store = Store.made(self.store.folder)
+        jobs = list(spread_jobs(self.plan, count))
+        with self.store.leading() as leads, self.store.working(1):
+            if leads:
+                self.store.adopt(self.plan)
+            known = self.store.records()
+            for done, job in enumerate(jobs if leads else [], start=1):
+                if job.key not in known:
+                    self.store.add_record(computed(self.plan.base, job))
+                progress("Timing cases", done / len(jobs))
 
     def result(self) -> StudyResult:
         """Return what the folder holds now; views of it are not written."""
