@@ -165,7 +165,7 @@ def test_stopped_it_says_what_is_kept_and_leaves_no_claim(tmp_path, number, word
     assert time.monotonic() - began < 5.0
     assert master.returncode == code, said
     assert f"{word}; every finished case is kept; the same command goes on" in said
-    assert not Store(store).shared
+    assert not Store(store).other
     assert Study.load(store).result().endings["open"] == 40 - len(numbers(store))
 
 

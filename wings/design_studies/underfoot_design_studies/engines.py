@@ -6,6 +6,7 @@ A third engine needs no code: any number of ``underfoot study work`` share the s
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -23,15 +24,18 @@ AHEAD = 2
 """Cases that are sent ahead for each thread of a Dask cluster."""
 WAIT = 20
 """s within which a scheduler must answer."""
+PATIENCE = 10.0
+"""s after which it is said that a study waits for a worker."""
 
 
-def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
+def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> tuple[Engine, int]:
     """Return the engine of a name and its number of workers.
 
     Parameters:
         on: None for processes of this machine, ``"dask"`` for a Dask cluster in this process,
             ``"dask:tcp://host:8786"`` (or a scheduler file) for one that runs.
         workers: None for one a processor.
+        told: Receives what keeps the study waiting.
 
     Raises:
         InputError: Another name.
@@ -47,7 +51,7 @@ def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
             allowed='"dask", "dask:tcp://host:8786", or nothing for processes of this machine',
             remedy="In an array job (Slurm, PBS) use underfoot study work in each task",
         )
-    return lambda function, jobs, died: _on_dask(function, jobs, died, address, count), count
+    return lambda function, jobs, died: _on_dask(function, jobs, died, address, count, told), count
 
 
 def _on_dask(
@@ -56,6 +60,7 @@ def _on_dask(
     died: Callable[[Job], Record],
     address: str,
     workers: int,
+    told: Callable[[str], None],
 ) -> Iterator[Record]:
     """Yield records from a Dask cluster; its nannies replace workers that die."""
     distributed = optional_module("distributed", "dask", "--on dask")
@@ -68,6 +73,7 @@ def _on_dask(
         ended = distributed.as_completed()
         try:
             while True:
+                _await_worker(client, address, told)
                 room = AHEAD * max(sum(client.nthreads().values()), 1) - len(sent)
                 for job in _next(waiting, room):
                     future = client.submit(function, job, key=f"case-{job.key}", pure=False)
@@ -84,6 +90,15 @@ def _on_dask(
                 f"the Dask scheduler {address} went away ({type(error).__name__})",
                 remedy="Finished cases are kept; start it and give the same command again",
             ) from error
+
+
+def _await_worker(client: Any, address: str, told: Callable[[str], None]) -> None:
+    """Wait until a cluster has a worker, and tell what starts one where that takes long."""
+    began = time.monotonic()
+    while not client.nthreads():
+        if time.monotonic() - began >= PATIENCE:
+            told(f"No worker: start dask worker {address}")
+        time.sleep(0.2)
 
 
 def _client(distributed: Any, address: str, workers: int) -> Any:
