@@ -79,26 +79,42 @@ def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
 WITHOUT_EXTRAS = """\
 import sys
 
-for name in ("duckdb", "sklearn", "SALib", "pymoo", "moocore", "zarr", "emcee", "distributed"):
-    sys.modules[name] = None
-from underfoot.cli import main
 
-sys.argv = ["underfoot", "study", "run", "heel.toml", "--workers", "1"]
-sys.exit(main())
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in EXTRAS:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+
+EXTRAS = {"duckdb", "sklearn", "SALib", "pymoo", "moocore", "zarr", "emcee", "dask", "distributed"}
+sys.meta_path.insert(0, Missing())
 """
 
 
 @pytest.mark.slow
 def test_a_plain_sweep_needs_no_extra(tmp_path):
+    """Neither the command nor its workers can import one: Python reads sitecustomize first."""
     text = STUDY.replace("STEPS", "2").split("[outputs]")[0]
     (tmp_path / "heel.toml").write_text(text)
-    run = [sys.executable, "-c", WITHOUT_EXTRAS]
-    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT_EXTRAS)
+    place = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+
+    def ran(*words, code=0):
+        run = [*COMMAND, "study", *words]
+        done = subprocess.run(
+            run, cwd=tmp_path, env=place, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == code, done.stderr
+        return done
+
+    assert "by 3 finished cases" in ran("check", "heel.toml", "--timed", "3").stdout
+    done = ran("run", "heel.toml", "--workers", "2")
     assert "4 of 4 cases of 4 designs ended: 4 computed." in done.stdout
     names = {path.name for path in (tmp_path / "out" / "heel").iterdir()}
     assert {"results.csv", "report.html"} <= names
     assert "results.parquet" not in names
+    told = ran("run", "heel.toml", "--out", "x", "--on", "dask", code=2).stderr
+    assert 'pip install "underfoot[dask]"' in told
 
 
 def test_check_status_best_and_export(finished):

@@ -29,9 +29,9 @@ LONG = 12 * 3600.0
 """s of one machine above which more of them are worth their trouble ..."""
 TASK = 2 * 3600.0
 """... and that a task of theirs may take."""
-DASK_RATE = 200.0
-"""Cases a second that the scheduler of a Dask cluster hands out and takes back
-(``python -m benchmarks dask_scheduler``)."""
+DASK_RATE = 50.0
+"""Cases a second that 100 workers, their scheduler and its client finished on one processor
+(``UNDERFOOT_BENCH=saturation python -m benchmarks design_studies``)."""
 
 
 @dataclass(frozen=True, slots=True)

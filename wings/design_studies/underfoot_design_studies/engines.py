@@ -6,6 +6,7 @@ A third engine needs no code: any number of ``underfoot study work`` share the s
 from __future__ import annotations
 
 import logging
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -24,6 +25,8 @@ AHEAD = 2
 """Cases that are sent ahead for each thread of a Dask cluster."""
 WAIT = 20
 """s within which a scheduler must answer."""
+FRESH = 1.0
+"""s for which the number of workers of a cluster is taken as it was."""
 PATIENCE = 10.0
 """s after which it is said that a study waits for a worker."""
 
@@ -69,22 +72,24 @@ def _on_dask(
     # a scheduler that goes away is told in a sentence below, not in its client's traceback
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     with configured(settings), _client(distributed, address, workers) as client:
-        waiting, sent = iter(jobs), {}
-        ended = distributed.as_completed()
+        waiting, sent, threads, asked = iter(jobs), {}, 0, -math.inf
+        ended = distributed.as_completed(with_results=True, raise_errors=False)
         try:
             while True:
-                _await_worker(client, address, told)
-                room = AHEAD * max(sum(client.nthreads().values()), 1) - len(sent)
-                for job in _next(waiting, room):
+                if time.monotonic() - asked > FRESH:  # a question to the scheduler each time
+                    threads, asked = _threads(client, address, told), time.monotonic()
+                for job in _next(waiting, AHEAD * threads - len(sent)):
                     future = client.submit(function, job, key=f"case-{job.key}", pure=False)
                     sent[future.key] = job
                     ended.add(future)
                 if not sent:
                     return
-                future = next(ended)
-                job = sent.pop(future.key)
-                yield died(job) if _was_killed(distributed, future) else future.result()
-                del future
+                future, answer = next(ended)
+                job, failed = sent.pop(future.key), future.status == "error"
+                if failed and not isinstance(future.exception(), distributed.KilledWorker):
+                    raise future.exception()
+                yield died(job) if failed else answer
+                del future, answer
         except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
             raise UnderfootError(
                 f"the Dask scheduler {address} went away ({type(error).__name__})",
@@ -92,13 +97,14 @@ def _on_dask(
             ) from error
 
 
-def _await_worker(client: Any, address: str, told: Callable[[str], None]) -> None:
-    """Wait until a cluster has a worker, and tell what starts one where that takes long."""
+def _threads(client: Any, address: str, told: Callable[[str], None]) -> int:
+    """Return the threads of a cluster; wait for some, and tell what starts a worker."""
     began = time.monotonic()
-    while not client.nthreads():
+    while not (threads := sum(client.nthreads().values())):
         if time.monotonic() - began >= PATIENCE:
             told(f"No worker: start dask worker {address}")
         time.sleep(0.2)
+    return threads
 
 
 def _client(distributed: Any, address: str, workers: int) -> Any:
@@ -125,7 +131,3 @@ def _next(jobs: Iterator[Job | None], count: int) -> list[Job]:
     while len(chosen) < count and (job := next(jobs, None)) is not None:
         chosen.append(job)
     return chosen
-
-
-def _was_killed(distributed: Any, future: Any) -> bool:
-    return future.status == "error" and isinstance(future.exception(), distributed.KilledWorker)
