@@ -10,7 +10,7 @@ PYTEST := $(BIN)/pytest -n 2 --dist
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow fuzz test-install chromium bundle bundle-check bench validate docs manual clean help
+.PHONY: run app check test test-quick test-slow fuzz fuzz-files test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -32,6 +32,9 @@ test-quick: $(READY)  ## every test that is not slow
 fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run
 	@echo "make fuzz SEED=$(SEED) repeats this run; a find becomes an @example of its test"
 	$(PYTEST) worksteal -m "hypothesis and not slow" --hypothesis-profile=fuzz --hypothesis-seed=$(SEED)
+
+fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for fewer
+	PYTHONPATH=tests $(BIN)/python tests/fuzz_files.py $(or $(COUNT),100000) $(SEED)
 
 test-slow: $(READY)  ## the slow tests
 	$(PYTEST) loadfile -m slow

@@ -14,6 +14,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,14 +22,20 @@ import psutil
 
 from underfoot.compute.run import run
 from underfoot_design_studies import Study, StudyResult
+from underfoot_design_studies.computing import crashed
+from underfoot_design_studies.engines import engine
+from underfoot_design_studies.record import Job, Record
 from underfoot_design_studies.result import Design
 from underfoot_design_studies.status import study_status
 from underfoot_design_studies.study_file import read_plan
 from underfoot_design_studies.surrogate import fitted
 
+from .study_store import jobs, record
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "1000"))
 SEEDS = int(os.environ.get("UNDERFOOT_BENCH_SEEDS", "3"))
+WORKERS = int(os.environ.get("UNDERFOOT_BENCH_WORKERS", "100"))
 SIDE = int(os.environ.get("UNDERFOOT_BENCH_SIDE", "15"))
 QUICK = """
 base = "work_shoe_untreaded_glycerol.toml"
@@ -175,6 +182,32 @@ def dask() -> Iterator[str]:
     yield f"Dask, 4 workers, one killed: {len(cluster)} of {count}, equal {alone == cluster}"
 
 
+def saturation() -> Iterator[str]:
+    """Yield how many made-up cases a second 100 workers of a Dask cluster finish.
+
+    Workers are threads that wait: scheduler, client and workers share one processor, so that this
+    is what the scheduler and its client can do at least.
+    """
+    import distributed
+
+    cluster = distributed.LocalCluster(
+        n_workers=WORKERS,
+        threads_per_worker=1,
+        processes=False,
+        memory_limit=0,
+        dashboard_address=None,
+    )
+    with cluster:
+        compute, _ = engine(f"dask:{cluster.scheduler_address}", None, print)
+        for seconds, count in ((2.0, 400), (1.0, 600), (0.5, 800), (0.2, 800), (0.0, 800)):
+            before, began = time.process_time(), time.monotonic()
+            done = len(list(compute(partial(_waited, seconds), jobs(count), crashed)))
+            wall, spent = time.monotonic() - began, time.process_time() - before
+            busy = f", workers {seconds * count / WORKERS / wall:.0%} busy" if seconds else ""
+            rate = f"{done / wall:.0f} a second{busy}, {1e3 * spent / done:.1f} ms of CPU a case"
+            yield f"Dask, {WORKERS} workers, cases of {seconds:g} s: {rate}"
+
+
 def surrogate() -> Iterator[str]:
     """Yield the error of surrogates over five inputs."""
     with tempfile.TemporaryDirectory() as folder:
@@ -266,6 +299,11 @@ def clog() -> Iterator[str]:
     yield f"better than the best of the grid with {sum(better)} of {SEEDS} seeds"
 
 
+def _waited(seconds: float, job: Job) -> Record:
+    time.sleep(seconds)
+    return record(job)
+
+
 def _cpu() -> float:
     own, children = (
         resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
@@ -286,7 +324,8 @@ def _kill_a_worker(folder: str) -> None:
 
 
 PARTS = {
-    each.__name__: each for each in (ready, overhead, scaling, dask, surrogate, splits, front, clog)
+    each.__name__: each
+    for each in (ready, overhead, scaling, dask, saturation, surrogate, splits, front, clog)
 }
 
 

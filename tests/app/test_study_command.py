@@ -77,28 +77,45 @@ def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
 
 
 WITHOUT_EXTRAS = """\
-import sys
+from importlib.machinery import PathFinder
 
-for name in ("duckdb", "SALib", "pymoo", "moocore", "zarr", "emcee", "distributed"):
-    sys.modules[name] = None
-from underfoot.cli import main
+real = PathFinder.find_spec
+EXTRAS = {"duckdb", "SALib", "pymoo", "moocore", "zarr", "emcee", "dask", "distributed"}
 
-sys.argv = ["underfoot", "study", "run", "heel.toml", "--workers", "1"]
-sys.exit(main())
+
+def find_spec(name, path=None, target=None):
+    return None if name.partition(".")[0] in EXTRAS else real(name, path, target)
+
+
+PathFinder.find_spec = staticmethod(find_spec)
 """
 
 
 @pytest.mark.slow
 def test_a_plain_sweep_needs_no_extra(tmp_path):
+    """Neither the command nor its workers can import one: Python reads sitecustomize first."""
     text = STUDY.replace("STEPS", "2").split("[outputs]")[0]
     (tmp_path / "heel.toml").write_text(text)
-    run = [sys.executable, "-c", WITHOUT_EXTRAS]
-    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT_EXTRAS)
+    place = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+
+    def ran(*words, code=0):
+        run = [*COMMAND, "study", *words]
+        done = subprocess.run(
+            run, cwd=tmp_path, env=place, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == code, done.stderr
+        return done
+
+    told = ran("check", "heel.toml", "--timed", "3").stdout
+    assert "by 3 finished cases" in " ".join(told.split())
+    done = ran("run", "heel.toml", "--workers", "2")
     assert "4 of 4 cases of 4 designs ended: 4 computed." in done.stdout
     names = {path.name for path in (tmp_path / "out" / "heel").iterdir()}
     assert {"results.csv", "report.html"} <= names
     assert "results.parquet" not in names
+    told = ran("run", "heel.toml", "--out", "x", "--on", "dask", code=5).stderr
+    assert 'pip install "underfoot[dask]"' in told
 
 
 def test_check_status_best_and_export(finished):
@@ -165,7 +182,7 @@ def test_stopped_it_says_what_is_kept_and_leaves_no_claim(tmp_path, number, word
     assert time.monotonic() - began < 5.0
     assert master.returncode == code, said
     assert f"{word}; every finished case is kept; the same command goes on" in said
-    assert not Store(store).shared
+    assert not Store(store).other
     assert Study.load(store).result().endings["open"] == 40 - len(numbers(store))
 
 

@@ -114,6 +114,7 @@ def test_killed_at_every_write_the_designs_set_are_those_planned(made_up, tmp_pa
     total = calls(made_up, tmp_path / "whole", lead, at=10**9)
     whole = answers(tmp_path / "whole")
     assert len(whole) == made_up.designs == 12
+    assert list((tmp_path / "whole").glob("packed-*"))
     assert total > 90
     for at in range(1, total + 1, step):
         folder = tmp_path / str(at)

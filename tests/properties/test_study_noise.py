@@ -138,6 +138,5 @@ def test_the_chosen_tread_is_as_good_as_stated(twenty):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="with 18 of 20 seeds; wanted with 19")
 def test_the_chosen_tread_is_better_than_a_grids(twenty):
     assert sum(twenty[1]) >= 19

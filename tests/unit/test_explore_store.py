@@ -156,7 +156,7 @@ def test_one_of_two_claims_a_case_and_a_dead_one_loses_it(store):
         assert [took(store), took(other), took(third)] == keys
         assert took(store) == keys[2]
         assert took(other) is None
-    assert Store(store.folder).shared is False
+    assert Store(store.folder).other == ""
 
 
 def test_who_takes_over_from_the_dead_computes_only_what_they_left(store, monkeypatch):
@@ -237,7 +237,7 @@ def test_stopped_between_two_lines_of_code_it_says_what_is_kept(store, monkeypat
     monkeypatch.setattr(os, call, stopped)
     with pytest.raises(KeyboardInterrupt, match="every finished case is kept"):
         study._compute(compute, 1, silent, leads=True)
-    assert not Store(store.folder).shared
+    assert not Store(store.folder).other
     assert len(Store(store.folder).records()) == (call == "fsync")
 
 

@@ -1,23 +1,53 @@
-"""A study before it runs: how many cases, what they cost, which of them can't be built."""
+"""A study before it runs: how many cases, what they cost, where, which of them can't be built."""
 
 from __future__ import annotations
 
+import math
+import shutil
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, ClassVar
 
 from underfoot.compute.positions import run_cost
 from underfoot.core import InputError
+from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import time_text
 
+from .computing import status_bytes
+from .cost import StudyCost, study_cost
 from .plan import StudyPlan
 from .proposals import first_points
 from .result import value_text
+from .store import Store
 
 MOST_BUILT = 300
 """Cases that are built to see which can't be; 0.03 s each."""
+LONG = 12 * 3600.0
+"""s of one machine above which more of them are worth their trouble ..."""
+TASK = 2 * 3600.0
+"""... and that a task of theirs may take."""
+DASK_RATE = 50.0
+"""Cases a second that 100 workers, their scheduler and its client finished on one processor
+(``UNDERFOOT_BENCH=saturation python -m benchmarks design_studies``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """What a study finds here: processors, and bytes of memory (0: not known) and of disk."""
+
+    processors: int
+    memory: float
+    disk: float
+
+
+def this_machine(folder: Path) -> Machine:
+    """Return what is free for a study in a folder, which may not be there yet."""
+    place = next(one for one in (folder, *folder.absolute().parents) if one.is_dir())
+    memory = status_bytes("/proc/meminfo", "MemAvailable:")
+    return Machine(available_processors(), memory, shutil.disk_usage(place).free)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +58,12 @@ class StudyCheck(Presentable):
         designs, cases: At most, over the whole study.
         seconds: CPU seconds of all cases together, low and high.
         again, again_seconds: The same of the cases that are run again after those.
+        memory: Bytes of a worker.
         built: Cases that were built.
         infeasible: Why cases can't be built: how many of those built.
+        ended: Cases that are finished.
+        cost: Of a case, from finished ones; None without.
+        machine: Where it would run.
     """
 
     kind: ClassVar[str] = "study_check"
@@ -40,8 +74,38 @@ class StudyCheck(Presentable):
     seconds: tuple[float, float]
     again: int
     again_seconds: tuple[float, float]
+    memory: float
     built: int
     infeasible: Mapping[str, int]
+    ended: int = 0
+    cost: StudyCost | None = None
+    machine: Machine = field(default_factory=lambda: this_machine(Path()))
+
+    @property
+    def cpu_seconds(self) -> float:
+        """CPU seconds of all cases together: the estimate, or the middle without one."""
+        low, high = self.seconds
+        return self.cases * self.cost.cpu_seconds if self.cost else math.sqrt(low * high)
+
+    @property
+    def workers(self) -> int:
+        """Processes that this machine has processors and memory for."""
+        fit = self.machine.memory // self.memory if self.machine.memory else math.inf
+        return max(1, int(min(self.machine.processors, fit)))
+
+    @property
+    def seconds_left(self) -> float:
+        """Time by the clock that the open cases take on this machine."""
+        share = max(self.cases - self.ended, 0) / max(self.cases, 1)
+        clock = self.cost.seconds / self.cost.cpu_seconds if self.cost else 1.0
+        return share * clock * self.cpu_seconds / self.workers
+
+    @property
+    def tasks(self) -> int:
+        """Tasks of an array job that end in two hours each; 1 where this machine does."""
+        if self.seconds_left <= LONG:
+            return 1
+        return max(2, min(math.ceil(self.seconds_left * self.workers / TASK), self.cases // 10))
 
     def heading(self) -> str:
         """Return the name of the study."""
@@ -51,27 +115,58 @@ class StudyCheck(Presentable):
         """Return the number of cases and their cost."""
         states, draws = len(self.plan.states), len(self.plan.draws)
         per = f" x {states} conditions" * (states > 1) + f" x {draws} draws" * (draws > 1)
-        cost, more = (
-            f"about {time_text(low)} to {time_text(high)} of one processor"
-            for low, high in (self.seconds, self.again_seconds)
-        )
+        low, high = map(time_text, self.seconds)
+        cost = f"{low} to {high} of one processor"
+        if self.cost:
+            range_ = f"95 %: {low} to {high}, by {self.cost.cases} finished cases"
+            cost = f"{time_text(self.cpu_seconds)} of one processor ({range_})"
+        least, most = map(time_text, self.again_seconds)
         again = (
             f"The best {self.plan.method.again} and the start are then run again on the "
-            f"{self.plan.method.again_on} grid: {self.again} cases at most, {more}."
+            f"{self.plan.method.again_on} grid: {self.again} cases at most, "
+            f"about {least} to {most} of one processor."
         )
         bad = sum(self.infeasible.values())
         share = f"{bad} of {self.built} cases of the first designs can't be built"
         return (
-            f"{self.designs} designs{per}: {self.cases} cases at most, {cost}.",
+            f"{self.designs} designs{per}: {self.cases} cases at most, about {cost}.",
             *[again] * bool(self.again),
             f"{share[0].upper()}{share[1:]}."
             if bad
             else f"All {self.built} cases tried can be built.",
+            *self._where(),
         )
 
+    def _where(self) -> tuple[str, ...]:
+        """Return what the study takes here, and which engine fits."""
+        workers = f"{self.workers} worker" + "s" * (self.workers > 1)
+        left = f"{self.cases - self.ended} open cases" if self.ended else "All of it"
+        here = f"{left} on this machine, {workers} of {size_text(self.memory)}: "
+        here += f"about {time_text(self.seconds_left)}"
+        if self.cost:
+            here += f", {size_text(self.cases * self.cost.disk)} of disk"
+        if self.tasks == 1:
+            return (f"{here}; underfoot study run does.",)
+        took = time_text(self.seconds_left * self.workers / self.tasks)
+        array = (
+            f"An array job of {self.tasks} tasks takes about {took}: underfoot study work in each"
+        )
+        case = self.cpu_seconds / self.cases
+        dask = f"a Dask cluster keeps up to {max(1, round(DASK_RATE * case))} workers busy"
+        return (f"{here}.", f"{array}; {dask}.")
+
     def cautions(self) -> tuple[str, ...]:
-        """Return what reading the file decided."""
-        return self.plan.remarks
+        """Return what reading the file decided, and what this machine lacks."""
+        texts = list(self.plan.remarks)
+        if not self.cost:
+            texts.append("The cost is a guess by the size of the grid: --timed 10 measures it.")
+        elif self.cases * self.cost.disk > self.machine.disk:
+            need, free = (size_text(x) for x in (self.cases * self.cost.disk, self.machine.disk))
+            texts.append(f"The disk has {free} free, the study takes {need}.")
+        if self.machine.memory and self.memory > self.machine.memory:
+            free = size_text(self.machine.memory)
+            texts.append(f"A worker takes {size_text(self.memory)}, and {free} are free.")
+        return tuple(texts)
 
     def table(self) -> Table:
         """Return what is varied, uncertain and asked for."""
@@ -92,9 +187,13 @@ class StudyCheck(Presentable):
         return Table("Study", ("", "What", "Range"), rows)
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
-        """Return why cases can't be built, the most frequent reason first."""
+        """Return why cases can't be built or have no numbers, the most frequent reason first."""
         reasons = sorted(self.infeasible.items(), key=lambda one: -one[1])
-        return {"Can't be built": [f"{count} x {reason}" for reason, count in reasons]}
+        lost = self.cost.failures if self.cost else {}
+        return {
+            "Can't be built": [f"{count} x {reason}" for reason, count in reasons],
+            "Without numbers among the finished": [f"{n} x {text}" for text, n in lost.items()],
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -104,15 +203,28 @@ class StudyCheck(Presentable):
             "cpu_seconds": list(self.seconds),
             "again": self.again,
             "again_cpu_seconds": list(self.again_seconds),
+            "estimate": {
+                "cases_timed": self.cost.cases if self.cost else 0,
+                "cpu_seconds": self.cpu_seconds,
+                "seconds_left": self.seconds_left,
+                "workers": self.workers,
+                "worker_memory": self.memory,
+                "disk": self.cases * self.cost.disk if self.cost else None,
+                "array_tasks": self.tasks,
+                "failures": dict(self.cost.failures) if self.cost else {},
+            },
             "built": self.built,
             "infeasible": dict(self.infeasible),
         }
 
 
-def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
-    """Return what a study will take; nothing is computed, about ``most`` cases are built."""
+def study_check(plan: StudyPlan, most: int = MOST_BUILT, store: Store | None = None) -> StudyCheck:
+    """Return what a study will take; nothing is computed, about ``most`` cases are built.
+
+    Finished cases of its folder tell the cost.
+    """
     designs, method = plan.designs, plan.method
-    low, high = run_cost(plan.base, quick=method.quick).seconds
+    guess = run_cost(plan.base, quick=method.quick)
     cases = designs * plan.cases_per_design
     again, (least, most_again) = 0, (0.0, 0.0)
     if plan.goals and method.again_on:
@@ -130,5 +242,27 @@ def study_check(plan: StudyPlan, most: int = MOST_BUILT) -> StudyCheck:
                 plan.base.replace(job.changes)
             except InputError as error:
                 reasons[str(error)] += 1
-    costs = (low * cases, high * cases), again, (least * again, most_again * again)
-    return StudyCheck(plan, designs, cases, *costs, built, dict(reasons))
+    cost = study_cost(plan, store) if store else None
+    low, high = cost.interval if cost else guess.seconds
+    return StudyCheck(
+        plan,
+        designs,
+        cases,
+        (low * cases, high * cases),
+        again,
+        (least * again, most_again * again),
+        (cost and cost.memory) or guess.memory,
+        built,
+        dict(reasons),
+        len(store.known) if store else 0,
+        cost,
+        this_machine(store.folder if store else Path()),
+    )
+
+
+def size_text(size: float) -> str:
+    """Return bytes in the unit that people read."""
+    for unit, factor in (("GB", 1e9), ("MB", 1e6)):
+        if size >= factor:
+            return f"{float(f'{size / factor:.2g}'):g} {unit}"
+    return f"{size / 1e3:.0f} kB"

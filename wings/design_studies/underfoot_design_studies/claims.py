@@ -122,16 +122,16 @@ class Round:
             os.close(os.open(self.folder / f"{block}{DONE}", os.O_WRONLY | os.O_CREAT, 0o644))
             self._done.add(block)
 
-    def held(self, alive: Callable[[str], bool]) -> bool:
-        """Return whether another living process computes a block of it."""
+    def other(self, alive: Callable[[str], bool]) -> str:
+        """Return another living process that computes a block of it; "" without."""
         names = set(os.listdir(self.folder))
         for name in names:
             if name.isdigit() and name + DONE not in names:
                 with suppress(OSError):
                     owner = (self.folder / name).read_text(encoding="utf-8").split("\n")[-1]
                     if owner != self._name and alive(owner):
-                        return True
-        return False
+                        return owner
+        return ""
 
     def _jobs(self, block: int) -> AnyArray:
         return self.places[self._edges[block] : self._edges[block + 1]]

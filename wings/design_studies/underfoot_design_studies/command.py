@@ -34,11 +34,27 @@ def _study(path: Path, out: Path | None = None) -> Study:
     return Study.load(path, out)
 
 
-def check(study: StudyPath, json: AsJson = False) -> None:
-    """Print how many cases a study has, what they cost, which can't be built; compute nothing."""
+def check(
+    study: StudyPath,
+    out: Folder = None,
+    timed: Annotated[
+        int, typer.Option("--timed", min=0, help="Compute and keep so many cases, spread evenly.")
+    ] = 0,
+    json: AsJson = False,
+) -> None:
+    """Print how many cases a study has, which can't be built, what it takes and where to run it.
+
+    Finished cases tell the cost; without any it is a guess by the size of the grid.
+    """
+    from underfoot.core.progress import bar
+
     from .check import study_check
 
-    finish(study_check(_study(study).plan), None, json=json, everything=True)
+    chosen = _study(study, out)
+    with bar(chosen.plan.name) as progress:
+        if timed:
+            chosen.compute_some(timed, progress)
+    finish(study_check(chosen.plan, store=chosen.store), None, json=json, everything=True)
 
 
 def run(

@@ -8,6 +8,7 @@ import platform
 import time
 from collections.abc import Mapping
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,7 @@ def computed(base: Case, job: Job) -> Record:
         **outcome,
         seconds=time.perf_counter() - wall,
         cpu_seconds=time.process_time() - cpu,
+        memory=peak_memory(),
         program=program(),
         worker=worker_name(),
         ended=time.time(),
@@ -68,6 +70,20 @@ def crashed(job: Job) -> Record:
     """Return the record of a job that two workers in turn did not survive."""
     reason = "its worker process ended without an answer, twice: killed, or out of memory"
     return Record(job.key, Ending.CRASHED, reason, program=program(), ended=time.time())
+
+
+def peak_memory() -> float:
+    """Return the largest memory that this process had, bytes; 0 where the system doesn't tell."""
+    return status_bytes("/proc/self/status", "VmHWM:")
+
+
+def status_bytes(file: str, name: str) -> float:
+    """Return a size that Linux tells of a process or of the machine, bytes; else 0."""
+    try:
+        text = Path(file).read_text(encoding="ascii", errors="replace")
+        return 1024.0 * int(text.split(name)[1].split()[0])
+    except (OSError, IndexError, ValueError):
+        return 0.0
 
 
 @cache

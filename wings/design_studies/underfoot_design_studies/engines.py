@@ -6,6 +6,8 @@ A third engine needs no code: any number of ``underfoot study work`` share the s
 from __future__ import annotations
 
 import logging
+import math
+import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -23,15 +25,20 @@ AHEAD = 2
 """Cases that are sent ahead for each thread of a Dask cluster."""
 WAIT = 20
 """s within which a scheduler must answer."""
+FRESH = 1.0
+"""s for which the number of workers of a cluster is taken as it was."""
+PATIENCE = 10.0
+"""s after which it is said that a study waits for a worker."""
 
 
-def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
+def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> tuple[Engine, int]:
     """Return the engine of a name and its number of workers.
 
     Parameters:
         on: None for processes of this machine, ``"dask"`` for a Dask cluster in this process,
             ``"dask:tcp://host:8786"`` (or a scheduler file) for one that runs.
         workers: None for one a processor.
+        told: Receives what keeps the study waiting.
 
     Raises:
         InputError: Another name.
@@ -47,7 +54,7 @@ def engine(on: str | None, workers: int | None) -> tuple[Engine, int]:
             allowed='"dask", "dask:tcp://host:8786", or nothing for processes of this machine',
             remedy="In an array job (Slurm, PBS) use underfoot study work in each task",
         )
-    return lambda function, jobs, died: _on_dask(function, jobs, died, address, count), count
+    return lambda function, jobs, died: _on_dask(function, jobs, died, address, count, told), count
 
 
 def _on_dask(
@@ -56,6 +63,7 @@ def _on_dask(
     died: Callable[[Job], Record],
     address: str,
     workers: int,
+    told: Callable[[str], None],
 ) -> Iterator[Record]:
     """Yield records from a Dask cluster; its nannies replace workers that die."""
     distributed = optional_module("distributed", "dask", "--on dask")
@@ -64,26 +72,39 @@ def _on_dask(
     # a scheduler that goes away is told in a sentence below, not in its client's traceback
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     with configured(settings), _client(distributed, address, workers) as client:
-        waiting, sent = iter(jobs), {}
-        ended = distributed.as_completed()
+        waiting, sent, threads, asked = iter(jobs), {}, 0, -math.inf
+        ended = distributed.as_completed(with_results=True, raise_errors=False)
         try:
             while True:
-                room = AHEAD * max(sum(client.nthreads().values()), 1) - len(sent)
-                for job in _next(waiting, room):
+                if time.monotonic() - asked > FRESH:  # a question to the scheduler each time
+                    threads, asked = _threads(client, address, told), time.monotonic()
+                for job in _next(waiting, AHEAD * threads - len(sent)):
                     future = client.submit(function, job, key=f"case-{job.key}", pure=False)
                     sent[future.key] = job
                     ended.add(future)
                 if not sent:
                     return
-                future = next(ended)
-                job = sent.pop(future.key)
-                yield died(job) if _was_killed(distributed, future) else future.result()
-                del future
+                future, answer = next(ended)
+                job, failed = sent.pop(future.key), future.status == "error"
+                if failed and not isinstance(future.exception(), distributed.KilledWorker):
+                    raise future.exception()
+                yield died(job) if failed else answer
+                del future, answer
         except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
             raise UnderfootError(
                 f"the Dask scheduler {address} went away ({type(error).__name__})",
                 remedy="Finished cases are kept; start it and give the same command again",
             ) from error
+
+
+def _threads(client: Any, address: str, told: Callable[[str], None]) -> int:
+    """Return the threads of a cluster; wait for some, and tell what starts a worker."""
+    began = time.monotonic()
+    while not (threads := sum(client.nthreads().values())):
+        if time.monotonic() - began >= PATIENCE:
+            told(f"No worker: start dask worker {address}")
+        time.sleep(0.2)
+    return threads
 
 
 def _client(distributed: Any, address: str, workers: int) -> Any:
@@ -110,7 +131,3 @@ def _next(jobs: Iterator[Job | None], count: int) -> list[Job]:
     while len(chosen) < count and (job := next(jobs, None)) is not None:
         chosen.append(job)
     return chosen
-
-
-def _was_killed(distributed: Any, future: Any) -> bool:
-    return future.status == "error" and isinstance(future.exception(), distributed.KilledWorker)

@@ -19,7 +19,7 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.arrays import AnyArray
 
-from .lines import FORMAT, sealed, unsealed, whole_lines, write_all
+from .lines import CURRENT, FORMAT, KEY, KEYED, sealed, unsealed, whole_lines, write_all
 from .record import Job
 
 TOGETHER = 1000
@@ -44,12 +44,12 @@ class Jobs(Sequence[Job]):
         self.batches, self.end, self.closed = 0, 0, True
         first, hashed = 0, blake2b(digest_size=8)
         for start, end, body in whole_lines(path):
-            _, _, version, kind, _, text, *_ = body.split(b'"', 6)
-            if kind == b"key":
-                self.keys.append(text.decode())
+            if body.startswith(KEYED, len(CURRENT)):
+                self.keys.append(body[KEY : body.index(b'"', KEY)].decode())
                 places.append(start)
                 hashed.update(body)
-                self.closed &= b" 1," not in version
+                if not body.startswith(CURRENT):
+                    self.closed = False
                 continue
             closing = json.loads(body)
             if (closing["count"], closing["hash"]) != (len(places) - first, hashed.hexdigest()):

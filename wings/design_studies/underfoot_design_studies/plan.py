@@ -169,7 +169,21 @@ class StudyPlan:
     def jobs(
         self, design: int, point: Sequence[float], batch: int, *, again: bool = False
     ) -> Iterator[Job]:
-        """Yield the jobs of a design: every condition with every draw.
+        """Yield the jobs of a design: every condition with every draw; ``again``: ``job``."""
+        for state, draw in product(range(len(self.states)), range(len(self.draws))):
+            yield self.job(design, point, batch, state, draw, again=again)
+
+    def job(
+        self,
+        design: int,
+        point: Sequence[float],
+        batch: int,
+        state: int,
+        draw: int,
+        *,
+        again: bool = False,
+    ) -> Job:
+        """Return the job of a design in one condition with one draw.
 
         ``again`` takes the grid of ``Method.again_on`` and one position of the tread more, or less
         where there are as many as can be: of their lattice (``underfoot.compute.positions``) only
@@ -181,11 +195,9 @@ class StudyPlan:
             quick, count = self.method.again_on == "quick", self.base.numerics.tread_positions
             if count > 1:  # 1 is the tread as it lies, and stays so
                 own = {**own, POSITIONS: count + (1 if count < MOST_POSITIONS else -1)}
-        for state, draw in product(range(len(self.states)), range(len(self.draws))):
-            changes = {**own, **self.draws[draw], **self.states[state].changes}
-            yield Job(
-                self._key(changes, quick), design, state, draw, batch, place, changes, quick, fields
-            )
+        changes = {**own, **self.draws[draw], **self.states[state].changes}
+        key = self._key(changes, quick)
+        return Job(key, design, state, draw, batch, place, changes, quick, fields)
 
     def _key(self, changes: Mapping[str, Any], quick: bool) -> str:
         try:

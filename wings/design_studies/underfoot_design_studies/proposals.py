@@ -39,7 +39,7 @@ CANDIDATES = 80
 """Designs of a batch are chosen among so many of the surrogates' front ..."""
 NEAR = 0.1
 """... as many near these, by this deviation in shares of every range, ..."""
-SPREAD = 64
+SPREAD = 32
 """... and so many spread evenly, where the front is a point or the surrogates know little."""
 SAME = 1e-3
 """Designs that lie nearer than this share of every range are one."""

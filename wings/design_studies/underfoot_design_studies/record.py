@@ -69,8 +69,7 @@ class Job:
     def from_line(cls, text: str | bytes) -> Job:
         """Return the job of a line."""
         plain = json.loads(text)
-        del plain["format"]
-        return cls(**{**plain, "point": tuple(plain["point"])})
+        return cls(**{**_known(cls, plain), "point": tuple(plain["point"])})
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +87,7 @@ class Record:
         draws: (n,) joint draws of COF, empty where the law has no spread.
         breaches: Inputs outside a tested range, in words.
         seconds, cpu_seconds: That the case took, as the wall clock and as the processor counts.
+        memory: Most that its worker had up to then, bytes; 0 where the system doesn't tell.
         program: Hash of the package's text, so that numbers of two versions are not mixed unseen.
         worker: Process that computed it.
         ended: When, s since 1970.
@@ -106,6 +106,7 @@ class Record:
     breaches: tuple[str, ...] = ()
     seconds: float = 0.0
     cpu_seconds: float = 0.0
+    memory: float = 0.0
     program: str = ""
     worker: str = ""
     ended: float = 0.0
@@ -155,7 +156,12 @@ class Record:
         """
         plain = json.loads(text)
         one = plain["draws"]
-        packed = base64.b64decode(one) if plain.pop("format") == 1 else draws(*one)
+        packed = base64.b64decode(one) if plain["format"] == 1 else draws(*one)
         plain |= {"draws": np.frombuffer(packed, "<f4").astype(float)}
         plain |= {"ending": Ending(plain["ending"]), "breaches": tuple(plain["breaches"])}
-        return cls(**plain)
+        return cls(**_known(cls, plain))
+
+
+def _known(kind: Any, plain: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a class has a field for: a later program of this format may have written more."""
+    return {one.name: plain[one.name] for one in fields(kind) if one.name in plain}

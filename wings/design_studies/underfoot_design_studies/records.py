@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from hashlib import blake2b
 from io import BytesIO
@@ -23,7 +24,7 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .lines import line_at, whole_lines, write_file
+from .lines import CURRENT, KEY, line_at, whole_lines, write_file
 from .record import Ending, Record
 
 RECENT = 4096
@@ -31,6 +32,9 @@ RECENT = 4096
 PACK = 10_000
 """Cases of a packed file, and finished cases in lines from which on they are packed."""
 ENDINGS = tuple(Ending)
+BETWEEN = len(b'", "ending": "')
+"""Bytes between key and ending in a line."""
+ENDED = {ending.encode(): k for k, ending in enumerate(ENDINGS)}
 LINES, DRAWS, PACKED = "cases-", "draws-", "packed-"
 
 
@@ -68,6 +72,12 @@ class Records(Mapping[str, Record]):
         place = self._places.get(key)
         return Ending.OPEN if place is None else ENDINGS[place & 7]
 
+    def endings_of(self, keys: Iterable[str]) -> dict[str, int]:
+        """Return how many of some cases ended in each way."""
+        places = self._places
+        counts = np.bincount([places.get(key, 0) & 7 for key in keys], minlength=len(ENDINGS))
+        return {str(name): int(n) for name, n in zip(ENDINGS, counts, strict=True) if n}
+
     def look(self, owners: Sequence[str] | None = None) -> Records:
         """Read what is new in the files of some processes, by default of all; return this.
 
@@ -91,13 +101,13 @@ class Records(Mapping[str, Record]):
 
     def add(self, key: str, ending: Ending, path: Path, place: int, end: int) -> None:
         """Take in a case of this process that has just been written."""
-        self._put(key, ending, self._number(path), place)
+        self._put(key, ENDINGS.index(ending), self._number(path), place)
         self._sizes[path.name] = end
 
     def pack(self, order: Sequence[str]) -> None:
         """Put what is in lines into packed files, in an order of keys, and remove the lines.
 
-        Nobody else may write. A kill in between leaves cases in both, which are equal.
+        Only for a study that is done. A kill in between leaves cases in both, which are equal.
         """
         texts = [path for path in self._files if path.suffix == ".jsonl"]
         own = {k for k, path in enumerate(self._files) if path.suffix == ".jsonl"}
@@ -111,8 +121,9 @@ class Records(Mapping[str, Record]):
             name = f"{PACKED}{first // PACK:05}-{blake2b(data, digest_size=8).hexdigest()}.npz"
             write_file(self.folder / name, data)
         for path in texts:
-            path.unlink()
-            _draws_of(path).unlink(missing_ok=True)
+            with suppress(PermissionError):  # Windows, where a process has it open
+                path.unlink()
+                _draws_of(path).unlink(missing_ok=True)
         self.look()
 
     def _packed_bytes(self, keys: Sequence[str]) -> bytes:
@@ -140,25 +151,27 @@ class Records(Mapping[str, Record]):
             self._files.append(path)
         return self._numbers[path]
 
-    def _put(self, key: str, ending: Ending, number: int, place: int) -> None:
+    def _put(self, key: str, ending: int, number: int, place: int) -> None:
         if key not in self._places:
-            self._places[key] = (number << 48 | place) << 3 | ENDINGS.index(ending)
-            self.endings[ending] += 1
+            self._places[key] = (number << 48 | place) << 3 | ending
+            self.endings[ENDINGS[ending]] += 1
 
     def _add_lines(self, path: Path) -> None:
         number, draws, size = self._number(path), _draws_of(path), -1
         end = self._sizes.get(path.name, 0)
         for start, after, body in whole_lines(path, end):
             end = after
-            _, _, version, _, _, key, _, _, _, ending, _ = body.split(b'"', 10)
-            if version != b": 1, ":
-                first, count, _ = body[body.rfind(b"[") + 1 : -2].split(b",")
+            close = body.index(b'"', KEY)
+            ending = close + BETWEEN
+            if body.startswith(CURRENT):
+                first, count, _ = body[body.rindex(b"[") + 1 : -2].split(b",")
                 last = int(first) + 4 * int(count)
                 if last > size:
                     size = draws.stat().st_size if draws.exists() else 0
                 if last > size:
                     continue  # a folder that was copied in part
-            self._put(key.decode(), Ending(ending.decode()), number, start)
+            name = body[ending : body.index(b'"', ending)]
+            self._put(body[KEY:close].decode(), ENDED[name], number, start)
         self._sizes[path.name] = end
 
     def _add_packed(self, path: Path) -> None:
@@ -169,7 +182,7 @@ class Records(Mapping[str, Record]):
         except (OSError, ValueError, KeyError, BadZipFile):
             return  # damaged: its cases are open again
         for place, (key, ending) in enumerate(zip(keys, endings, strict=True)):
-            self._put(key, ENDINGS[ending], number, place)
+            self._put(key, ending, number, place)
 
     def _read(self, place: int) -> Record:
         path, place = self._files[place >> 48], place & (1 << 48) - 1

@@ -342,7 +342,7 @@ class StudyResult(Presentable):
         """How many cases ended in each way, open ones too."""
         keys = set(self.jobs.keys if isinstance(self.jobs, Jobs) else (j.key for j in self.jobs))
         if isinstance(self.records, Records):
-            return Counter(str(self.records.ending(key)) for key in keys)
+            return Counter(self.records.endings_of(keys))
         known = {key: self.records[key].ending for key in keys & self.records.keys()}
         return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 

@@ -371,10 +371,10 @@ class Store:
         return bool(self._held)
 
     @property
-    def shared(self) -> bool:
-        """Whether another living process computes cases of the study."""
+    def other(self) -> str:
+        """Another living process that computes cases of the study; "" without."""
         latest = self.round
-        return latest is not None and latest.held(self._alive)
+        return "" if latest is None else latest.other(self._alive)
 
     @property
     def share(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -11,12 +11,13 @@ from underfoot.core import InputError, Progress, nearest_match, silent
 
 from .claims import Round
 from .computing import computed, crashed
-from .engines import Engine, engine
+from .cost import spread_jobs
+from .engines import PATIENCE, Engine, engine
 from .plan import StudyPlan
 from .proposals import first_points, next_batch
 from .record import Ending, Job
 from .result import StudyResult
-from .store import Store
+from .store import SILENT, Store
 from .study_file import load_plan
 
 PAUSE, LONGEST_PAUSE = 1.0, 16.0
@@ -86,10 +87,8 @@ class Study:
                     remedy=f"To help it: underfoot study work {self.store.folder}",
                 )
             self.store.adopt(self.plan)
-            compute, count = engine(on, workers)
+            compute, count = engine(on, workers, self._told(progress))
             self._compute(compute, count, progress, leads=True)
-            if not any(one["ended"] is None for one in self.store.sessions()):
-                self.store.records().pack(self.store.jobs().keys)
         return self.result()
 
     def work(self, workers: int | None = 1, progress: Progress = silent) -> int:
@@ -105,19 +104,42 @@ class Study:
                 latest = self.store.round
                 if latest is None or not len(latest.places):
                     self._begin_next()  # not begun, or finished: is every case still there?
-        return self._compute(*engine(None, workers), progress, leads=False)
+        compute, count = engine(None, workers, self._told(progress))
+        return self._compute(compute, count, progress, leads=False)
+
+    def compute_some(self, count: int, progress: Progress = silent) -> None:
+        """Compute a few cases, spread over the first batch, and keep them.
+
+        Where another process leads the study none is computed: those that it finished tell enough.
+        """
+        self.store = Store.made(self.store.folder)
+        jobs = list(spread_jobs(self.plan, count))
+        with self.store.leading() as leads, self.store.working(1):
+            if leads:
+                self.store.adopt(self.plan)
+            known = self.store.records()
+            for done, job in enumerate(jobs if leads else [], start=1):
+                if job.key not in known:
+                    self.store.add_record(computed(self.plan.base, job))
+                progress("Timing cases", done / len(jobs))
 
     def result(self) -> StudyResult:
         """Return what the folder holds now; views of it are not written."""
         sessions = self.store.sessions() if self.store.exists else []
         return StudyResult(self.plan, self.store.jobs(), self.store.records(), sessions)
 
+    def _told(self, progress: Progress) -> Callable[[str], None]:
+        """Return what takes in why the study waits."""
+        return lambda text: progress(text, self.store.share)
+
     def _compute(self, compute: Engine, workers: int, progress: Progress, *, leads: bool) -> int:
         """Compute what nobody else does until the study is done; return how many cases."""
         count, function = 0, partial(computed, self.plan.base)
         with self.store.working(workers):
             try:
-                for record in compute(function, self._claimed(leads), crashed):
+                for record in compute(
+                    function, self._claimed(leads, self._told(progress)), crashed
+                ):
                     self.store.add_record(record)
                     count += 1
                     progress(self._stage(), self.store.share)
@@ -126,20 +148,23 @@ class Study:
                 raise type(stop)(kept) from None
         return count
 
-    def _claimed(self, leads: bool) -> Iterator[Job | None]:
+    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[Job | None]:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
-        if leads and not self.store.shared:
+        if leads and not self.store.other:
             self._begin_next()
-        pause = PAUSE
+        pause, waited = PAUSE, 0.0
         while True:
             jobs = self.store.take(in_order=leads)
             if jobs is not None:
                 yield from jobs
-                pause = PAUSE
+                pause, waited = PAUSE, 0.0
             elif self.store.holds:
                 yield None
             elif (latest := self.store.round) is not None and not latest.ended:
                 time.sleep(pause)  # others compute them
+                waited += pause
+                if waited >= PATIENCE and (other := self.store.other):
+                    told(f"Waiting for {other}: taken over after {SILENT / 60:.0f} min of silence")
                 pause = min(2 * pause, LONGEST_PAUSE)
             elif not self._advanced(latest, leads):
                 return
@@ -168,6 +193,7 @@ class Study:
             batch = next_batch(self.plan, StudyResult(self.plan, jobs, records))
             if not self.store.add_batch(jobs, batch):
                 self.store.begin_round(jobs, ended=True)
+                records.pack(jobs.keys)
                 return False
             jobs = self.store.jobs()
         return True
