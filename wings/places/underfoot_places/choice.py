@@ -50,7 +50,6 @@ PER = 100
 DECIDED = 0.75
 """Chance of being best from which a shoe is called the best."""
 UNLIKELY = 0.05
-LESS_FLUID = "fluids half as often"
 TWICE = 2.0
 """Slips of the worn shoe over those of the new one from which it is to be replaced."""
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
@@ -149,7 +148,7 @@ class Choice(Presentable):
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
             )
-        told = [each for each in self.levers if each.name != LESS_FLUID and each.left[2] < 1]
+        told = [each for each in self.levers if each.left[2] < 1]
         if told:
             best = min(told, key=lambda each: each.left[1])
             lines.append(
@@ -157,7 +156,7 @@ class Choice(Presentable):
                 "today."
             )
         else:
-            lines.append("No other shoe or floor is sure to leave fewer slips; half the fluid is.")
+            lines.append("No other shoe or floor is sure to leave fewer slips.")
         helpful = [each for each in self.measurements if each.changes >= 0.05]
         if helpful:
             one = helpful[0]
@@ -479,7 +478,6 @@ def chosen(
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
         levers.append(Lever(f"{other} for {present.name}", _left(rates[other], today)))
-    levers.append(Lever(LESS_FLUID, (0.5, 0.5, 0.5)))
     new = _sum(_slips(place, joint, states[present.name][False]))
     fluids = dict.fromkeys(place.fluids(), 1.0)
     one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
