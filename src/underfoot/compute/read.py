@@ -94,6 +94,8 @@ def readings(
         labels["film_spread"] = (
             "leaves out the roughness that lets fluid leak, which could not be estimated"
         )
+    else:
+        labels["film_spread_basis"] = "with the roughness that lets fluid leak"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)

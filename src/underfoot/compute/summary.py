@@ -170,7 +170,7 @@ def cautions(
         reasons.append(beyond_tests(others))
     sections = {line.partition(":")[0] for line in assumptions}
     left_out = {"shoe.heel": "heel shape"}
-    if "film_spread" in labels:
+    if "film_spread_basis" not in labels:
         left_out = {"interface": "interface roughness", **left_out}
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
     if inputs and friction_limit(scalars).kind == "film":

@@ -30,6 +30,12 @@ WINGS = {
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
     ("reports", "underfoot_design_studies"): "underfoot-design-studies",
+    **{
+        ("commands", name): "underfoot-places"
+        for name in ("calibrate.machine", "choose", "machine")
+    },
+    ("catalogues", "places"): "underfoot-places",
+    ("reports", "underfoot_places"): "underfoot-places",
     ("reports", "underfoot_trial_analysis"): "underfoot-trial-analysis",
     ("studies", "g1"): "underfoot-block",
     **{
