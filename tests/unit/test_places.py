@@ -191,6 +191,7 @@ def test_slips_are_in_proportion_to_how_often_the_fluid_is_there(choice):
         assert two.best == pytest.approx(one.best)
 
 
+@pytest.mark.slow
 def test_the_order_of_floors_and_shoes_changes_nothing():
     table = small_place()
     table["floor"].append({"name": "yard", "roughness": {"rq": "6 um"}, "area": 2})
