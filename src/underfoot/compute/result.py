@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.core import DataError, Provenance, SourcedValue, Status, UnderfootError, unknown_name
 from underfoot.core.fields import Fields, from_xarray
-from underfoot.core.files import whole_folder
+from underfoot.core.files import checksum, whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
 
 from . import summary
@@ -183,7 +183,7 @@ class Result(Presentable):
         return folder
 
     def write_files(self, folder: Path) -> None:
-        """Write the result's own files into an existing folder, the fields last."""
+        """Write the result's own files into an existing folder."""
         failures: dict[str, Exception] = {}
         writers = self.writers()
         for name, write in writers.items():
@@ -205,12 +205,16 @@ class Result(Presentable):
         """Return the function that writes each of the result's own files."""
         return {
             "case.toml": lambda path: _write_text(path, self.case_text),
-            "result.json": lambda path: _write_text(
-                path, json.dumps(self.to_dict(), indent=2, ensure_ascii=False) + "\n"
-            ),
-            "summary.csv": self._write_summary,
             FIELDS_FILE: self._write_fields,
+            "result.json": self._write_numbers,  # with the checksum of the fields
+            "summary.csv": self._write_summary,
         }
+
+    def _write_numbers(self, path: Path) -> None:
+        fields = path.with_name(FIELDS_FILE)
+        known = {"fields_sha256": checksum(fields)} if fields.exists() else {}
+        text = json.dumps(self.to_dict() | known, indent=2, ensure_ascii=False)
+        _write_text(path, text + "\n")
 
     def _write_fields(self, path: Path) -> None:
         self.data.to_netcdf(
@@ -253,6 +257,13 @@ class Result(Presentable):
             case_text = (folder / "case.toml").read_text(encoding="utf-8")
             fields = Fields()
             if (folder / FIELDS_FILE).exists():
+                digest = stored.get("fields_sha256")
+                if digest and checksum(folder / FIELDS_FILE) != digest:  # HDF5 may read for ever
+                    raise DataError(
+                        f"{FIELDS_FILE} is not the file that was written: damaged or changed",
+                        where=str(folder),
+                        remedy="Run the case again with --out",
+                    )
                 h5py.File(folder / FIELDS_FILE).close()  # refuses a damaged one without a trace
                 with xarray.open_dataset(folder / FIELDS_FILE, engine="h5netcdf") as dataset:
                     fields = from_xarray(dataset)
