@@ -84,7 +84,9 @@ def _on_dask(
                     ended.add(future)
                 if not sent:
                     return
-                future, answer = next(ended)
+                future, answer = next(ended, (None, None))
+                if future is None or future.status in ("cancelled", "lost"):
+                    raise distributed.CancelledError("the scheduler no longer knows the cases")
                 job, failed = sent.pop(future.key), future.status == "error"
                 if failed and not isinstance(future.exception(), distributed.KilledWorker):
                     raise future.exception()
