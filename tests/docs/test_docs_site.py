@@ -48,7 +48,8 @@ def test_no_page_is_too_long_or_too_wide(site):
     with opened(site / "index.html", width=1366, height=768) as session:
         for page in pages:
             session.go(page)
-            assert session.value("document.documentElement.scrollHeight") < 15_000, page
+            if page.name != "genindex-all.html":  # the index by letters once more, to search in
+                assert session.value("document.documentElement.scrollHeight") < 15_000, page
             assert session.value("document.documentElement.scrollWidth") <= 1366, page
 
 
