@@ -164,7 +164,7 @@ def numbers(shoe: str, spacing: float, cells_along: int) -> dict[str, float]:
     assert contact.status.usable
     mirrored = contact.fluid_pressure[:, ::-1]
     assert np.abs(contact.fluid_pressure - mirrored).max() < 1e-3 * contact.fluid_pressure.max()
-    return place_numbers(case, parts.local_law, parts.sole, contact, parts.viscosity)
+    return place_numbers(parts, contact)
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot import Case, run
+from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case.surfaces import BEYOND_DEVIATION, FLOOR_RQ
 from underfoot.compute.continuation import Continuation
 from underfoot.compute.numbers import FILM_ERROR, GRID_NAMES, with_film_spread
@@ -78,9 +79,7 @@ def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spacing = case.numerics.quick_grid_spacing
 
     def march(factor: float):
-        parts = prepared(case.replace(FACTOR, 2 * factor), spacing)
-        on = parts.sole, parts.compliance, parts.asperities, parts.film, parts.local_law
-        return solved_motion(parts.case, *on)
+        return solved_motion(prepared(case.replace(FACTOR, 2 * factor), spacing))
 
     width = math.exp(BEYOND_DEVIATION)
     contact = march(1.0)
@@ -137,3 +136,18 @@ def test_a_preview_is_as_unsure_as_a_run():
 def _known(case: Case) -> float:
     seen = Continuation(case.replace(FACTOR, 2.0)).continued({"contaminant.viscosity": "150 cP"})
     return seen.cof.uncertainty or 0.0
+
+
+def test_a_second_calibration_keeps_what_the_first_said_of_the_roughness():
+    """Of the untreaded heel's film; a COF above the middle asks for more roughness."""
+    case = flat(**{"numerics.tread_positions": 1})
+    middle = run(case, quick=True).value("cof")
+    first = calibrated_pair([PairReading(case, cof=1.4 * middle, sd=0.003)])
+    again = calibrated_pair([PairReading(case, cof=1.4 * middle, sd=0.003)], draws=first.draws)
+    leaks = [
+        next(values for name, values in each.draws.errors.items() if name.startswith(LEAK))
+        for each in (first, again)
+    ]
+    assert np.median(leaks[0]) > 0.05
+    assert np.std(leaks[0]) < 0.95 * BEYOND_DEVIATION
+    assert np.median(leaks[1]) > np.median(leaks[0])

@@ -7,7 +7,6 @@ far as the readings go; other pairs of the same laboratory profit too, other tre
 are alike. A reading has an error of its own, as fitted between the sources, which teaches nothing.
 """
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,6 +16,7 @@ import numpy as np
 from scipy.stats import norm
 
 from underfoot.case import Case
+from underfoot.case import text as toml
 from underfoot.compute.contact_friction import (
     contact_friction,
     leak_name,
@@ -32,7 +32,6 @@ from underfoot.core import (
     DataError,
     InputError,
     Progress,
-    nearest_match,
     silent,
     unknown_name,
 )
@@ -146,13 +145,7 @@ def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
     Raises:
         InputError: No such file, no reading, an unknown key, a value that is missing or no COF.
     """
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        near = nearest_match(path.name, [file.name for file in path.parent.glob("*.toml")])
-        raise InputError(f"there is no file {path}", where="READINGS", nearest=near) from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path.name} can't be read ({error})", where="READINGS") from error
+    table = toml.parsed(toml.read(path), str(path))
     entries = table.pop("reading", None)
     if table or not isinstance(entries, list) or not entries:
         raise InputError(
@@ -235,7 +228,7 @@ def calibrated_pair(
         place = place_of_tread(case, sole_map(case, case.value(grid)))
         if context.leak_deviation:
             normal = normal_draws(seed, f"{LEAK} of the rough contact", wide.count)
-            errors[leak_name(context)] = context.leak_deviation * normal
+            errors.setdefault(leak_name(context), context.leak_deviation * normal)
             words[leak_name(context)] = f"the roughness that lets fluid leak under {case.name}"
         for subject, error in sole_errors(case, context).items():
             name = error.name(place)

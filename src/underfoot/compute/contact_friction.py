@@ -89,7 +89,7 @@ def contact_friction(
         normal = normal_draws(seed, f"{name} of the rough contact", samples)
         if name == LEAK and (leak := known.get(leak_name(context))) is not None:
             normal = leak / context.leak_deviation
-        rough[name] = np.where(normal > 0, more, -less) * normal
+        rough[name] = odds_changes(less, more, normal)
     pressures = at.contact_pressure, at.fluid_pressure
     on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
     source = f"{plain.name} law: {plain.source}"
@@ -116,6 +116,11 @@ def contact_friction(
     sums = cof(parts, *pressures, **on_cells, sampled=sampled, source=source)
     film_odds = errors["film_error"] + sum(rough.values())
     return ContactFriction(maps, lugs, sums, sampled, film_odds)
+
+
+def odds_changes(less: float, more: float, normal: Array) -> Array:
+    """Return what standard normal draws add to ln F / (W - F): ``less`` at -1, ``more`` at 1."""
+    return np.where(normal > 0, more, -less) * normal
 
 
 def film_warmth(

@@ -102,16 +102,8 @@ class Continuation:
         self.case = case
         numerics = case.numerics
         self.spacing = numerics.quick_grid_spacing if quick else numerics.grid_spacing
-        self._parts = parts = prepared(case, self.spacing)
-        self.contact = solved_motion(
-            case,
-            parts.sole,
-            parts.compliance,
-            parts.asperities,
-            parts.film,
-            parts.local_law,
-            progress=progress,
-        )
+        self._parts = prepared(case, self.spacing)
+        self.contact = solved_motion(self._parts, progress=progress)
         if not self.contact.status.usable:
             raise ConvergenceError(
                 f"the case gave no result: {self.contact.status}",
@@ -123,7 +115,7 @@ class Continuation:
     @cached_property
     def values(self) -> dict[str, float]:
         """Scalars of the march by name, SI."""
-        return _numbers(self._parts, self.case, self.contact)
+        return place_numbers(self._parts, self.contact)
 
     @property
     def cof(self) -> SourcedValue:
@@ -142,10 +134,11 @@ class Continuation:
     def _friction(self, parts: Prepared, contact: SoleContact) -> ContactFriction:
         """Return the friction of a contact; its film is as unknown as that of the march."""
         on = parts.case, parts.context, parts.local_law, parts.sole, contact
-        return contact_friction(*on, spreads=self._spreads)
+        return contact_friction(*on, spreads=self.spreads)
 
     @cached_property
-    def _spreads(self) -> dict[str, tuple[float, float]]:
+    def spreads(self) -> dict[str, tuple[float, float]]:
+        """How unknown the film is (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
 
     def continued(self, changes: Mapping[str, Any]) -> Preview:
@@ -159,7 +152,7 @@ class Continuation:
         case = self.case.replace(changes)
         _refuse_history(case)
         parts, first, second = self._steps(case)
-        one, two = _numbers(parts, case, first), _numbers(parts, case, second)
+        one, two = (place_numbers(parts, each) for each in (first, second))
         values, errors = {}, {}
         for name in one.keys() & self.values.keys() & self._unchanged.keys():
             off = self.values[name] - self._unchanged[name]
@@ -185,7 +178,7 @@ class Continuation:
     @cached_property
     def _unchanged(self) -> dict[str, float]:
         parts, _, second = self._steps(self.case)
-        return _numbers(parts, self.case, second)
+        return place_numbers(parts, second)
 
     def _steps(self, case: Case) -> tuple[Prepared, SoleContact, SoleContact]:
         """Return the contact after one step and after two, on the grid of the march."""
@@ -208,9 +201,7 @@ class Continuation:
                 allowed="fluid, speed, load, angle, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
-        on = parts.sole, parts.compliance, parts.asperities, parts.film, parts.local_law
-        turn = case.motion.shoe_angle - angle
-        first, second = continued(self.contact, case, *on, turn=turn)
+        first, second = continued(self.contact, parts, turn=case.motion.shoe_angle - angle)
         return parts, first, second
 
 
@@ -234,10 +225,6 @@ def _refuse_history(case: Case) -> None:
             where="motion",
             allowed="a load that rises and stays",
         )
-
-
-def _numbers(parts: Prepared, case: Case, contact: SoleContact) -> dict[str, float]:
-    return place_numbers(case, parts.local_law, parts.sole, contact, parts.viscosity)
 
 
 def _changed(parts: Prepared, case: Case) -> Prepared:

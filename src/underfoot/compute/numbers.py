@@ -139,10 +139,11 @@ def with_film_spread(
             draws = draws * (places / places.mean())[np.arange(draws.size) % places.size]
         draws = np.minimum(draws, whole) if name == "fluid_load" else draws
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
-        own = 1.96 * (values[name].uncertainty or 0.0) / value
+        known = values[name].uncertainty or 0.0
+        own = 1.96 * known / value
         result[name] = replace(
             values[name],
-            uncertainty=math.hypot(float(np.std(draws)), own * value / 1.96),
+            uncertainty=math.hypot(float(np.std(draws)), known),
             interval=(
                 value * math.exp(-math.hypot(math.log(value / min(low, value)), own)),
                 value * math.exp(math.hypot(math.log(max(high, value) / value), own)),

@@ -10,7 +10,6 @@ import numpy as np
 from underfoot.core import InputError, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
 from underfoot.friction.propagation import normal_draws
-from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
@@ -138,7 +137,7 @@ def numerical_errors(
                 remedy="Set numerics.grid_check = false",
             )
         return "not estimated: the compliance holds for one grid"
-    numbers, columns = _read(parts, parts.sole, solution.contact), cells_along(case, parts.sole)
+    numbers, columns = _read(parts, solution.contact), cells_along(case, parts.sole)
     if checked:
         # cells along the sliding give the rims of lugs a peak that they don't have
         finer = columns if parts.sole.tread_depth.any() else max(CHECKED, columns)
@@ -166,14 +165,14 @@ def _compared(
 ) -> NumericalErrors | str:
     """Return the differences of ``numbers`` to the quick grid, and by its steps in time."""
     spacing = parts.case.numerics.quick_grid_spacing
-    sole, contact = solved_at(parts, Place(), spacing, progress=progress)
+    here, contact = solved_at(parts, Place(), spacing, progress=progress)
     contacts = [contact]
     if parts.viscosity is not None:  # a dry contact has no memory
         contacts.append(solved_at(parts, Place(), spacing, finer=2, progress=progress)[1])
-    cells = _cells(parts, cells_along(parts.case, sole))
+    cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
         return f"not estimated: a march on {cells} did not converge"
-    coarse = [_read(parts, sole, each) for each in contacts]
+    coarse = [_read(here, each) for each in contacts]
     grid = {name: abs(value - coarse[0][name]) for name, value in numbers.items()}
     by_steps = {name: 2 * abs(value - coarse[-1][name]) for name, value in coarse[0].items()}
     return NumericalErrors(grid, by_steps if len(coarse) > 1 else {}, f"difference to {cells}")
@@ -188,9 +187,9 @@ def _with_cells(parts: Prepared, columns: int) -> Prepared:
     return replace(parts, case=parts.case.replace("numerics.cells_along", columns))
 
 
-def _read(parts: Prepared, sole: SoleMap, contact: SoleContact) -> dict[str, float]:
-    friction = friction_sums(parts.law_on(sole), contact, parts.case.motion.speed)
-    sensor = scanned(parts.case, sole, contact, viscosity=parts.viscosity)
+def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:
+    friction = friction_sums(parts.local_law, contact, parts.case.motion.speed)
+    sensor = scanned(parts.case, parts.sole, contact, viscosity=parts.viscosity)
     return readings(contact, friction.cof.value or 0.0, sensor)
 
 

@@ -10,15 +10,15 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import SourcedValue, display
 from underfoot.core.arrays import Array
-from underfoot.friction import FrictionCoefficients, FrictionLaw, SampledCof
-from underfoot.shoe import SoleMap, Tread
+from underfoot.friction import FrictionCoefficients, SampledCof
+from underfoot.shoe import Tread
 from underfoot.sole_contact.cost import Cost
-from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .cost import cost
 from .numbers import scalars
+from .prepare import Prepared
 from .sensors import scanned
 from .sole import file_periods, file_surface
 
@@ -300,16 +300,12 @@ def _tread(case: Case) -> Tread | None:
     return tread if tread and tread.depth > 0 else None
 
 
-def place_numbers(
-    case: Case,
-    law: FrictionLaw | EdgedLaw,
-    sole: SoleMap,
-    contact: SoleContact,
-    viscosity: float | None,
-) -> dict[str, float]:
+def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
-    friction = friction_sums(law, contact, case.motion.speed)
-    numbers, _ = scalars(case, contact, friction, scanned(case, sole, contact, viscosity=viscosity))
+    case, sole = parts.case, parts.sole
+    friction = friction_sums(parts.local_law, contact, case.motion.speed)
+    sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
+    numbers, _ = scalars(case, contact, friction, sensor)
     return {
         name: each.value
         for name, each in numbers.items()

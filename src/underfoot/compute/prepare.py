@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -63,13 +63,31 @@ class Prepared:
         """Of the film, Pa s; None where no fluid builds up pressure."""
         return None if self.film is None else self.film.viscosity
 
-    def law_on(self, sole: SoleMap) -> FrictionLaw | EdgedLaw:
-        """Return the local friction on another map of the sole."""
-        return edged_law(self.case, self.context, self.law, sole, self.asperities) or self.law
+    def on(
+        self,
+        sole: SoleMap | None = None,
+        *,
+        turn: float = 0.0,
+        asperities: PressureGapLaw | None = None,
+    ) -> Prepared:
+        """Return the case on another map of the sole or on other asperities.
 
-    def compliance_on(self, sole: SoleMap, turn: float = 0.0) -> Compliance:
-        """Return the compliance on another map of the sole, whose shoe is turned by ``turn``."""
-        return self.case.compliance.build(turned(self.context, turn), sole)
+        ``turn`` (rad) turns the shoe of another map; a compliance that was given stays.
+        """
+        compliance = self.compliance
+        if sole is not None and "compliance" not in self.objects:
+            compliance = self.case.compliance.build(turned(self.context, turn), sole)
+        sole = self.sole if sole is None else sole
+        asperities = self.asperities if asperities is None else asperities
+        edged = edged_law(self.case, self.context, self.law, sole, asperities)
+        return replace(
+            self,
+            spacing=sole.spacing,
+            sole=sole,
+            compliance=compliance,
+            asperities=asperities,
+            local_law=edged or self.law,
+        )
 
 
 def prepared(

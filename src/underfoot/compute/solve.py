@@ -11,12 +11,9 @@ from underfoot.core import ConvergenceError, Progress, silent
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 from underfoot.film import FilmModel, NewtonianFilm
-from underfoot.friction import FrictionLaw
 from underfoot.friction.sampled_cof import FLOW, GAP, LEAK
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw, TabulatedLaw
-from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading
-from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw, LugInlet
 from underfoot.sole_contact.motion_history import solve_history
 from underfoot.sole_contact.sole_state import SoleState, SolverSettings
@@ -59,20 +56,10 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
     Raises:
         ConvergenceError: Not even the first contact could be solved.
     """
-    case, sole = parts.case, parts.sole
-    recorder = Recorder(case, parts.local_law, sole, parts.viscosity)
-    contact = solved_motion(
-        case,
-        sole,
-        parts.compliance,
-        parts.asperities,
-        parts.film,
-        parts.local_law,
-        watch=recorder,
-        progress=progress,
-    )
+    case, sole, law = parts.case, parts.sole, parts.local_law
+    recorder = Recorder(case, law, sole, parts.viscosity)
+    contact = solved_motion(parts, watch=recorder, progress=progress)
     spreads = film_spreads(parts, contact, progress)
-    law = parts.local_law
     friction = contact_friction(case, parts.context, law, sole, contact, spreads=spreads)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     return Solution(contact, recorder, friction, sensor, spreads)
@@ -105,7 +92,19 @@ def film_spreads(
         changed = {LEAK: tuple(leaks)}
     else:
         return {}
-    odds = _odds_on(parts, contact, progress)
+    case, moving = parts.case, parts
+    steady = case.motion.build() is None
+    if not steady and "compliance" not in parts.objects:
+        moving = parts.on(sole_map(case, case.numerics.quick_grid_spacing))
+
+    def odds(asperities: PressureGapLaw) -> float:
+        here = moving.on(asperities=asperities)
+        end = continued(contact, here)[-1] if steady else solved_motion(here, progress=progress)
+        if not end.status.usable:
+            raise ConvergenceError(str(end.status), history=[])
+        share = min(max(end.fluid_load / end.normal_force, 1e-6), 1 - 1e-6)
+        return math.log(share / (1 - share))
+
     try:
         unchanged = odds(law)
         return {
@@ -122,33 +121,6 @@ def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
     return parts.case.rough_contact.build(replace(parts.context, rq=rq))
 
 
-def _odds_on(
-    parts: Prepared, contact: SoleContact, progress: Progress
-) -> Callable[[PressureGapLaw], float]:
-    """Return a function: ln F / (W - F) of a contact on other asperities."""
-    case, sole, compliance = parts.case, parts.sole, parts.compliance
-    steady = case.motion.build() is None
-    if not steady and "compliance" not in parts.objects:
-        sole = sole_map(case, case.numerics.quick_grid_spacing)
-        compliance = parts.compliance_on(sole)
-
-    def odds(asperities: PressureGapLaw) -> float:
-        local_law = replace(parts, asperities=asperities).law_on(sole)
-        if steady:
-            on = sole, compliance, asperities
-            end = continued(contact, case, *on, parts.film, local_law)[-1]
-        else:
-            end = solved_motion(
-                case, sole, compliance, asperities, parts.film, local_law, progress=progress
-            )
-        if not end.status.usable:
-            raise ConvergenceError(str(end.status), history=[])
-        share = min(max(end.fluid_load / end.normal_force, 1e-6), 1 - 1e-6)
-        return math.log(share / (1 - share))
-
-    return odds
-
-
 def solved_at(
     parts: Prepared,
     place: Place,
@@ -156,16 +128,14 @@ def solved_at(
     *,
     finer: float = 1,
     progress: Progress = silent,
-) -> tuple[SoleMap, SoleContact]:
-    """Return sole and contact with the tread at a place, on cells of ``spacing`` (m).
+) -> tuple[Prepared, SoleContact]:
+    """Return case and contact with the tread at a place, on cells of ``spacing`` (m).
 
     ``finer``: ``solver_settings``.
     """
-    case = parts.case
-    sole = sole_map(case, spacing, shift=place.shift, turn=place.turn)
-    compliance, law = parts.compliance_on(sole, place.turn), parts.law_on(sole)
-    more: Any = {"finer": finer, "progress": progress}
-    return sole, solved_motion(case, sole, compliance, parts.asperities, parts.film, law, **more)
+    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn)
+    here = parts.on(sole, turn=place.turn)
+    return here, solved_motion(here, finer=finer, progress=progress)
 
 
 def averaged(
@@ -201,9 +171,7 @@ def averaged(
             march = part(progress, k / count, (k + 1) / count, name)
             yield k, _numbers_at(parts, place, spacing, march)
 
-    case_numbers = place_numbers(
-        parts.case, parts.local_law, parts.sole, solution.contact, parts.viscosity
-    )
+    case_numbers = place_numbers(parts, solution.contact)
     return tread_positions(parts.case, case_numbers, at_places, spacing=parts.spacing, quick=quick)
 
 
@@ -228,12 +196,12 @@ def _numbers_at(
 ) -> Mapping[str, float] | None:
     """Return the numbers of a result at a place; None where its contact did not converge."""
     try:
-        sole, contact = solved_at(parts, place, spacing, progress=progress)
+        here, contact = solved_at(parts, place, spacing, progress=progress)
     except ConvergenceError:
         return None
     if not contact.status.usable:
         return None
-    return place_numbers(parts.case, parts.law_on(sole), sole, contact, parts.viscosity)
+    return place_numbers(here, contact)
 
 
 def pool_depth(case: Case) -> float:
@@ -258,20 +226,14 @@ def solver_settings(
     )
 
 
-def edge_inlet(case: Case, law: FrictionLaw | EdgedLaw) -> LugInlet | None:
+def _inlet(parts: Prepared) -> LugInlet | None:
     """Return what the edges of lugs let in; None where the local friction knows none."""
-    if not isinstance(law, EdgedLaw):
-        return None
-    return law.inlet(case.motion.normal_force, case.motion.speed)
+    law, motion = parts.local_law, parts.case.motion
+    return law.inlet(motion.normal_force, motion.speed) if isinstance(law, EdgedLaw) else None
 
 
 def solved_motion(
-    case: Case,
-    sole: SoleMap,
-    compliance: Compliance,
-    asperities: PressureGapLaw,
-    film: FilmModel | None,
-    law: FrictionLaw | EdgedLaw,
+    parts: Prepared,
     *,
     finer: float = 1,
     watch: Callable[[SoleState], None] | None = None,
@@ -279,32 +241,23 @@ def solved_motion(
 ) -> SoleContact:
     """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``.
 
-    ``law`` is the local friction: where it knows the edges of lugs, these say what film enters.
+    Where the local friction knows the edges of lugs, these say what film enters.
     """
-    motion, history, parts = case.motion, case.motion.build(), (sole, compliance, asperities)
+    motion, history = parts.case.motion, parts.case.motion.build()
+    on = parts.sole, parts.compliance, parts.asperities
     common: dict[str, Any] = {
-        "viscosity": None if film is None else film.viscosity,
-        "settings": solver_settings(case, film, finer=finer),
+        "viscosity": parts.viscosity,
+        "settings": solver_settings(parts.case, parts.film, finer=finer),
         "progress": progress,
         "watch": watch,
-        "inlet": edge_inlet(case, law),
+        "inlet": _inlet(parts),
     }
     if history is not None:
-        return solve_history(*parts, history, map_angle=motion.shoe_angle, **common)
-    return solve_sliding(*parts, speed=motion.speed, normal_force=motion.normal_force, **common)
+        return solve_history(*on, history, map_angle=motion.shoe_angle, **common)
+    return solve_sliding(*on, speed=motion.speed, normal_force=motion.normal_force, **common)
 
 
-def continued(
-    start: SoleContact,
-    case: Case,
-    sole: SoleMap,
-    compliance: Compliance,
-    asperities: PressureGapLaw,
-    film: FilmModel | None,
-    law: FrictionLaw | EdgedLaw,
-    *,
-    turn: float = 0.0,
-) -> list[SoleContact]:
+def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list[SoleContact]:
     """Return what a steady contact becomes under a changed case after one step and after two.
 
     ``turn``: change of the shoe angle since the map was made, rad.
@@ -313,18 +266,18 @@ def continued(
         InputError: Another grid.
         ConvergenceError: A step could not be made.
     """
-    settings = replace(solver_settings(case, film), most_time_steps=MOST_STEPS)
+    settings = replace(solver_settings(parts.case, parts.film), most_time_steps=MOST_STEPS)
     return solve_on(
         start,
-        sole,
-        compliance,
-        asperities,
-        viscosity=None if film is None else film.viscosity,
-        speed=case.motion.speed,
-        normal_force=case.motion.normal_force,
+        parts.sole,
+        parts.compliance,
+        parts.asperities,
+        viscosity=parts.viscosity,
+        speed=parts.case.motion.speed,
+        normal_force=parts.case.motion.normal_force,
         turn=turn,
         duration=settings.end_time,
         steps=2,
         settings=settings,
-        inlet=edge_inlet(case, law),
+        inlet=_inlet(parts),
     )

@@ -196,10 +196,7 @@ def heel_on_two_grids() -> Check:
         numerics={"cells_along": 16},
     )
     coarse, fine = (
-        _usable(
-            solved_motion(case, p.sole, p.compliance, p.asperities, p.film, p.local_law)
-        ).fluid_load
-        for p in (prepared(case, spacing) for spacing in (1.5e-3, 1e-3))
+        _usable(solved_motion(prepared(case, spacing))).fluid_load for spacing in (1.5e-3, 1e-3)
     )
     return Check(
         "sole solver: untreaded heel in glycerol, load on the film (N)",

@@ -84,14 +84,15 @@ def _on_dask(
                     ended.add(future)
                 if not sent:
                     return
-                future, answer = next(ended, (None, None))
-                if future is None or future.status in ("cancelled", "lost"):
+                following: Any = next(ended, None)
+                if following is None or following[0].status in ("cancelled", "lost"):
                     raise distributed.CancelledError("the scheduler no longer knows the cases")
+                future, answer = following
                 job, failed = sent.pop(future.key), future.status == "error"
                 if failed and not isinstance(future.exception(), distributed.KilledWorker):
                     raise future.exception()
                 yield died(job) if failed else answer
-                del future, answer
+                del following, future, answer
         except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
             raise UnderfootError(
                 f"the Dask scheduler {address} went away ({type(error).__name__})",

@@ -5,7 +5,8 @@ A step of a person who needs the friction r on a floor of slope alpha slips with
     P = logistic(k (A - r' + c)),   r' = tan(alpha + atan r)
 
 (``underfoot.slip``), A the available friction of shoe, floor and fluid. Its median is that of the
-solved case; its draws are the law's, with the load on the film off by the model's error:
+solved case; its draws are the law's, with the load on the film off by the model's error and by what
+is not known of the gap:
 
     A = g mu_c (1 - phi) exp(t) + A_v phi / phi_0
 
@@ -25,13 +26,13 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.special import expit
 
-from underfoot.compute.contact_friction import place_of_tread, sole_errors
+from underfoot.compute.contact_friction import odds_changes, place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import sole_map
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array
-from underfoot.core.presentation import Presentable, Table, probability_text
+from underfoot.core.presentation import Presentable, Table, percent, probability_text
 from underfoot.friction import PairContactLaw
 from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms
 from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
@@ -55,6 +56,7 @@ TWICE = 2.0
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
 """The floor that a change of floors is computed with: clay quarry tile of the catalogue."""
 BINS = 10
+"""Readings, equally likely, of which it is counted how many change the choice."""
 LEAST, MOST_RATIO = 0.01, 100.0
 """Slips below which, and ratio of slips beyond which, no number is printed."""
 CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
@@ -162,7 +164,7 @@ class Choice(Presentable):
             one = helpful[0]
             lines.append(
                 f"Measure first: {one.name}; it changes the choice with a chance of "
-                f"{probability_text(one.changes)}."
+                f"{_of_bins(one.changes)}."
             )
         return tuple(lines)
 
@@ -214,8 +216,7 @@ class Choice(Presentable):
         """Return shoes, changes, measurements, where slips happen, friction."""
         levers = [(one.name, _share(one.left)) for one in self.levers]
         measures = [
-            (one.name, probability_text(one.changes), _count(one.saves))
-            for one in self.measurements
+            (one.name, _of_bins(one.changes), _count(one.saves)) for one in self.measurements
         ]
         where = [(name, probability_text(share)) for name, share in self.sources]
         cofs = [
@@ -284,6 +285,10 @@ def _count(value: float) -> str:
     return f"{value:.2g}" if value < 10 else f"{float(f'{value:.2g}'):,.0f}"
 
 
+def _of_bins(chance: float) -> str:
+    return percent(chance) if chance > 0.5 / BINS else f"below {percent(1 / BINS)}"
+
+
 def _ratio(value: float) -> str:
     """Return a ratio of slips; beyond a factor of 100 it is of the slip model's tails."""
     if value < 1 / MOST_RATIO:
@@ -320,21 +325,24 @@ class _Solver:
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
-            if number == order[0]:
-                values = march.values
-            else:
-                changes = {
-                    "floor": dict(floor.section), "contaminant": fluid
-                }  # fmt: skip
+            solved, values = march, march.values
+            if number != order[0]:
                 try:
+                    changes = {"floor": dict(floor.section), "contaminant": fluid}
                     values = march.continued(changes).values
                 except (InputError, ConvergenceError):
-                    values = Continuation(case, quick=self.quick).values
-            found[floor.name, fluid] = self._cell(case, values, shoe, floor)
+                    solved = Continuation(case, quick=self.quick)
+                    values = solved.values
+            found[floor.name, fluid] = self._cell(case, values, solved.spreads, shoe, floor)
         return found
 
     def _cell(
-        self, case: Any, values: Mapping[str, float], shoe: PlaceShoe, floor: PlaceFloor
+        self,
+        case: Any,
+        values: Mapping[str, float],
+        spreads: Mapping[str, tuple[float, float]],
+        shoe: PlaceShoe,
+        floor: PlaceFloor,
     ) -> Cell:
         context = resolved(case)
         law = case.friction.build(context)
@@ -359,7 +367,11 @@ class _Solver:
         }
         share = np.zeros(joint.count)
         if film > 0:
-            share = expit(math.log(film / (1 - film)) + errors["film_error"])
+            odds = math.log(film / (1 - film)) + errors["film_error"]
+            for name, (less, more) in spreads.items():
+                normal = joint.normal(f"{name} of the rough contact on {floor.name}")
+                odds = odds + odds_changes(less, more, normal)
+            share = expit(odds)
         acof = factor * mu * (1 - share) * np.exp(errors["tread_error"])
         if film > 0:
             acof = acof + viscous * share / film

@@ -347,7 +347,9 @@ def predicted_reading(
     rq = FLOOR_RQ if floor_rq is None else floor_rq
     for end in rq:
         if not (math.isfinite(end) and 1e-9 <= end <= 1e-3):
-            raise RangeError(f"{end:g} m", where="floor_rq", allowed="1 nm to 1 mm")
+            raise RangeError(
+                f"{end:g} m", where="roughness of the floor (Rq)", allowed="1 nm to 1 mm"
+            )
     joint = JointDraws(seed=seed)
     device.learn_anchors(joint)
     reading = device.scale.reading(device.cof(joint, "floor", rq, liquid))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from underfoot.case import Case
-from underfoot.core import InputError, RangeError, nearest_match, to_si, unknown_name
+from underfoot.case import text as toml
+from underfoot.core import InputError, RangeError, to_si, unknown_name
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .joint import Reading
@@ -134,14 +134,7 @@ def read_place(path: Path) -> Place:
         InputError: No such file; an unknown key; shares that do not add to 1; a floor, shoe or
             reading that cannot be.
     """
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        near = nearest_match(path.name, [file.name for file in path.parent.glob("*.toml")])
-        raise InputError(f"there is no file {path}", where="PLACE", nearest=near) from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path.name} can't be read ({error})", where="PLACE") from error
-    return place_of(table, name=path.stem)
+    return place_of(toml.parsed(toml.read(path), str(path)), name=path.stem)
 
 
 def place_of(table: Mapping[str, Any], name: str = "place") -> Place:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -191,21 +192,12 @@ def equivalence_findings(
     return findings
 
 
-def corrected_p(p: Sequence[float], *, false_discovery: bool = False) -> list[float]:
-    """Return p corrected for their number: Holm's method, or Benjamini and Hochberg's.
+def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
+    """Return p corrected for their number: Holm's method, or another of statsmodels."""
+    from statsmodels.stats.multitest import multipletests
 
-    Source: Holm 1979, Scand. J. Statistics 6:65; Benjamini and Hochberg 1995, JRSS B 57:289.
-    """
-    given = np.asarray(p, dtype=float)
-    order, count = np.argsort(given), given.size
-    if false_discovery:
-        each = given[order] * count / np.arange(1, count + 1)
-        each = np.minimum.accumulate(each[::-1])[::-1]
-    else:
-        each = np.maximum.accumulate(given[order] * np.arange(count, 0, -1))
-    corrected = np.empty(count)
-    corrected[order] = np.minimum(each, 1.0)
-    return corrected.tolist()
+    corrected: Any = multipletests(p, method=method)[1] if p else []
+    return [float(each) for each in corrected]
 
 
 def rank_findings(
@@ -260,7 +252,7 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     if len({outcome for outcome, *_ in named}) < 2:
         return []
     p = [float(value) for *_, value in named if isinstance(value, float)]
-    both = corrected_p(p), corrected_p(p, false_discovery=True)
+    both = corrected_p(p), corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
     columns = ("outcome", "term", "p", "p (Holm)", "p (Benjamini-Hochberg)")
     note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
