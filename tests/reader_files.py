@@ -121,8 +121,6 @@ TRIALS = (
     "bmc/walk1.trc",
     "bmc/walk1.forces",
     "opensim/leg69_stance_grf.mot",
-    "cetr/HT-2n-6-4_2_001.csv",
-    "pcs/demo_3.txt",
     "btk/ADemo1_rewrite_c3d_pc_integer.c3d",
 )
 VISCOELASTIC = TESTS / "data" / "viscoelastic" / "pyvisco"

@@ -1,6 +1,7 @@
 """Engines that wait say for whom, and what helps."""
 
 import os
+import signal
 import time
 from pathlib import Path
 
@@ -40,6 +41,25 @@ def test_a_dask_cluster_without_workers_says_what_starts_one(monkeypatch):
         compute, _ = engines.engine(f"dask:{address}", None, told)
         done = list(compute(answer, iter(jobs), None))
     assert said[0] == f"No worker: start dask worker {address}"
+    assert {one.key for one in done} == {job.key for job in jobs}
+
+
+@pytest.mark.slow
+def test_answers_that_came_count_though_their_worker_was_lost_since():
+    """The first reader is slow; meanwhile all answers come, and then every worker dies."""
+    distributed = pytest.importorskip("distributed")
+    jobs = [Job(f"{k}", k, 0, 0, 0, (0.5,), {}) for k in range(4)]
+    local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**local) as cluster, distributed.Client(cluster) as client:
+        address = cluster.scheduler_address
+        compute, _ = engines.engine(f"dask:{address}", None, pytest.fail)
+        records = compute(answer, iter(jobs), pytest.fail)
+        done = [next(records)]
+        time.sleep(1)
+        for process in client.run(os.getpid).values():
+            os.kill(process, signal.SIGKILL)
+        time.sleep(1)
+        done += records
     assert {one.key for one in done} == {job.key for job in jobs}
 
 

@@ -84,13 +84,14 @@ def _on_dask(
                     ended.add(future)
                 if not sent:
                     return
-                following: Any = next(ended, None)
-                if following is None or following[0].status in ("cancelled", "lost"):
-                    raise distributed.CancelledError("the scheduler no longer knows the cases")
+                # an answer that came counts, even where its worker has been lost since
+                following: Any = next(ended, (None, None))
                 future, answer = following
-                job, failed = sent.pop(future.key), future.status == "error"
-                if failed and not isinstance(future.exception(), distributed.KilledWorker):
-                    raise future.exception()
+                if future is None or isinstance(answer, distributed.CancelledError):
+                    raise distributed.CancelledError("the scheduler no longer knows the cases")
+                job, failed = sent.pop(future.key), not isinstance(answer, Record)
+                if failed and not isinstance(answer[1], distributed.KilledWorker):
+                    raise answer[1]
                 yield died(job) if failed else answer
                 del following, future, answer
         except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
