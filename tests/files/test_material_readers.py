@@ -67,6 +67,7 @@ def test_sets_are_found_by_temperature(tmp_path):
     [
         ("t (s),E_relax (MPa)\n1,8\n2,\n3,6\n4,5", "missing in the column E_relax.*line 3"),
         ("t (s),E_relax (MPa)\n1,8\n2,nan\n3,6\n4,5", "missing in the column E_relax"),
+        ("t (s),E_relax (MPa),T (C),Set\n1,8,20,1\n2,7,20,\n3,6,20,1", "the column Set.*line 3"),
         ("t (s),E_relax (MPa)\n1,8\n2,x7\n3,6\n4,5", '"x7" in line 3'),
         ("t (s),E_relax (MPa)\n1,8,1,5\n2,0,7,3\n3,0,6,1\n4,0,5,2", "both separator and decimal"),
         ("t (s),E_relax (MPa)\n1,8,2\n2,7,3", "3 values for 2 headings"),

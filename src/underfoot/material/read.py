@@ -64,15 +64,7 @@ class _Table:
                 allowed=f"one named {', '.join(aliases[:6])}",
                 nearest=next(filter(None, near), None),
             )
-        values, where = self.columns[name], f"{self.where}, column {name}"
-        missing = np.flatnonzero(~np.isfinite(values))
-        if missing.size:
-            raise DataError(
-                f"{missing.size} of {values.size} values are missing in the column {name}, the "
-                f"first in line {self.first_row + missing[0]}",
-                where=self.where,
-                remedy="Remove the rows, or repair them at their source",
-            )
+        values, where = self.complete(name), f"{self.where}, column {name}"
         written = (self.stated.get(name) or self.stated.get(what) or self.units[name]).strip()
         if written in ("", "-"):
             raise DataError(
@@ -89,6 +81,19 @@ class _Table:
                 error.what, where=where, allowed=error.allowed, nearest=error.nearest
             ) from error
         return values * (one - zero) + zero
+
+    def complete(self, name: str) -> np.ndarray:
+        """Return the numbers below a heading as written; refuse them where one is missing."""
+        values = self.columns[name]
+        missing = np.flatnonzero(~np.isfinite(values))
+        if missing.size:
+            raise DataError(
+                f"{missing.size} of {values.size} values are missing in the column {name}, the "
+                f"first in line {self.first_row + missing[0]}",
+                where=self.where,
+                remedy="Remove the rows, or repair them at their source",
+            )
+        return values
 
 
 def _read_table(path: Path | str, units: Mapping[str, str] | None) -> _Table:
@@ -354,7 +359,7 @@ def _sets(table: _Table, count: int) -> list[tuple[np.ndarray, float | None]]:
     kelvin = table.column(TEMPERATURE, "K", "temperature") if tested else None
     label = table.named(SET)
     if label is not None:
-        numbers = table.columns[label]
+        numbers = table.complete(label)
         groups = [np.flatnonzero(numbers == n) for n in np.unique(numbers)]
     elif kelvin is not None:
         order = np.argsort(kelvin, kind="stable")
