@@ -10,7 +10,7 @@ from hypothesis import settings
 from positive_bounds import bounds_below_zero
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
-LONG = 5  # s of CPU, above which a test should be marked slow
+LONG = 3  # s of CPU, above which a test should be marked slow
 CPU = pytest.StashKey[list[float]]()
 NO_BROWSER = "no Chromium on this machine (Debian, Ubuntu: apt-get install chromium)"
 

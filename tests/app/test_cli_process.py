@@ -140,12 +140,13 @@ def test_a_bad_case_ends_with_its_exit_code_and_no_files(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "code", "message"),
     [
         (signal.SIGINT, 130, "stopped"),
-        pytest.param(signal.SIGTERM, 143, "terminated", marks=pytest.mark.slow),
-        pytest.param(signal.SIGKILL, -signal.SIGKILL, "", marks=pytest.mark.slow),
+        (signal.SIGTERM, 143, "terminated"),
+        (signal.SIGKILL, -signal.SIGKILL, ""),
     ],
 )
 def test_a_run_ended_by_a_signal_leaves_nothing_behind(tmp_path, number, code, message):

@@ -151,6 +151,7 @@ def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -
         risk_assessment(case, result=result)
 
 
+@pytest.mark.slow
 def test_a_motion_with_a_history_is_run_for_each_change() -> None:
     case = Case.from_text(TEXT).replace("motion", "heel_strike_to_flat")
     rougher = Change("rougher", "rougher", "floor", {"floor.roughness.rq": 5e-6})
@@ -236,6 +237,7 @@ def test_command(tmp_path) -> None:
     assert "above 0 and below 1" in wrong.stderr
 
 
+@pytest.mark.slow
 def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(TEXT + 'numerics.grid_spacing = "2.5 mm"\n', encoding="utf-8")

@@ -145,6 +145,7 @@ def documented():
     return rows
 
 
+@pytest.mark.slow
 def test_the_documented_table_agrees_with_a_fresh_computation():
     rows = documented()
     fresh = judged(study("g3").statements, g3.compute(Options()).quantities)

@@ -136,6 +136,7 @@ def test_check_status_best_and_export(finished):
     assert "contact_pressure" in maps
 
 
+@pytest.mark.slow
 def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     folder, _ = finished
     (tmp_path / "heel.toml").write_text((folder / "heel.toml").read_text())
@@ -163,11 +164,12 @@ def test_killed_at_any_time_it_goes_on_and_gives_the_same(finished, tmp_path):
     assert numbers(store) == numbers(folder / "out" / "heel")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "word", "code"),
     [
         (signal.SIGINT, "stopped", 130),
-        pytest.param(signal.SIGTERM, "terminated", 143, marks=pytest.mark.slow),
+        (signal.SIGTERM, "terminated", 143),
     ],
 )
 def test_stopped_it_says_what_is_kept_and_leaves_no_claim(tmp_path, number, word, code):

@@ -38,6 +38,7 @@ def test_a_sweep_gives_what_the_runs_of_its_cases_give(case, tmp_path):
     assert set(found["ending"].values.ravel()) == {"computed"}
 
 
+@pytest.mark.slow
 def test_an_optimisation_beats_the_designs_that_it_began_with(case, tmp_path):
     found = uf.optimise(
         case.replace("numerics.cells_along", 1),  # smooth on a grid as coarse as this

@@ -47,6 +47,7 @@ def project(tmp_path_factory):
     return made
 
 
+@pytest.mark.slow
 def test_a_study_is_checked_run_shown_and_a_design_of_it_becomes_a_case(project):
     file = str(project.inside("studies", "Speeds.toml"))
     at = (file, file.removesuffix(".toml"))

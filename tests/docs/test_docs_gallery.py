@@ -17,7 +17,7 @@ PAGES = [page for page in sorted((ROOT / "docs/gallery").glob("*.md")) if page.s
 SLOW = (
     "add_my_fluid add_my_law etch_the_floor how_deep_a_tread is_my_grid_fine_enough one_reading "
     "pass_the_test soft_or_hard sweep_on_a_cluster what_to_measure_first when_is_it_worn_out "
-    "which_floor which_pattern which_spill"
+    "what_would_help which_floor which_lug_in_oil which_pattern which_spill"
 ).split()
 
 

@@ -138,6 +138,7 @@ def _known(case: Case) -> float:
     return seen.cof.uncertainty or 0.0
 
 
+@pytest.mark.slow
 def test_a_second_calibration_keeps_what_the_first_said_of_the_roughness():
     """Of the untreaded heel's film; a COF above the middle asks for more roughness."""
     case = flat(**{"numerics.tread_positions": 1})

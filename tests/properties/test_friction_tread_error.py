@@ -187,6 +187,7 @@ def test_treads_that_nobody_could_tell_apart_are_not_told_apart(fluid):
     assert count == 20
 
 
+@pytest.mark.slow
 def test_a_comparison_that_can_t_tell_names_what_would():
     bars, hexagons = (
         treaded(pattern).replace(

@@ -183,6 +183,7 @@ def test_a_cell_is_the_whole_run_of_its_case(choice):
     assert film > 0.5
 
 
+@pytest.mark.slow
 def test_slips_are_in_proportion_to_how_often_the_fluid_is_there(choice):
     table = small_place() | {"fluids": {"dry": 0.8, "glycerol_90pct": 0.2}}
     twice = chosen(place_of(table))
