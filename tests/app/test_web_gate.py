@@ -9,7 +9,7 @@ pytest.importorskip("nicegui")
 from underfoot.core import InputError
 from underfoot_app.gate import Gate
 from underfoot_app.project import Project
-from underfoot_app.uploads import received, upload_path
+from underfoot_app.uploads import received, revisions, upload_path
 
 TOKEN, PORT = "t" * 40, 8642
 COOKIE = f"underfoot-{PORT}={TOKEN}"
@@ -114,8 +114,33 @@ def test_files_arrive_whole_or_not_at_all(tmp_path, monkeypatch):
     assert path.read_bytes() == b"abc"
 
 
+def test_a_file_of_a_taken_name_is_its_next_revision(tmp_path):
+    project = Project(tmp_path)
+
+    def dropped(*chunks):
+        return asyncio.run(received(project, "soles/heel.stl", stream(*chunks)))
+
+    paths = [dropped(b"%d" % number) for number in range(20)]
+    assert dropped(b"3") == paths[3]  # of the same content there is one file
+    assert [path.read_bytes() for path in paths] == [b"%d" % number for number in range(20)]
+    assert paths[:2] == [tmp_path / "soles" / "heel.stl", tmp_path / "soles/heel, revision 2.stl"]
+    assert revisions(paths[7]) == paths
+    assert len(list((tmp_path / "soles").iterdir())) == 20
+    other = asyncio.run(received(project, "soles/heel, revision 4.stl", stream(b"new")))
+    assert other.name == "heel, revision 21.stl"
+
+
+@pytest.mark.parametrize("name", ["(1) Heel v2.stl", "Sohle für Öl.STEP", "a" * 110 + ".stl"])
+def test_names_as_people_and_browsers_write_them(tmp_path, name):
+    assert upload_path(Project(tmp_path), f"soles/{name}").name == name
+
+
 @pytest.mark.parametrize(
-    "place", ["variants/a.toml", "soles", "soles/", "soles/../a", "soles/.x", "soles/a:b", "/etc/x"]
+    "place",
+    [
+        *("variants/a.toml", "soles", "soles/", "soles/../a", "soles/.x", "soles/a:b", "/etc/x"),
+        *("soles/con.stl", "soles/a.", "soles/ a.stl", f"soles/{'a' * 130}.stl"),
+    ],
 )
 def test_files_go_nowhere_else(tmp_path, place):
     with pytest.raises(InputError):

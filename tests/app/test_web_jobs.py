@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import shutil
 import time
 
 import pytest
@@ -123,3 +124,25 @@ def test_who_leaves_does_not_keep_the_process_busy():
             lane.close()
 
     asyncio.run(work())
+
+
+@pytest.mark.usefixtures("path")
+def test_a_project_that_was_copied_computes_in_the_copy(tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+
+    async def submitted(jobs):
+        task = jobs.submit("a", HERE + "doubled", str(here / "variants" / "a.toml"), about="a")
+        await jobs.finished(task)
+        return task.arguments
+
+    async def read(jobs):
+        return next(iter(jobs.tasks.values())).arguments
+
+    before = asyncio.run(with_jobs(here, submitted))
+    shutil.copytree(here, there)
+    shutil.rmtree(here)
+    (after,) = asyncio.run(with_jobs(there, read))
+    assert [str(here / "variants" / "a.toml")] == list(before)
+    assert after == str(there / "variants" / "a.toml")
+    assert str(tmp_path) not in (there / "jobs.jsonl").read_text()

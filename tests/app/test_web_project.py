@@ -137,3 +137,36 @@ def test_damaged_results_are_none(project):
     (folder / "result.json").write_text("{")
     assert project.summary("one") is None
     assert project.results() == []
+
+
+def test_lines_of_other_programs_in_the_history_are_left_out(project):
+    history = project.folder / "history.jsonl"
+    foreign = ['{"a": 1}', '{"variant": 3, "action": "set"}', '{"variant": "one"}', "[]", "7"]
+    odd = ['{"variant": "one", "action": "set", "text": 5}', '{"variant": "new", "action": "undo"}']
+    history.write_text("\n".join([*foreign, history.read_text(), *odd, ""]))
+    again = Project(project.folder)
+    assert again.variants() == project.variants()
+    assert again.removed() == []
+    assert again.text("one") == project.text("one")
+
+
+def test_a_result_is_of_the_inputs_that_it_was_computed_from(project):
+    folder = project.result_folder("one")
+    folder.mkdir()
+    stored = {
+        "cof": {"value": 0.2, "interval": [0.1, 0.3]},
+        "status": {"value": "converged"},
+        "provenance": {"case_hash": project.case("one").hash, "created": "2026-01-01"},
+    }
+    (folder / "result.json").write_text(json.dumps(stored))
+    assert project.is_current("one")
+    before = project.state("one")
+    project.change("one", {"motion.speed": "0.6 m/s"})
+    assert not project.is_current("one")
+    assert project.state("one") != before
+    project.undo("one")
+    assert project.is_current("one")
+    assert project.state("one") == before
+    project.remove("one")
+    assert not project.is_current("one")
+    assert project.state("one")[0] is None

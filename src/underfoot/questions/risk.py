@@ -194,6 +194,10 @@ class RiskAssessment(Presentable):
                         name: each.number(name) if each.computed else None
                         for name in ("cof", "slip_probability", "fluid_load")
                     },
+                    "slip_interval": each.scalars["slip_probability"].interval
+                    if each.computed
+                    else None,
+                    "extrapolated": each.computed and bool(_note(each)),
                     "cof_error": each.error,
                     "higher_cof": each.higher,
                     "reason": each.reason,

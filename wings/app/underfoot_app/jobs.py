@@ -11,7 +11,7 @@ import asyncio
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -30,6 +30,8 @@ PATIENT = 5
 """Niceness of full runs: sliders move meanwhile."""
 WAITING, RUNNING, DONE = "waiting", "running", "done"
 STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
+PROJECT = "{project}"
+"""What stands for the project's folder in ``jobs.jsonl``: a project may be copied or moved."""
 SHOWN = 50
 """Jobs that are kept in mind, the newest."""
 
@@ -244,20 +246,32 @@ class Jobs:
 
     def _changed(self, task: Task) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
-        append_line(self._file, line)
+        append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
         for number in list(self.tasks)[:-SHOWN]:
             if not self.tasks[number].open:
                 del self.tasks[number]
 
     def _read(self) -> None:
         for line in lines(self._file):
-            if "number" in line:
-                fields = {name: value for name, value in line.items() if name in KEPT}
+            if isinstance(line.get("number"), int):
+                here = _moved(line, PROJECT, str(self._file.parent))
+                fields = {name: value for name, value in here.items() if name in KEPT}
                 self.tasks[line["number"]] = Task(**{"title": "", **fields})
         for task in self.tasks.values():
             if task.open:
                 self._end(task, INTERRUPTED)
         self.tasks = dict(list(self.tasks.items())[-SHOWN:])
+
+
+def _moved(content: Any, folder: str, to: str) -> Any:
+    """Return plain data with the paths in ``folder`` as paths in ``to``."""
+    if isinstance(content, str):
+        return to + content[len(folder) :] if content.startswith(folder) else content
+    if isinstance(content, Mapping):
+        return {key: _moved(each, folder, to) for key, each in content.items()}
+    if isinstance(content, list | tuple):
+        return [_moved(each, folder, to) for each in content]
+    return content
 
 
 def named(function: str, *args: Any, progress: Any, **options: Any) -> Any:

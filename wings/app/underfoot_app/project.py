@@ -24,6 +24,7 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.core import InputError
+from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
 
 FOLDERS = ("variants", "soles", "measured", "results", "studies", "trials")
@@ -227,6 +228,26 @@ class Project:
         self.path(name)
         return self.folder / "results" / name
 
+    def state(self, name: str) -> tuple[str | None, str | None]:
+        """Return what pages show of a variant: its text, and when its result was made.
+
+        None for a variant or a result that is not there.
+        """
+        path, summary = self.path(name), self.summary(name)
+        try:
+            text = path.read_text(encoding="utf-8")
+        except OSError:
+            text = None
+        return text, summary and summary.created
+
+    def is_current(self, name: str) -> bool:
+        """Return whether there is a result of what the file of a variant says now."""
+        summary = self.summary(name)
+        try:
+            return summary is not None and summary.case_hash == self.case(name).hash
+        except UnderfootError:
+            return False
+
     def results(self) -> list[Summary]:
         """Return the finished results, the newest first."""
         summaries = [self.summary(folder.name) for folder in (self.folder / "results").iterdir()]
@@ -297,11 +318,13 @@ class Project:
 
     def _replay(self) -> None:
         for line in lines(self.folder / "history.jsonl"):
-            states = self._states.setdefault(line["variant"], _States())
-            if line["action"] == "set":
-                states.add(line["text"])
-            else:
-                step = -1 if line["action"] == "undo" else 1
+            name, action, text = (line.get(key) for key in ("variant", "action", "text"))
+            if not isinstance(name, str) or not NAME.fullmatch(name):
+                continue  # another program's line, as a merge leaves it
+            if action == "set" and isinstance(text, str | None):
+                self._states.setdefault(name, _States()).add(text)
+            elif action in ("undo", "redo") and name in self._states:
+                states, step = self._states[name], -1 if action == "undo" else 1
                 states.at = min(max(states.at + step, 0), len(states.texts) - 1)
 
 

@@ -19,6 +19,8 @@ from .project import Project
 from .text import Text
 
 Handler = Callable[[dict[str, Any]], Awaitable[Any]]
+LOOK = 1.0
+"""s between two looks at what other pages and programs did."""
 MOST_KEPT = 64
 """Pieces of data that the server keeps for its pages, the newest."""
 
@@ -100,6 +102,26 @@ class Session:
         Its errors pass through; raised in a handler of a page they are told there.
         """
         return await self.jobs.live.ask(function, *args, **options)
+
+    def follow(
+        self, state: Callable[[], object], changed: Callable[[], object]
+    ) -> Callable[[], None]:
+        """Call ``changed`` when ``state`` has another value: a page shows what another one did.
+
+        Returns a function that takes the present state as shown: what this page did itself.
+        """
+        shown = [state()]
+
+        def take() -> None:
+            shown[0] = state()
+
+        def look() -> None:
+            if state() != shown[0]:
+                take()
+                changed()
+
+        ui.timer(LOOK, look)
+        return take
 
     def keep(self, text: str, media: str = "text/html; charset=utf-8") -> str:
         """Keep a text for a script of the page and return the address to fetch it from."""

@@ -21,11 +21,17 @@ USUAL = {
 """Catalogue entries of a new variant: the best documented pair of the package."""
 
 
-def no_variant(session: Session, example: Callable[[Session], None]) -> None:
-    """Say that there is no variant yet, and offer an example to begin with."""
+def no_variant(session: Session, route: str, example: Callable[[Session], None]) -> None:
+    """Say that there is no variant, and offer an example to begin with and those removed."""
     ui.label(session.text("design.none")).classes("lead")
     begin = ui.button(session.text("design.begin"), on_click=lambda: example(session))
     begin.props("no-caps unelevated")
+    for name in session.project.removed():
+        back = ui.button(
+            session.text("variant.restore", name=name),
+            on_click=partial(_back, session, name, route),
+        )
+        back.props("no-caps flat")
 
 
 def new_variant(session: Session, wanted: str, **entries: str) -> str:

@@ -5,6 +5,7 @@ The server names these functions and never imports this module, which brings all
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -142,18 +143,33 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "cof": cof.value,
         "interval": cof.interval,
         "slip": None if slip is None else slip.value,
+        "slip_interval": None if slip is None else slip.interval,
+        "extrapolated": slip is not None and bool(slip.note),
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
     return {**presented(result), **numbers, "html": _html(result)}
 
 
-def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
-    """Return what changes of a case make of its contact, by continuation: a preview."""
+def previewed(
+    path: str, folder: str, changes: Mapping[str, Any], *, progress: Progress
+) -> dict[str, Any]:
+    """Return what changes of a case make of its stored result, by continuation: a preview.
+
+    The continuation is of the quick grid and one position of the tread: its share of change is
+    taken of what the whole run said.
+    """
     case = Case.load(path).replace(UNREAD)
     changed = case.replace(changes) if changes else case
-    seen = preview(case, changes, progress=progress)
+    seen, start = preview(case, changes, progress=progress), _start(case)
+    stored = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
+    share = {
+        name: stored[name]["value"] / start[name] if start[name] else 1.0
+        for name in ("cof", "fluid_load")
+    }
+    cof, draws = seen.cof.scaled(share["cof"]), seen.cof_draws
+    draws = None if draws is None else share["cof"] * draws
     contact = seen.total_pressure - seen.fluid_pressure
-    axes = ("x", "y")
+    slip, axes = slip_probability(changed, cof, draws)[0], ("x", "y")
     fields = map_fields(seen.sole).assign(
         {
             "contact_pressure": (axes, contact, {"units": "Pa"}),
@@ -162,12 +178,25 @@ def previewed(path: str, changes: Mapping[str, Any], *, progress: Progress) -> d
         }
     )
     return {
-        "cof": seen.cof.value,
-        "error": seen.errors["cof"],
-        "fluid_load": quantity_text(seen.values["fluid_load"], "N"),
-        "slip": slip_probability(changed, seen.cof, seen.cof_draws)[0].value,
+        "cof": cof.value,
+        "error": share["cof"] * seen.errors["cof"],
+        "fluid_load": quantity_text(share["fluid_load"] * seen.values["fluid_load"], "N"),
+        "slip": slip.value,
+        "slip_interval": slip.interval,
+        "extrapolated": bool(slip.note),
         "html": _html(Drawn(changed.name, fields)),
     }
+
+
+_STARTS: dict[str, Mapping[str, float]] = {}
+
+
+def _start(case: Case) -> Mapping[str, float]:
+    """Return the numbers of the march from which previews of a case go on."""
+    if case.hash not in _STARTS:
+        _STARTS.clear()
+        _STARTS[case.hash] = preview(case, {}).values
+    return _STARTS[case.hash]
 
 
 def presented(shown: Presentable) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -81,7 +82,8 @@ def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[s
 
 def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
     """Return stored results side by side: words, a row each, every pair, and the page's part."""
-    compared = compare(*(Result.load(folder) for folder in folders))
+    # a result has the name of its folder: a variant that was renamed keeps what was computed
+    compared = compare(*(replace(Result.load(f), name=Path(f).name) for f in folders))
     rows = []
     for letter, result in zip(compared.letters, compared.results, strict=True):
         known = {name: result.scalars[name] for name in COLUMNS if name in result.scalars}

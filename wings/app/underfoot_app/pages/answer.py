@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
 from nicegui import ui
 
 from underfoot.case import Case
-from underfoot.core.presentation import percent
+from underfoot.core.errors import UnderfootError
+from underfoot.core.presentation import is_wide, percent
 
 from ..components import SoleView, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
-from ..session import Session, address
+from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant, no_variant, variant_bar
+from . import repair
 
 ROUTE = "/answer"
 LIVE = (
@@ -33,27 +36,38 @@ TRIED = ".tried"
 
 
 def build(session: Session) -> None:
-    """Show the variant's answer, computing it first where the address says so."""
+    """Show the variant's answer."""
     name = session.variant
     if name is None:
-        no_variant(session, example)
-    else:
-        _Answer(session, name).show()
+        no_variant(session, ROUTE, example)
+    elif (case := repair.opened(session, ROUTE, name)) is not None:
+        _Answer(session, name, case).show()
+
+
+def begin_run(session: Session, name: str) -> Task:
+    """Queue the full run of a variant as its file says; one that is open already is taken."""
+    task = session.jobs.latest(name, RUN)
+    if task is not None and task.open:
+        return task
+    project, job = session.project, session.text("answer.job")
+    arguments = str(project.path(name)), str(project.result_folder(name))
+    return session.jobs.submit(job, RUN, *arguments, about=name)
 
 
 def example(session: Session) -> None:
     """Compute a worn work shoe on a floor with detergent."""
     wanted = session.text("answer.example")
     name = new_variant(session, wanted, shoe="work_shoe_half_tread", contaminant="detergent")
-    session.go(ROUTE, variant=name, run="1")
+    begin_run(session, name)
+    session.go(ROUTE, variant=name)
 
 
 class _Answer:
     """The page of one variant."""
 
-    def __init__(self, session: Session, name: str) -> None:
+    def __init__(self, session: Session, name: str, case: Case) -> None:
         self.session, self.name, self.text = session, name, session.text
-        self.case: Case = session.project.case(name)
+        self.case = case
         self.folder = session.project.result_folder(name)
         self.changes: dict[str, Any] = {}
         self.preview_cof = 0.0
@@ -71,28 +85,18 @@ class _Answer:
             self.run_button.props("no-caps unelevated").classes("main-action")
         self.progress = ui.element("div")
         self.place = ui.element("div")
-        current = self._current()
         task = self.session.jobs.latest(self.name, RUN)
         if task is not None and task.open:
             self._follow(task)
-        elif not current and self.session.query.get("run"):
-            self.run()
         self._fill()
+        self.session.follow(lambda: self.session.project.state(self.name), self._reload)
 
     def run(self) -> None:
         """Compute the variant as its file says."""
-        arguments = (str(self.session.project.path(self.name)), str(self.folder))
-        job = self.text("answer.job")
-        task = self.session.jobs.submit(job, RUN, *arguments, about=self.name)
-        self._follow(task)
+        self._follow(begin_run(self.session, self.name))
 
     def _reload(self) -> None:
         self.session.go(ROUTE, variant=self.name)
-
-    def _current(self) -> bool:
-        """Return whether there is a result of what the file says now."""
-        summary = self.session.project.summary(self.name)
-        return summary is not None and summary.case_hash == self.case.hash
 
     def _follow(self, task: Task) -> None:
         self.run_button.disable()
@@ -106,7 +110,7 @@ class _Answer:
                 path = str(self.session.project.path(self.name))
                 arguments = (self.text("answer.help_job"), ADVICE, path, str(self.folder))
                 self.session.jobs.submit(*arguments, about=self.name)
-                self._fill()
+                self._reload()
 
         self.progress.clear()
         with self.progress:
@@ -124,8 +128,9 @@ class _Answer:
                 with ui.element("section").classes("stage-side"):
                     self.view = SoleView(self.session)
             self.tables = ui.element("section").classes("whole")
+        current = self.session.project.is_current(self.name)
         with side:
-            if not self._current():
+            if not current:
                 ui.label(self.text("answer.changed")).classes("caution")
             self.summary = ui.element("div").props('aria-live="polite"')
             beside = self.session.query.get("beside", "")
@@ -133,23 +138,29 @@ class _Answer:
                 label = self.text("answer.beside", name=beside)
                 pair = address("/compare", variants=f"{beside}|{self.name}")
                 ui.link(label, pair).classes("strong")
-            self._live()
+            if current:
+                self._live()
             self.help = ui.element("div")
+        if not current:  # what was computed is of other inputs than the file's
+            for part in (self.summary, self.view, self.tables):
+                part.classes("stale")
         with self.place:
-            ui.timer(0, self._answer, once=True)
-            self.helped = ui.timer(1.0, self._helps)
-        self._helps()
+            ui.timer(0, partial(self._answer, current), once=True)
+        if current:
+            with self.place:
+                self.helped = ui.timer(1.0, self._helps)
+            self._helps()
 
-    async def _answer(self) -> None:
+    async def _answer(self, current: bool) -> None:
         answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
         with self.summary:
             self._headline(answer)
         with self.tables:
             self._tables(answer)
-        if self._current():  # the march from which previews go on
+        if current:  # the march from which previews go on
             path = str(self.session.project.path(self.name))
-            await self.session.ask("underfoot_app.work:previewed", path, {})
+            await self.session.ask("underfoot_app.work:previewed", path, str(self.folder), {})
 
     def _headline(self, answer: dict[str, Any]) -> None:
         with ui.element("div").classes("answer-card"):
@@ -160,7 +171,7 @@ class _Answer:
                     low, high = (f"{end:.3f}" for end in answer["interval"])
                     ui.label(self.text("answer.interval", low=low, high=high))
                 if answer["slip"] is not None:
-                    ui.label(self._risk(answer["slip"])).classes("strong")
+                    ui.label(self._risk(answer)).classes("strong")
                 ui.label(answer["limit"]).classes("soft")
             else:
                 sentences(answer["headline"], "strong")
@@ -177,13 +188,25 @@ class _Answer:
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")
 
-    def _risk(self, probability: float) -> str:
-        """Return how often a person slips, as people say it."""
-        if probability < 1e-3:
-            return self.text("answer.risk_rare")
-        if probability < 0.2:
-            return self.text("answer.risk_odds", count=f"{1 / probability:.0f}")
-        return self.text("answer.risk", share=percent(probability))
+    def _risk(self, answer: Mapping[str, Any]) -> str:
+        """Return how often a person slips, as people say it, with how unsure that is."""
+        probability, interval = answer["slip"], answer["slip_interval"]
+        low, high = map(percent, interval or (0.0, 0.0))
+        if is_wide(interval):
+            words = self.text("answer.risk_unknown", low=low, high=high)
+        else:
+            if probability < 1e-3:
+                words = self.text("answer.risk_rare")
+            elif probability < 0.2:
+                words = self.text("answer.risk_odds", count=f"{1 / probability:.0f}")
+            else:
+                words = self.text("answer.risk", share=percent(probability))
+            if interval:
+                words += f" ({self.text('answer.interval', low=low, high=high)})"
+        return words + self._extrapolated(answer)
+
+    def _extrapolated(self, answer: Mapping[str, Any]) -> str:
+        return f" ({self.text('answer.extrapolated')})" if answer.get("extrapolated") else ""
 
     # previews
 
@@ -199,13 +222,25 @@ class _Answer:
 
     async def _moved(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))
-        answer = await self.session.ask("underfoot_app.work:previewed", path, changes)
+        self.preview_cof = 0.0
+        try:
+            answer = await self.session.ask(
+                "underfoot_app.work:previewed", path, str(self.folder), changes
+            )
+        except UnderfootError as error:
+            # nothing of an earlier setting stays; the full run starts when the slider rests
+            message = {
+                "preview": self.text("answer.no_preview"),
+                "preview_note": " ".join(words for _, words in problem_parts(error)[:2]),
+            }
+            return {"texts": message, "stale": True}
         self.preview_cof = answer["cof"]
         cof, error = f"{answer['cof']:.3f}", f"{answer['error']:.3f}"
-        load, slip = answer["fluid_load"], answer["slip"]
         message = {
-            "preview": self.text("answer.preview", cof=cof, error=error, fluid_load=load),
-            "preview_note": "" if slip is None else self._risk(slip),
+            "preview": self.text(
+                "answer.preview", cof=cof, error=error, fluid_load=answer["fluid_load"]
+            ),
+            "preview_note": "" if answer["slip"] is None else self._risk(answer),
         }
         return {"texts": message, "html": answer["html"]}
 
@@ -217,7 +252,8 @@ class _Answer:
         if self.tried is not None and self.tried.open:
             jobs.cancel(self.tried)
         folder = str(self.session.project.inside("results", TRIED, self.name))
-        arguments = (path, folder, self.changes)
+        named = {**changes, "name": self.session.project.free_name(self.name)}
+        arguments = (path, folder, named)
         self.tried = jobs.submit(
             self.text("answer.full"),
             RUN,
@@ -231,22 +267,31 @@ class _Answer:
                 return
             answer = await self.session.ask("underfoot_app.work:answer", folder)
             self.view.show(answer["html"])
-            off = 100 * (done.answer / self.preview_cof - 1) if self.preview_cof else 0.0
             self.behind.clear()
             with self.behind:
                 cof, before = f"{done.answer:.3f}", f"{self.preview_cof:.3f}"
-                message = self.text("answer.replaced", cof=cof, preview=before, off=f"{off:+.1f}")
+                message = self.text("answer.full_run", cof=cof)
+                if self.preview_cof:
+                    off = f"{100 * (done.answer / self.preview_cof - 1):+.1f}"
+                    message += " " + self.text("answer.replaced", preview=before, off=off)
                 ui.label(message).classes("strong")
-                keep = ui.button(self.text("answer.keep"), on_click=lambda: self._keep(folder))
+                if answer["slip"] is not None:
+                    ui.label(self._risk(answer)).classes("soft")
+                keep = ui.button(
+                    self.text("answer.keep"), on_click=lambda: self._keep(folder, named)
+                )
                 keep.props("no-caps outline")
 
         with self.behind:
             task_line(self.session, self.tried, ended)
 
-    def _keep(self, folder: str) -> None:
+    def _keep(self, folder: str, changes: Mapping[str, Any]) -> None:
         project = self.session.project
-        new = project.copy(self.name, self.name, self.changes)
-        shutil.move(folder, project.result_folder(new))
+        new = project.copy(self.name, changes["name"], changes)
+        target = project.result_folder(new)
+        if target.exists():  # of a variant of that name that was removed
+            shutil.rmtree(target)
+        shutil.move(folder, target)
         self.session.go(ROUTE, variant=new)
 
     # what would help
@@ -295,15 +340,23 @@ class _Answer:
             action=_capital(each["action"]),
             now=f"{now['cof']['value']:.3f}",
             cof=f"{each['cof']:.3f}",
-            before=percent(slip),
-            after=percent(each["slip_probability"]),
+            before=self._chance(slip, now["slip_probability"].get("interval")),
+            after=self._chance(each["slip_probability"], each.get("slip_interval")),
         )
+        message += self._extrapolated(each)
         return message.replace(" %", "\u00a0%")  # a narrow column must not part number and unit
+
+    def _chance(self, probability: float, interval: Sequence[float] | None) -> str:
+        """Return a slip probability, as its interval where one number would say too much."""
+        if interval and is_wide((interval[0], interval[1])):
+            return self.text("answer.between", low=percent(interval[0]), high=percent(interval[1]))
+        return percent(probability)
 
     def _make(self, each: dict[str, Any]) -> None:
         wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
         new = self.session.project.copy(self.name, wanted, each["values"])
-        self.session.go(ROUTE, variant=new, run="1", beside=self.name)
+        begin_run(self.session, new)
+        self.session.go(ROUTE, variant=new, beside=self.name)
 
 
 def _capital(sentence: str) -> str:

@@ -50,6 +50,8 @@ class _Compare:
         self.rest = ui.element("div")
         self.rows: list[dict[str, Any]] = []
         ui.timer(0, self.show, once=True)
+        states = session.project.state
+        session.follow(lambda: [states(name) for name in self.choice.value], self.show)
 
     def folders(self) -> list[str]:
         """Return the folders of the results that are chosen."""
@@ -65,6 +67,9 @@ class _Compare:
         self.rest.clear()
         self.sole.show(comparison["html"])
         with self.summary:
+            for name in self.choice.value:
+                if not self.session.project.is_current(name):
+                    ui.label(self.text("compare.changed", name=name)).classes("caution")
             ui.label(" ".join(comparison["headline"])).classes("lead")
             sentences(comparison["cautions"], "soft")
         with self.rest:

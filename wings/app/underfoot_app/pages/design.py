@@ -11,12 +11,14 @@ from nicegui import ui
 from underfoot.case import Case
 from underfoot.case.compose import DRY
 from underfoot.case.sole import TreadPattern, usual_tread
+from underfoot.core.errors import UnderfootError
 
 from ..components import SoleView, title
 from ..inputs import Input, number_field, sliders
 from ..session import Session, as_json
 from ..variant_bar import new_variant, no_variant, variant_bar
-from . import assumptions, measured_file, sole_file
+from . import assumptions, measured_file, repair, sole_file
+from .answer import begin_run
 
 ROUTE = "/design"
 TREAD = (
@@ -58,8 +60,8 @@ def build(session: Session) -> None:
     """Show the variant's form beside its sole."""
     name = session.variant
     if name is None:
-        no_variant(session, example)
-    else:
+        no_variant(session, ROUTE, example)
+    elif repair.opened(session, ROUTE, name) is not None:
         _Design(session, name).show()
 
 
@@ -95,11 +97,19 @@ class _Design:
             with ui.element("section").classes("stage-side"):
                 ui.label("").props('data-live=measures role="status"').classes("soft measures")
                 self.view = SoleView(self.session)
+        self.shown = self.session.follow(
+            lambda: self.session.project.state(self.name)[0], self.fill
+        )
         self.fill()
 
     def fill(self) -> None:
         """Fill the form from the file of the variant, and draw its sole."""
-        case = self.session.project.case(self.name)
+        try:
+            case = self.session.project.case(self.name)
+        except UnderfootError:  # removed or made unreadable by another page or program
+            self.session.go(ROUTE, variant=self.name)
+            return
+        self.shown()
         for part, place in self.places.items():
             place.clear()
             with place:
@@ -129,7 +139,8 @@ class _Design:
 
     def run(self) -> None:
         """Compute the variant and open its answer."""
-        self.session.go("/answer", variant=self.name, run="1")
+        begin_run(self.session, self.name)
+        self.session.go("/answer", variant=self.name)
 
     def _sole(self, case: Case) -> None:
         if case.shoe.outsole is not None:
@@ -163,6 +174,7 @@ class _Design:
 
     def _keep(self, changes: dict[str, Any]) -> None:
         self.session.project.change(self.name, changes)
+        self.shown()
 
     async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))

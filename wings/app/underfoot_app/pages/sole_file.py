@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
 
 from underfoot.core import InputError
+from underfoot.core.errors import UnderfootError
 
 from ..components import SoleView, drop_zone, sentences, table
+from ..project import Project
 from ..session import Session, as_json
+from ..uploads import revision, revisions
 
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
+DRAWN = ("shoe.heel", "shoe.tread", "shoe.sole")
+"""Parts of a case that an outsole from a file takes the place of."""
 CHOICES = {
     "down": AXES,
     "forward": AXES,
@@ -35,13 +42,22 @@ def build(session: Session, name: str, view: SoleView, used: Callable[[], None])
 
     drop_zone(session, "soles", arrived, label=text("sole_file.drop"), accept=ACCEPT)
     place.move(target_index=-1)
-    files = sorted(
-        path.name
-        for path in session.project.inside("soles").iterdir()
+    files = [
+        path
+        for path in session.project.inside("soles").glob("[!.]*")
         if path.suffix.lower() in ACCEPT.split(",")
-    )
+    ]
     if files:
-        known = ui.select(files, label=text("sole_file.known")).props("dense outlined")
+        count = Counter(revision(path)[0] for path in files)
+        newest = sorted(
+            files, key=lambda path: (revision(path)[0].name.casefold(), -revision(path)[1])
+        )
+        labels = {path.name: path.name for path in newest}
+        for first, number in count.items():
+            if number > 1:
+                latest = revisions(first)[-1].name
+                labels[latest] = text("sole_file.revision", file=latest, count=number)
+        known = ui.select(labels, label=text("sole_file.known")).props("dense outlined")
         known.on_value_change(
             lambda event: _Inspection(session, name, f"soles/{event.value}", view, used, place)
         )
@@ -105,20 +121,57 @@ class _Inspection:
         ui.run_javascript(f"showTexts({as_json(values)})")
         with self.reading:
             sentences(answer["headline"])
-            use = ui.button(
-                self.text("sole_file.use"), on_click=lambda: self._use(answer["sha256"])
-            )
-            use.props("no-caps unelevated")
+            self._uses(answer["sha256"])
             for line in next(iter(answer["remarks"].values()), []):
                 ui.label(line).classes("assumed" if line.startswith("Assumed") else "soft")
             for shown in answer["tables"]:
                 table(shown)
 
-    def _use(self, sha256: str) -> None:
+    def _uses(self, sha256: str) -> None:
+        """Show what can be done with the file: nothing is changed until one is pressed."""
+        project, text = self.session.project, self.text
+        path = project.inside(self.path)
+        same = {each.name for each in revisions(path)} - {path.name}
+        others = [
+            name
+            for name in project.variants()
+            if name != self.name and Path(_outsole(project, name)).name in same
+        ]
+
+        def use() -> None:
+            self._use([self.name], sha256)
+            self.used()
+
+        def use_everywhere() -> None:
+            self._use([self.name, *others], sha256)
+            self.used()
+
+        def use_new() -> None:
+            new = project.copy(self.name, self.name)
+            self._use([new], sha256)
+            self.session.go("/design", variant=new)
+
+        with ui.element("div").classes("row"):
+            ui.button(text("sole_file.use"), on_click=use).props("no-caps unelevated")
+            ui.button(text("sole_file.use_new"), on_click=use_new).props("no-caps flat")
+            if others:
+                words = text("sole_file.use_in", count=len(others), names=", ".join(others))
+                ui.button(words, on_click=use_everywhere).props("no-caps outline")
+
+    def _use(self, names: list[str], sha256: str) -> None:
         project = self.session.project
         given = {key: value for key, value in self.settings.items() if value not in ("auto", None)}
         outsole = {"file": f"../{self.path}", "sha256": sha256, **given}
         if not project.inside(self.path).is_file():
             raise InputError(f"there is no file {self.path}", where="sole")
-        project.change(self.name, {"shoe.outsole": outsole})
-        self.used()
+        for name in names:  # what was drawn with sliders gives way to the file; undo brings it back
+            project.change(name, {**dict.fromkeys(DRAWN), "shoe.outsole": outsole})
+
+
+def _outsole(project: Project, name: str) -> str:
+    """Return the file of a variant's outsole, "" where it has none or can't be read."""
+    try:
+        outsole = project.case(name).shoe.outsole
+    except UnderfootError:
+        return ""
+    return outsole.file if outsole else ""

@@ -21,7 +21,16 @@ def build(session: Session) -> None:
     with ui.element("div").classes("doors"):
         for door in doors:
             _door(session, door)
-    _recent(session)
+    recent = ui.element("div")
+
+    def show() -> None:
+        recent.clear()
+        with recent:
+            _recent(session)
+
+    show()
+    project = session.project
+    session.follow(lambda: [(name, *project.state(name)) for name in project.variants()], show)
     _tour(session)
 
 
@@ -62,6 +71,8 @@ def _recent(session: Session) -> None:
                 if summary.low is not None and summary.high is not None:
                     words += f" ({summary.low:.3f} – {summary.high:.3f})"
                 ui.link(words, address("/answer", variant=name))
+                if not project.is_current(name):
+                    ui.label(text("start.changed")).classes("soft")
 
 
 def _tour(session: Session) -> None:

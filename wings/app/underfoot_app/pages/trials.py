@@ -132,7 +132,9 @@ class _Trials:
             self.session.problems.clear()
         address = ROUTE + (f"?{urlencode(query)}" if query else "")
         with self.place:  # what was pressed may be gone
-            ui.run_javascript(f"history.replaceState(null, '', {json.dumps(address)})")
+            target = json.dumps(address)
+            there = f"location.pathname + location.search === {target}"
+            ui.run_javascript(f"{there} || history.pushState(null, '', {target})")
 
     def _settled(self, arriving: str) -> str:
         """Give a folder that has arrived its name; a folder in it alone is the folder meant."""

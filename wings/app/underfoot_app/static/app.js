@@ -77,6 +77,9 @@ function takeFiles(id, settings, words) {
   zone.addEventListener("drop", (e) => { e.preventDefault(); send([...e.dataTransfer.files].slice(0, multiple ? undefined : 1)); });
 }
 
+// A page that puts what it shows into the address is built anew when one goes back.
+addEventListener("popstate", () => location.reload());
+
 // Put words into every element that waits for them by name.
 function showTexts(texts) {
   for (const [name, text] of Object.entries(texts)) {
@@ -118,6 +121,7 @@ function askLive(id, address, soleId, keep) {
       asked = now;
       tell(answer.problem);
       showTexts(answer.texts || {});
+      place?.classList.toggle("stale", Boolean(answer.stale || answer.problem));
       if (answer.html && place) await putSole(place, answer.html);
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
       root.dataset.took = String(performance.now() - began);
