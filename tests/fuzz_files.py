@@ -55,11 +55,12 @@ def main(count: int, seed: int) -> int:
                     warnings.simplefilter("always")
                     ending = "read" if refusal(read, path) is None else "refused"
                 if told:
-                    raise told[0].category(str(told[0].message))
+                    source = Path(told[0].filename)
+                    raise told[0].category(f"{told[0].message} ({source.name}:{told[0].lineno})")
                 assert ending == "read" or number >= 0, "a whole file is refused"
             except Exception as error:
                 ending = "fault"
-                place_of = _place(error)
+                place_of = f"{name}, {_place(error)}"
                 if place_of not in faults:
                     faults[place_of] = f"{name}, input {number}: {type(error).__name__}: {error}"
                     kept = Path(f"fault_{number}_{name}")

@@ -349,9 +349,10 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
     start = next((i for i, line in enumerate(lines) if line.startswith("Lateral")), None)
     if not is_dektak(path) or start is None:
         raise DataError("this is not a Dektak CSV file", where=str(path))
-    heads = [cell.strip() for cell in lines[start].split(",")]
-    lateral = length_factor(heads[0].split()[-1], f"{path}, line {start + 1}")
-    vertical = length_factor(heads[1].split()[-1], f"{path}, line {start + 1}")
+    lateral, vertical = (
+        length_factor("".join(cell.split()[-1:]), f"{path}, line {start + 1}")
+        for cell in f"{lines[start]},".split(",")[:2]
+    )
     rows: list[tuple[float, float]] = []
     for number, line in enumerate(lines[start + 1 :], start + 2):
         cells = line.split(",")
