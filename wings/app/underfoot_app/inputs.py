@@ -74,8 +74,9 @@ def sliders(
     """Show a slider for each input that the case has, with what is done while they move.
 
     ``moving`` gets the changes of the case and returns ``{"texts": {name: words}, "html": sole}``:
-    the words go to every element with ``data-live="name"``, the sole into ``view``. ``resting``
-    gets them when a slider was let go, at once where it keeps them.
+    the words go to every element with ``data-live="name"``, the sole into ``view``; with
+    ``"unanswered": True`` the sole there is marked as of another setting. ``resting`` gets the
+    changes when a slider was let go, at once where it keeps them.
     """
     rows = []
     for each in inputs:

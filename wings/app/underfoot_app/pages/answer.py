@@ -233,7 +233,7 @@ class _Answer:
                 "preview": self.text("answer.no_preview"),
                 "preview_note": " ".join(words for _, words in problem_parts(error)[:2]),
             }
-            return {"texts": message, "stale": True}
+            return {"texts": message, "unanswered": True}
         self.preview_cof = answer["cof"]
         cof, error = f"{answer['cof']:.3f}", f"{answer['error']:.3f}"
         message = {

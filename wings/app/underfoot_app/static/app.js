@@ -4,6 +4,7 @@
 async function showSole(id, address) {
   const place = document.getElementById(id), response = place && await fetch(address);
   if (!response || !response.ok) return;
+  place.classList.remove("unanswered");
   await putSole(place, await response.text());
 }
 
@@ -121,7 +122,7 @@ function askLive(id, address, soleId, keep) {
       asked = now;
       tell(answer.problem);
       showTexts(answer.texts || {});
-      place?.classList.toggle("stale", Boolean(answer.stale || answer.problem));
+      place?.classList.toggle("unanswered", Boolean(answer.unanswered || answer.problem));
       if (answer.html && place) await putSole(place, answer.html);
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
       root.dataset.took = String(performance.now() - began);
