@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+import signal
+import subprocess
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
-from commands import called
+from commands import COMMAND, called
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import Cancelled, InputError
@@ -254,3 +256,20 @@ def test_a_full_run_ends_with_what_would_help(tmp_path) -> None:
         assert "The film carries" in text
     assert called("run", path, "--out", tmp_path / "plain", "--no-advice").returncode == 0
     assert not (tmp_path / "plain" / "risk.json").exists()
+
+
+@pytest.mark.slow
+def test_a_run_that_is_stopped_in_its_advice_has_stored_its_answer(tmp_path) -> None:
+    path, stored = tmp_path / "case.toml", tmp_path / "full" / "result.json"
+    path.write_text(TEXT + 'numerics.grid_spacing = "2.5 mm"\n', encoding="utf-8")
+    command = [*COMMAND, "run", str(path), "--out", str(tmp_path / "full")]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        for line in running.stderr:
+            if "effect of possible changes" in line:
+                running.send_signal(signal.SIGINT)
+                break
+        _, said = running.communicate(timeout=180)
+    assert running.returncode == 130, said
+    assert json.loads(stored.read_text(encoding="utf-8"))["cof"]["value"] > 0
+    assert not (tmp_path / "full" / "risk.json").exists()

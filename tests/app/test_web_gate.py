@@ -42,6 +42,12 @@ def test_the_token_becomes_a_cookie_and_leaves_the_address():
     status, headers, _ = asked("/design", f"variant=a&token={TOKEN}")
     assert status == 303
     assert headers["location"] == "/design?variant=a"
+    for path, place in (
+        ("/\\evil.example", "/evil.example"),
+        ("//evil.example", "/evil.example"),
+        ("/€\n", "/%E2%82%AC%0A"),
+    ):
+        assert asked(path, f"token={TOKEN}")[1]["location"] == place
     assert "HttpOnly" in headers["set-cookie"]
     assert "SameSite=Strict" in headers["set-cookie"]
 

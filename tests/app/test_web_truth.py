@@ -79,7 +79,9 @@ def test_a_second_export_of_a_sole_locks_no_variant(app, project, tmp_path):
         page.goto(f"{app.base}design?variant={copy}")
         drawn(page)
         dropped(page, second)
-        page.get_by_role("button", name="Use it in the 1 variants").wait_for()
+        page.get_by_role(
+            "button", name="Use it here and in place of its other revisions: heel"
+        ).wait_for()
         page.get_by_role("button", name="Use this sole").click()
         page.get_by_text("The sole comes from sole, revision 2.stl").wait_for()
         page.goto(f"{app.base}design?variant=heel")

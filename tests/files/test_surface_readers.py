@@ -207,7 +207,7 @@ def test_files_that_are_none(tmp_path):
         read_profile(_write(tmp_path, "\0\0\0", "a.txt"))
     with pytest.raises(DataError, match="not a Dektak"):
         read_dektak(_write(tmp_path, "x um,z nm\n1,2"))
-    with pytest.raises(DataError, match="line 2: .* has no unit"):
+    with pytest.raises(DataError, match=r"line 2: .* has no unit"):
         read_dektak(_write(tmp_path, "Scan Parameters\nLateral um\n1,2"))
     with pytest.raises(DataError, match="length"):
         read_profile(_write(tmp_path, "1 2\n2 3\n"), length_unit="kg", height_unit="um")

@@ -68,7 +68,7 @@ def template(
         titles[section] = "dry" if dry else catalogue.entry(kind, entry, where=section).title
     title = name or f"{titles['shoe']}; {titles['contaminant']}"
     head = {"file_version": FILE_VERSION, "name": title, "description": description}
-    lines = [_HEAD.format(title=title, file=file)]
+    lines = [_HEAD.format(title=title, file=f'"{file}"' if " " in file else file)]
     lines += [*(f"{key} = {_text(value)}" for key, value in head.items()), ""]
     for section, entry in chosen.items():
         lines.append(f"[{section}]")

@@ -68,15 +68,16 @@ def run(
         check_writable_folder(folder, overwrite=shared.overwrite)
     with bar(given.name) as progress:
         result = result_of(given, quick=shared.quick, processes=shared.processes, progress=progress)
-    advice = None
+    written = advice = None
+    if folder is not None:  # before the advice, which may take longer than the answer
+        written = write_report(result, folder, overwrite=shared.overwrite, maps=maps)
     if result.usable and not (shared.quick or no_advice):
         with bar("effect of possible changes") as progress:
             advice = risk_assessment(
                 given, result=result, processes=shared.processes, progress=progress
             )
-    written = None
-    if folder is not None:
-        written = write_report(result, folder, overwrite=shared.overwrite, advice=advice, maps=maps)
+        if folder is not None:
+            written = write_report(result, folder, overwrite=True, advice=advice, maps=maps)
     finish(result, written, json=shared.json, everything=shared.everything, advice=advice)
 
 

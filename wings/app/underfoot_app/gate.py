@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable, MutableMapping
 from html import escape
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
-from urllib.parse import parse_qsl, urlencode, urlsplit
+from urllib.parse import parse_qsl, quote, urlencode, urlsplit
 
 Scope = MutableMapping[str, Any]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
@@ -57,9 +57,10 @@ class Gate:
             await _refused(scope, send, 403, "This address is not one of this server.")
         elif self._has_token(dict(query).get("token", "")) and scope["type"] == "http":
             rest = urlencode([pair for pair in query if pair[0] != "token"])
-            place = scope["path"] + (f"?{rest}" if rest else "")
+            # quoted: no backslash or letter of another alphabet leads to another server
+            place = quote(scope["path"].lstrip("/\\")) + (f"?{rest}" if rest else "")
             cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/"
-            further = [("location", "/" + place.lstrip("/")), ("set-cookie", cookie)]
+            further = [("location", f"/{place}"), ("set-cookie", cookie)]
             await _refused(scope, send, 303, "", further)
         elif not self._has_token(self._given(headers)):
             message = (

@@ -231,7 +231,7 @@ class _Answer:
             # nothing of an earlier setting stays; the full run starts when the slider rests
             message = {
                 "preview": self.text("answer.no_preview"),
-                "preview_note": " ".join(words for _, words in problem_parts(error)[:2]),
+                "preview_note": _capital(dict(problem_parts(error)).get("what", "")),
             }
             return {"texts": message, "unanswered": True}
         self.preview_cof = answer["cof"]

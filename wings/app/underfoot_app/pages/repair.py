@@ -85,10 +85,10 @@ def _card(session: Session, name: str, error: UnderfootError, mended: Callable[[
     lacking = [each for each in named if not each.holds(project)]
     with ui.element("div").classes("answer-card repair").props('role="alert"'):
         ui.label(text("repair.title")).classes("strong")
-        ui.label(str(error)).classes("soft")
         for each in lacking:
             _choices(session, name, each, mended)
         if not lacking:
+            ui.label(str(error)).classes("soft")
             ui.label(text("repair.undo"))
 
 

@@ -155,7 +155,7 @@ class _Inspection:
             ui.button(text("sole_file.use"), on_click=use).props("no-caps unelevated")
             ui.button(text("sole_file.use_new"), on_click=use_new).props("no-caps flat")
             if others:
-                words = text("sole_file.use_in", count=len(others), names=", ".join(others))
+                words = text("sole_file.use_in", names=", ".join(others))
                 ui.button(words, on_click=use_everywhere).props("no-caps outline")
 
     def _use(self, names: list[str], sha256: str) -> None:
