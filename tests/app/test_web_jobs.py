@@ -70,6 +70,27 @@ def test_jobs_run_in_order_and_say_what_went_wrong(tmp_path):
 
 
 @pytest.mark.usefixtures("path")
+def test_a_run_does_not_wait_for_a_study(tmp_path, monkeypatch):
+    code = "import time\ndef study(progress):\n    progress('deaf', 0.1)\n    time.sleep(60)\n"
+    (tmp_path / "beside.py").write_text(code)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    async def work(jobs):
+        study, second = (jobs.submit("study", "beside:study") for _ in range(2))
+        while study.stage != "deaf":
+            await asyncio.sleep(0.01)
+        ran = await jobs.finished(jobs.submit("run", HERE + "doubled", 2))
+        assert (ran.answer, study.state, second.state) == (4, "running", "waiting")
+        jobs.cancel(study)
+        while second.stage != "deaf":
+            await asyncio.sleep(0.01)
+        jobs.cancel(second)
+        await jobs.finished(second)
+
+    asyncio.run(with_jobs(tmp_path, work))
+
+
+@pytest.mark.usefixtures("path")
 def test_cancel_is_heeded_at_once_even_by_a_job_that_does_not_listen(tmp_path):
     async def work(jobs):
         task, waiting = (jobs.submit("deaf", HERE + "deaf", 60) for _ in range(2))

@@ -1,6 +1,6 @@
 """What is computed: a queue of long jobs, and a process kept warm for quick questions.
 
-Both compute in a process of their own (``core.worker``), so the server answers meanwhile and a
+All compute in processes of their own (``core.worker``), so the server answers meanwhile and a
 solver that dies takes nothing along. The queue is a file, ``jobs.jsonl``: after a kill of the
 server it shows what had finished and what was interrupted.
 """
@@ -138,6 +138,11 @@ class Task:
         """Whether it waits or runs."""
         return self.state in (WAITING, RUNNING)
 
+    @property
+    def module(self) -> str:
+        """Name of the module whose function it is; one job of each is computed at a time."""
+        return self.function.partition(":")[0]
+
 
 KEPT = tuple(each.name for each in fields(Task) if each.name != "answer")
 """What of a task is written to ``jobs.jsonl``."""
@@ -157,10 +162,12 @@ class Jobs:
 
     def __init__(self, folder: Path, preload: Sequence[str] = ()) -> None:
         self.live = Lane(preload)
-        self._full = Lane(preload, patient=True)
+        self._preload = preload
+        self._lanes: dict[str, Lane] = {}
         self._file = folder / "jobs.jsonl"
         self.tasks: dict[int, Task] = {}
         self._waiting: deque[Task] = deque()
+        self._computing: dict[str, asyncio.Task[None]] = {}
         self._arrived = asyncio.Event()
         self._read()
 
@@ -185,7 +192,7 @@ class Jobs:
             self._waiting.remove(task)
             self._end(task, STOPPED)
         elif task.state == RUNNING:
-            self._full.stop()
+            self._lane(task.module).stop()
 
     def again(self, task: Task) -> Task:
         """Queue a task once more."""
@@ -198,13 +205,17 @@ class Jobs:
         return tasks[-1] if tasks else None
 
     async def run(self) -> None:
-        """Compute what is queued, for ever."""
+        """Compute what is queued, for ever: one job of a module at a time.
+
+        So a run waits for another run, but not for a study or a report of trials.
+        """
         while True:
-            while not self._waiting:
-                self._arrived.clear()
-                await self._arrived.wait()
-            task = self._waiting.popleft()
-            await self._compute(task)
+            for task in list(self._waiting):
+                if task.module not in self._computing:
+                    self._waiting.remove(task)
+                    self._computing[task.module] = asyncio.create_task(self._compute(task))
+            self._arrived.clear()
+            await self._arrived.wait()
 
     async def finished(self, task: Task) -> Task:
         """Return a task when it has ended."""
@@ -213,13 +224,21 @@ class Jobs:
         return task
 
     def warm(self) -> None:
-        """Start the process of the queue, so that the first job does not wait for it."""
-        self._full.start()
+        """Start the process of runs, so that the first one does not wait for it."""
+        self._lane(self._preload[0] if self._preload else "").start()
 
     def close(self) -> None:
-        """End both processes."""
-        self.live.close()
-        self._full.close()
+        """End all processes."""
+        for computing in self._computing.values():
+            computing.cancel()
+        for lane in (self.live, *self._lanes.values()):
+            lane.close()
+
+    def _lane(self, module: str) -> Lane:
+        """Return the process that computes what a module has."""
+        if module not in self._lanes:
+            self._lanes[module] = Lane(self._preload, patient=True)
+        return self._lanes[module]
 
     async def _compute(self, task: Task) -> None:
         task.state, task.began = RUNNING, time.time()
@@ -229,7 +248,7 @@ class Jobs:
             task.stage, task.fraction = job.stage, job.fraction
 
         try:
-            task.answer = await self._full.ask(
+            task.answer = await self._lane(task.module).ask(
                 task.function, *task.arguments, heard=heard, **task.options
             )
             self._end(task, DONE)
@@ -238,6 +257,9 @@ class Jobs:
         except Exception as error:
             task.problem = error_text(error)
             self._end(task, FAILED)
+        finally:
+            self._computing.pop(task.module, None)
+            self._arrived.set()
 
     def _end(self, task: Task, state: str) -> None:
         task.state, task.ended = state, time.time()
