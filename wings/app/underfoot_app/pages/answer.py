@@ -96,7 +96,7 @@ class _Answer:
         self._follow(begin_run(self.session, self.name))
 
     def _reload(self) -> None:
-        self.session.go(ROUTE, variant=self.name)
+        self.session.go(ROUTE, **{**self.session.query, "variant": self.name})
 
     def _follow(self, task: Task) -> None:
         self.run_button.disable()
