@@ -340,6 +340,8 @@ def test_keyboard_names_and_small_windows(app, tmp_path):
                 || e.labels?.length || e.title)).map((e) => e.outerHTML.slice(0, 120))"""
         )
         assert nameless == []
+        assert page.evaluate("document.documentElement.lang") == "en"
+        assert page.locator("main").count() == 1
     with page_of(app.link) as page:
         page.goto(app.base)
         page.keyboard.press("Tab")

@@ -40,7 +40,8 @@ def framed(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")
-    ui.add_head_html(HEAD)
+    language = f'<script>document.documentElement.lang = "{text.language}"</script>'
+    ui.add_head_html(HEAD + language)
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
     with ui.header(fixed=False).classes("app-bar"):
@@ -55,7 +56,7 @@ def framed(session: Session, page: Page) -> None:
         _jobs_button(session)
         _language_button(session)
         _theme_button(session)
-    with ui.element("main").classes("page"):
+    with ui.element("div").classes("page"):  # the framework's page is the main element
         session.problems = ui.element("div").classes("problems")
         session.problems.props('aria-live="assertive"')
         try:
