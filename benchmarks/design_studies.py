@@ -24,6 +24,7 @@ from underfoot.compute.run import run
 from underfoot_design_studies import Study, StudyResult
 from underfoot_design_studies.computing import crashed
 from underfoot_design_studies.engines import engine
+from underfoot_design_studies.plan import StudyPlan
 from underfoot_design_studies.record import Job, Record
 from underfoot_design_studies.result import Design
 from underfoot_design_studies.status import study_status
@@ -112,6 +113,34 @@ require = ["land > 0.4"]
 [method]
 %s
 """
+EQUAL_LAND = """
+base = "work_shoe_full_tread_detergent.toml"
+[set]
+contaminant = "canola_oil"
+"numerics.quick_grid_spacing" = "1.25 mm"
+"numerics.grid_spacing" = "1 mm"
+"shoe.tread.depth" = "3 mm"
+[vary]
+"shoe.tread.pattern" = ["%s"]
+"shoe.tread.channel_width" = { from = "2.5 mm", to = "5 mm" }
+"shoe.tread.lug_width" = { times = %.4f, of = "shoe.tread.channel_width" }
+%s
+[outputs]
+maximise = ["cof"]
+[method]
+kind = "optimise"
+budget = 26
+again = 3
+"""
+FAMILIES = {
+    "bars": (1.5, {"angle": ("0 deg", "90 deg")}),
+    "grid": (3.4365, {"angle": ("0 deg", "45 deg")}),
+    "hexagons": (3.4365, {"angle": ("0 deg", "30 deg")}),
+    "circles": (4.3596, {"angle": ("0 deg", "30 deg")}),
+    "chevrons": (1.5, {"angle": ("-60 deg", "60 deg"), "arm_length": ("8 mm", "20 mm")}),
+    "waves": (1.5, {"wave_length": ("12 mm", "30 mm"), "wave_height": ("2 mm", "8 mm")}),
+}
+"""Lug over channel at 60 % of land (``Tread.land_ratio``), and what else varies."""
 TRUE = {"numerics.grid_spacing": "0.8 mm", "numerics.tread_positions": 16}
 """A finer grid and other positions than any of that study."""
 
@@ -299,6 +328,57 @@ def clog() -> Iterator[str]:
     yield f"better than the best of the grid with {sum(better)} of {SEEDS} seeds"
 
 
+def treads() -> Iterator[str]:
+    """Yield the best of six families and the best free tread, at equal land, depth and runs.
+
+    The free study (``examples/studies/free_tread.toml``) starts at the best of the families. Both
+    are judged by a run at 16 positions of the tread on a finer grid, too.
+    """
+    best: tuple[float, StudyResult, Design] | None = None
+    for name, (ratio, ranges) in FAMILIES.items():
+        rows = [
+            f'"shoe.tread.{key}" = {{ from = "{low}", to = "{high}" }}'
+            for key, (low, high) in ranges.items()
+        ]
+        result = _best_tread(read_plan(EQUAL_LAND % (name, ratio, "\n".join(rows)), EXAMPLES))
+        design = result.best(1)[0]
+        value = result.believed([design], result.plan.goals)[0][0, 0]
+        yield _told(name, result, design, value)
+        if best is None or value > best[0]:
+            best = value, result, design
+    assert best is not None
+    _, family, start = best
+    text = (EXAMPLES / "studies" / "free_tread.toml").read_text()
+    begin = family.plan.base.replace(start.changes)
+    free = _best_tread(read_plan(text, EXAMPLES / "studies", base=begin))
+    for design in free.best(3):
+        yield _told("free", free, design, free.believed([design], free.plan.goals)[0][0, 0])
+    chance = free.higher_cof(free.best(1)[0], start)
+    yield f"the free tread has the higher COF in {100 * (chance or 0):.0f} of 100 draws"
+    yield free.above_start()
+
+
+def _best_tread(plan: StudyPlan) -> StudyResult:
+    with tempfile.TemporaryDirectory() as folder:
+        result = Study(plan, folder).run(workers=1)
+        return StudyResult(result.plan, list(result.jobs), dict(result.records))
+
+
+def _told(name: str, result: StudyResult, design: Design, stated: float) -> str:
+    judged = run(result.plan.base.replace({**design.changes, **TRUE})).value("cof")
+    cost = sum(record.cpu_seconds for record in result.records.values())
+    lost = sum(not one.usable for one in result.designs)
+    land = next(iter(design.records.values())).number("land")
+    sizes = ", ".join(
+        f"{key.split('.')[-1]} {value if isinstance(value, str) else f'{value:.4g}'}"
+        for key, value in design.changes.items()
+    )
+    return (
+        f"{name}, {cost:.0f} s, {lost} of {len(result.designs)} without numbers: COF stated "
+        f"{stated:.4f}, is {judged:.4f}, land {land:.3f} ({sizes})"
+    )
+
+
 def _waited(seconds: float, job: Job) -> Record:
     time.sleep(seconds)
     return record(job)
@@ -325,7 +405,7 @@ def _kill_a_worker(folder: str) -> None:
 
 PARTS = {
     each.__name__: each
-    for each in (ready, overhead, scaling, dask, saturation, surrogate, splits, front, clog)
+    for each in (ready, overhead, scaling, dask, saturation, surrogate, splits, front, clog, treads)
 }
 
 

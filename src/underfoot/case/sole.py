@@ -266,9 +266,10 @@ class Lugs(TreadPattern):
         0.0, "0 mm", "no chamfer; 45 deg, width on the land; its film is that of a sharp edge"
     )
     sipes: SipeCuts | None = None
+    kind: ClassVar[str] = ""  # of ``Tread`` where it is not the name
 
     def letters(self) -> Lettering | None:
-        """Return the letters of lettering; None of other patterns."""
+        """Return the outlines of lettering and the like; None of other patterns."""
         return None
 
     def build(self) -> Tread | None:
@@ -277,7 +278,7 @@ class Lugs(TreadPattern):
 
         cuts = self.sipes
         return Tread(
-            self.name,
+            self.kind or self.name,
             self.lug_width,
             self.channel_width,
             self.depth,

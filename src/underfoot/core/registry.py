@@ -30,6 +30,7 @@ WINGS = {
     ("commands", "calibrate.posterior"): "underfoot-design-studies",
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
     ("reports", "underfoot_design_studies"): "underfoot-design-studies",
+    ("tread", "free"): "underfoot-design-studies",
     **{
         ("commands", name): "underfoot-places"
         for name in ("calibrate.machine", "choose", "machine")

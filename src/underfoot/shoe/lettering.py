@@ -1,8 +1,10 @@
 """Letters as lugs: closed outlines that repeat along and across the shoe."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -65,6 +67,20 @@ class Lettering:
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the channels: positive there, negative on a letter."""
         return outline_distance(x, y, self.segments, self.corner - self.gap / 2, self.pitch)
+
+    def outlines(self, low: Array, high: Array) -> Iterator[tuple[Array, list[Array]]]:
+        """Yield outer wall and inner walls (n, 2) of each letter between two corners, m."""
+        for shell in map(np.array, self.shells):
+            first, last = shell.min(axis=0), shell.max(axis=0)
+            holes = [
+                h for h in map(np.array, self.holes) if (first < h[0]).all() and (h[0] < last).all()
+            ]
+            counts = [
+                range(math.floor(a / p) - 1, math.ceil(b / p) + 2)
+                for a, b, p in zip(low - first, high - first, self.pitch, strict=True)
+            ]
+            for shift in product(*counts):
+                yield shell + self.pitch * shift, [hole + self.pitch * shift for hole in holes]
 
 
 def _area(ring: Ring) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Annotated, Any, Literal
 
@@ -90,6 +90,7 @@ class StudyPlan:
         base: The case that is changed.
         vary: Ranges and lists of the designer, and of a sensitivity the uncertain inputs.
         follow: Values that keep their ratio to a varied one.
+        fixed: Values that all designs share, the start of the study not: lists of one.
         draws: Changes of each common draw of the uncertain inputs.
         states: Conditions that every design is run in.
         remarks: What reading the file decided, in words.
@@ -111,6 +112,7 @@ class StudyPlan:
     remarks: tuple[str, ...]
     text: str
     readings: tuple[Reading, ...] = ()
+    fixed: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def dimensions(self) -> tuple[Input | Distribution, ...]:
@@ -164,7 +166,8 @@ class StudyPlan:
         changes = {
             one.path: one.value(share) for one, share in zip(self.dimensions, point, strict=True)
         }
-        return changes | {one.path: one.times * changes[one.of] for one in self.follow}
+        followers = {one.path: one.times * changes[one.of] for one in self.follow}
+        return {**self.fixed, **changes, **followers}
 
     def jobs(
         self, design: int, point: Sequence[float], batch: int, *, again: bool = False

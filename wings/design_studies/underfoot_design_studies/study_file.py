@@ -91,13 +91,13 @@ def read_plan(
     known = case.catalogue
     if fixed := reader.table("set"):
         case = reader.attempt("", case.replace, fixed) or case
-    vary, follow = reader.varied(known)
+    vary, follow, fixed = reader.varied(known)
     uncertain, joint = reader.uncertain(known, folder)
     calibrates = "reading" in reader.plain
     states, readings = reader.readings(known) if calibrates else (reader.conditions(known), ())
     method, (require, maximise, minimise) = reader.method(vary), reader.outputs(case, states)
     reader.end()
-    taken = [one.path for one in (*vary, *follow, *uncertain)]
+    taken = [*fixed, *(one.path for one in (*vary, *follow, *uncertain))]
     taken += [*(joint.paths if joint else ()), *(states[0].changes if states else ())]
     for path in {path for path in taken if taken.count(path) > 1}:
         reader.refuse_if(
@@ -125,7 +125,8 @@ def read_plan(
         remedy='Write maximise = ["quantile(cof, 0.1)"] or minimise = ["rubber_volume"]',
     )
     reader.end()
-    case, remarks = reader.attempt("vary", _on_finer_grid, case, vary, follow) or (case, ())
+    lengths = reader.attempt("vary", _on_finer_grid, case, vary, follow, fixed)
+    case, remarks = lengths or (case, ())
     draws: tuple[Mapping[str, Any], ...] = ({},)
     if method.kind != "sensitivity" and (uncertain or joint):
         draws = tuple(_common_draws(uncertain, joint, method))
@@ -134,6 +135,7 @@ def read_plan(
         base=case,
         vary=vary,
         follow=follow,
+        fixed=fixed,
         uncertain=uncertain,
         draws=draws,
         states=states,
@@ -162,7 +164,7 @@ def read_plan(
 
 
 def _on_finer_grid(
-    case: Case, vary: Sequence[Input], follow: Sequence[Follow]
+    case: Case, vary: Sequence[Input], follow: Sequence[Follow], fixed: Mapping[str, Any]
 ) -> tuple[Case, tuple[str, ...]]:
     """Return the case on grids fine enough for the narrowest channel or lug that is varied.
 
@@ -173,7 +175,7 @@ def _on_finer_grid(
         for one in vary
         if isinstance(one.value(0.0), float)
     }
-    lows |= {one.path: one.times * lows[one.of] for one in follow if one.of in lows}
+    lows |= {one.path: one.times * lows[one.of] for one in follow if one.of in lows} | fixed
     narrowest, path = min(
         ((low, path) for path, low in lows.items() if path in WIDTHS), default=(math.inf, "")
     )
@@ -301,8 +303,10 @@ class _Reader:
                 return case
         raise CaseError(self.errors)
 
-    def varied(self, known: Catalogue) -> tuple[tuple[Input, ...], tuple[Follow, ...]]:
-        """Return what the designer chooses, and what follows it."""
+    def varied(
+        self, known: Catalogue
+    ) -> tuple[tuple[Input, ...], tuple[Follow, ...], dict[str, Any]]:
+        """Return what the designer chooses, what follows it, and what all designs share."""
         axes = [
             self.attempt(f"vary.{path}", read_input, path, given, known)
             for path, given in self.table("vary").items()
@@ -311,7 +315,10 @@ class _Reader:
         vary = tuple(one for one in axes if isinstance(one, Range | Choice))
         for one in follow:
             self.check_known(f"vary.{one.path}", "path", one.of, [each.path for each in vary])
-        return vary, follow
+        # a list of one is no input of a surrogate, where there are others
+        lists = [one for one in vary if isinstance(one, Choice) and len(one.options) == 1]
+        fixed = {one.path: one.options[0] for one in lists if len(lists) < len(vary)}
+        return tuple(one for one in vary if one.path not in fixed), follow, fixed
 
     def uncertain(
         self, known: Catalogue, folder: Path

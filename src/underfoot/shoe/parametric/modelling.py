@@ -11,7 +11,6 @@ from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from .._kernels.tread_pattern import graded_diameter
-from ..lettering import Lettering
 from ..shape import SoleShape
 from ..tread import LATTICES, Tread
 
@@ -71,7 +70,10 @@ def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Out
     lug, pitch = tread.lug_width, tread.pitch
     low, high = centre - reach, centre + reach
     if tread.letters is not None:
-        yield from _letters(tread.letters, low, high)
+        for shell, holes in tread.letters.outlines(low, high):
+            inner = tuple(map(_anticlockwise, holes))
+            size = float(np.hypot(*np.ptp(shell, axis=0)))
+            yield Outline(_anticlockwise(shell), holes=inner), size
     elif tread.pattern in LATTICES:
         for row in range(*_range(low[1], high[1], pitch * math.sqrt(3) / 2)):
             shift = lug / 2 + (pitch / 2 if row % 2 else 0.0)
@@ -108,20 +110,6 @@ def _round_lug(tread: Tread, along: float) -> float:
         return tread.lug_width
     ends = (tread.lug_width, tread.front_lug_width, tread.graded_length)
     return float(graded_diameter(np.array(along), *ends))
-
-
-def _letters(letters: Lettering, low: Array, high: Array) -> Iterator[tuple[Outline, float]]:
-    """Yield the outer walls of all letters between two corners, their inner walls as holes."""
-    for shell in map(np.array, letters.shells):
-        first, last = shell.min(axis=0), shell.max(axis=0)
-        inner = [np.array(hole) for hole in letters.holes]
-        inner = [hole for hole in inner if (first < hole[0]).all() and (hole[0] < last).all()]
-        for i in range(*_range(low[0] - first[0], high[0] - first[0], letters.pitch[0])):
-            for j in range(*_range(low[1] - first[1], high[1] - first[1], letters.pitch[1])):
-                shift = letters.pitch * (i, j)
-                holes = tuple(_anticlockwise(hole + shift) for hole in inner)
-                size = float(np.hypot(*(last - first)))
-                yield Outline(_anticlockwise(shell + shift), holes=holes), size
 
 
 def _anticlockwise(ring: Array) -> Array:
