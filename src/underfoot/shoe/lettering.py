@@ -72,14 +72,10 @@ class Lettering:
         """Yield outer wall and inner walls (n, 2) of each letter between two corners, m."""
         for shell in map(np.array, self.shells):
             first, last = shell.min(axis=0), shell.max(axis=0)
-            holes = [
-                h for h in map(np.array, self.holes) if (first < h[0]).all() and (h[0] < last).all()
-            ]
-            counts = [
-                range(math.floor(a / p) - 1, math.ceil(b / p) + 2)
-                for a, b, p in zip(low - first, high - first, self.pitch, strict=True)
-            ]
-            for shift in product(*counts):
+            holes = map(np.array, self.holes)
+            holes = [h for h in holes if (first < h[0]).all() and (h[0] < last).all()]
+            begin, end = np.floor((low - first) / self.pitch), np.ceil((high - first) / self.pitch)
+            for shift in product(*map(np.arange, begin - 1, end + 2)):
                 yield shell + self.pitch * shift, [hole + self.pitch * shift for hole in holes]
 
 

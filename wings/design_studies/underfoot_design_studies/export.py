@@ -18,7 +18,8 @@ def exported(
     """Write results.csv, and a case file and a STEP file of the best designs; return remarks.
 
     The case of a design is that of its first condition and draw. A sole from a file, or one that
-    can't be made as a solid, has no STEP file; a remark says so.
+    can't be made as a solid, has no STEP file; a remark says so. Walls in it are upright; of a free
+    tread with ``mould_draft`` there is a mesh (STL) with that draft beside it.
     """
     result, plan = study.result(), study.plan
     study.store.write_views(result.cases())
@@ -34,9 +35,15 @@ def exported(
             case.save(staging / f"{name}.toml")
             if step:
                 try:
-                    from underfoot.shoe.parametric import write_sole
+                    from underfoot.shoe.parametric import sole_solid, write_sole
 
-                    write_sole(new_sole(case), staging / f"{name}.step")
+                    shape, draft = new_sole(case), getattr(case.shoe.tread, "mould_draft", 0.0)
+                    solid = sole_solid(shape)
+                    write_sole(shape, staging / f"{name}.step", solid=solid)
+                    if draft:
+                        from .mould import write_drafted
+
+                        write_drafted(shape, solid, draft, staging / f"{name}.stl")
                 except (InputError, MissingExtraError) as error:
                     remarks.append(f"{name}.step was not written: {error}")
     return remarks

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import shapely
@@ -34,7 +34,8 @@ _REPAIRS = 8
 _NARROWEST = 2e-3  # of the height map's range: cuts nearer to each other are one
 _FORCED = 6
 _CORE = 0.35  # of a channel's width: parts of a lost channel wider than that are held open
-_DRAWN = 1e-5  # m: how far the outlines of a solid may lie from those of the map
+_SAME = 1e-9  # m: places nearer to each other are one
+_DRAWN = 2e-5  # m: how far the outlines of a solid may lie from those of the map
 
 
 @dataclass(frozen=True)
@@ -73,8 +74,9 @@ class FreeLand(Lettering):
         every = super().segments
         cut = np.zeros(len(every), dtype=bool)
         for axis, side in enumerate(self.cell):
-            begin, end = every[:, axis], every[:, axis + 2]
-            cut |= (begin == end) & ((begin == 0) | (begin == side))
+            ends = every[:, [axis, axis + 2]]
+            for border in (0.0, side):
+                cut |= (np.abs(ends - border) < _SAME).all(axis=1)
         return every[~cut]
 
     @cached_property
@@ -91,25 +93,36 @@ class FreeLand(Lettering):
         return np.where(land, -distance, distance)
 
     def outlines(self, low: Array, high: Array) -> Iterator[tuple[Array, list[Array]]]:
-        """Yield outer wall and inner walls of each piece of land that reaches between two corners.
+        """Yield outer wall of each piece of land between two corners, and the channels within it.
 
-        Land that goes on without end is cut beyond them.
+        Land that goes on without end is cut beyond the corners. A channel around an island is cut
+        into parts that are around nothing.
         """
         counts = [
             range(math.floor(a / p) - 1, math.ceil(b / p) + 2)
             for a, b, p in zip(low, high, self.cell, strict=True)
         ]
         tiles = [
-            shapely.transform(
-                self._cell_land, lambda points, i=i, j=j: points + self.pitch * (i, j)
-            )
-            for i in counts[0]
-            for j in counts[1]
+            shapely.transform(self._cell_land, lambda points, at=at: points + self.pitch * at)
+            for at in product(*counts)
         ]
-        land = shapely.simplify(shapely.union_all(tiles, grid_size=1e-9), _DRAWN)
-        for part in shapely.get_parts(land):
-            rings = [np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)]
-            yield rings[0], rings[1:]
+        land = shapely.simplify(shapely.union_all(tiles, grid_size=_SAME), _DRAWN)
+        filled = shapely.union_all([shapely.Polygon(p.exterior) for p in shapely.get_parts(land)])
+        for lug in shapely.get_parts(filled):
+            within = shapely.get_parts(lug.difference(land))
+            channels = [part for channel in within for part in _around_nothing(channel)]
+            yield (
+                np.array(lug.exterior.coords)[:-1],
+                [np.array(part.exterior.coords)[:-1] for part in channels],
+            )
+
+
+def _around_nothing(area: shapely.Polygon) -> Iterator[shapely.Polygon]:
+    """Yield the parts of an area, cut through the middle of whatever lies within it."""
+    low, left, high, right = area.bounds
+    cuts = [low, *sorted(shapely.Polygon(ring).centroid.x for ring in area.interiors), high]
+    for begin, end in pairwise(cuts):
+        yield from shapely.get_parts(area & shapely.box(begin, left, end, right))
 
 
 def height_map(terms: Mapping[str, float], nodes: tuple[int, int]) -> Array:
@@ -153,7 +166,7 @@ class _Cell:
     def distance(self, level: Array) -> Array:
         """Return the distance (m) to where a level is 0, of its sign."""
         x, y = self.places
-        lines = contour_generator(y, x, level).lines(0.0)
+        lines = contour_generator(y, x, level, quad_as_tri=True).lines(0.0)
         if not lines:
             return np.where(level > 0, _FAR, -_FAR)
         walls = [np.asarray(line) for line in lines]
@@ -244,7 +257,7 @@ def free_land(
 
 def _outlined(nodes: _Cell, level: Array) -> FreeLand:
     x, y = nodes.places
-    filled = contour_generator(y, x, level, fill_type=FillType.OuterOffset).filled(0.0, 2 * _FAR)
+    filled = contour_generator(y, x, level, quad_as_tri=True, fill_type=FillType.OuterOffset).filled(0.0, 2 * _FAR)
     shells, holes = [], []
     for points, offsets in zip(*filled, strict=True):
         for number, (first, last) in enumerate(pairwise(offsets)):

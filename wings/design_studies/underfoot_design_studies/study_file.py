@@ -175,7 +175,8 @@ def _on_finer_grid(
         for one in vary
         if isinstance(one.value(0.0), float)
     }
-    lows |= {one.path: one.times * lows[one.of] for one in follow if one.of in lows} | fixed
+    lows |= {one.path: one.times * lows[one.of] for one in follow if one.of in lows}
+    lows |= fixed
     narrowest, path = min(
         ((low, path) for path, low in lows.items() if path in WIDTHS), default=(math.inf, "")
     )

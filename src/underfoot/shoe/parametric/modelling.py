@@ -71,9 +71,8 @@ def _in_pattern(tread: Tread, centre: Array, reach: float) -> Iterator[tuple[Out
     low, high = centre - reach, centre + reach
     if tread.letters is not None:
         for shell, holes in tread.letters.outlines(low, high):
-            inner = tuple(map(_anticlockwise, holes))
-            size = float(np.hypot(*np.ptp(shell, axis=0)))
-            yield Outline(_anticlockwise(shell), holes=inner), size
+            outline = Outline(_anticlockwise(shell), holes=tuple(map(_anticlockwise, holes)))
+            yield outline, float(np.hypot(*np.ptp(shell, axis=0)))
     elif tread.pattern in LATTICES:
         for row in range(*_range(low[1], high[1], pitch * math.sqrt(3) / 2)):
             shift = lug / 2 + (pitch / 2 if row % 2 else 0.0)
@@ -119,10 +118,8 @@ def _anticlockwise(ring: Array) -> Array:
 
 def hollow_outlines(lugs: list[Outline], tread: Tread) -> list[Outline]:
     """Return the outlines of what is hollow within the lugs: of rings and letters, else nothing."""
-    if tread.letters is not None:
-        return [Outline(hole) for lug in lugs for hole in lug.holes]
     if tread.ring_width is None:
-        return []
+        return [Outline(hole) for lug in lugs for hole in lug.holes]
     return [Outline(lug.points, lug.radius - tread.ring_width) for lug in lugs]
 
 
