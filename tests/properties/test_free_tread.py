@@ -10,7 +10,7 @@ from underfoot.case import Case, load
 from underfoot.compute.sole import new_sole, sole_map
 from underfoot.core import InputError
 from underfoot_design_studies.free_land import free_land
-from underfoot_design_studies.free_tread import TERMS, _keeps
+from underfoot_design_studies.free_tread import TERMS, keeps
 
 ROOT = Path(__file__).parents[2]
 CELL, LAND, CHANNEL = (0.022, 0.018), 3e-3, 2.5e-3
@@ -30,7 +30,7 @@ def drawn(symmetry, seed, land=0.6):
     """Return the land of drawn coefficients that keep a symmetry; of the first that has one."""
     generator = np.random.default_rng(seed)
     for _ in range(10):
-        terms = tuple((n, generator.uniform(-1, 1)) for n in TERMS if _keeps(symmetry, n))
+        terms = tuple((n, generator.uniform(-1, 1)) for n in TERMS if keeps(symmetry, n))
         try:
             return free_land(terms, CELL, land, LAND, CHANNEL)
         except InputError:

@@ -33,7 +33,7 @@ _FURTHER = {
     "rings": {"lug_width": "12 mm", "ring_width": "3 mm"},
     "graded_circles": {"front_lug_width": "4 mm", "graded_length": "60 mm"},
     "lettering": {"lug_width": "16 mm", "channel_width": "3 mm", "text": "GRIP"},
-    "free": {"land": "0.6", "cell_length": "24 mm", "cell_width": "24 mm", "cos1_cos1": "1"},
+    "free": {"land": "0.6", "cell_length": "20 mm", "cell_width": "20 mm", "cos1_cos0": "1"},
 }
 """What some patterns need beyond that (assumed)."""
 Turn = Annotated[float, Quantity("rad", -math.pi, math.pi)]

@@ -257,7 +257,9 @@ def free_land(
 
 def _outlined(nodes: _Cell, level: Array) -> FreeLand:
     x, y = nodes.places
-    filled = contour_generator(y, x, level, quad_as_tri=True, fill_type=FillType.OuterOffset).filled(0.0, 2 * _FAR)
+    filled = contour_generator(
+        y, x, level, quad_as_tri=True, fill_type=FillType.OuterOffset
+    ).filled(0.0, 2 * _FAR)
     shells, holes = [], []
     for points, offsets in zip(*filled, strict=True):
         for number, (first, last) in enumerate(pairwise(offsets)):

@@ -21,7 +21,7 @@ LEAST_FLOOR = 0.5e-3
 """m: of a channel between walls with draft: a rib of the mould that still fills (assumed)."""
 LEAST_LAND, MOST_LAND = 0.1, 0.9
 MOST_WAVES = 2
-"""Waves along or across a cell at most: 24 coefficients, 12 of them with a mirror."""
+"""Waves along or across a cell at most: 24 coefficients, 14 of them with a mirror."""
 Coefficient = Annotated[float, Quantity("1", -1.0, 1.0)]
 Share = Annotated[float, Quantity("1", 0.0, 1.0)]
 _WAVES = ["cos0", *(f"{wave}{n}" for n in range(1, MOST_WAVES + 1) for wave in ("cos", "sin"))]
@@ -32,7 +32,7 @@ _FIELDS: Any = {name: (Coefficient, default(0.0, "0", "no such wave")) for name 
 _Waves = create_model("_Waves", __base__=Lugs, **_FIELDS)
 
 
-def _keeps(symmetry: str, name: str) -> bool:
+def keeps(symmetry: str, name: str) -> bool:
     """Return whether a term has a symmetry."""
     along, across = name.split("_")
     even_along, even_across = along[:3] == "cos", across[:3] == "cos"
@@ -101,7 +101,7 @@ class FreeTread(_Waves):
 
     def _unlike(self, where: str) -> Iterator[InputError]:
         """Yield what is wrong with the coefficients."""
-        allowed = [name for name in TERMS if _keeps(self.symmetry, name)]
+        allowed = [name for name in TERMS if keeps(self.symmetry, name)]
         if not self.coefficients:
             yield InputError(
                 "all coefficients are 0: the height map is flat",
