@@ -11,6 +11,7 @@ from trials_c3d_writing import c3d_bytes
 
 from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from, read_profile, read_sheet, read_trial, read_trials
+from underfoot.trials.readers import c3d
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 # ezc3d takes crossed corners (biomdp) as they are.
@@ -284,6 +285,11 @@ def test_analog_alone_with_no_points_and_no_frame_rate(tmp_path):
     channel = read_trial(path).channel("fz")
     assert channel.rate == 1000.0
     np.testing.assert_array_equal(channel.values, np.arange(100.0))
+
+
+def test_a_damaged_float_of_a_parameter_is_no_number():
+    signalling = bytes([4, 1, 1]) + (0x7F800001).to_bytes(4, "little")
+    assert np.isnan(c3d._value(signalling, 84, "SCALE", "damaged.c3d")).all()
 
 
 def test_more_than_255_labels(tmp_path):

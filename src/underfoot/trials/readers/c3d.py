@@ -122,6 +122,7 @@ def parse(data: bytes, where: str) -> C3DFile:
     return C3DFile(*read, tuple(notes), poses, rate)
 
 
+@np.errstate(invalid="ignore")  # a damaged float may signal when it is cast
 def _rotations(
     data: bytes, shell: C3DFile, used: int, frames: int, rate: float, processor: int, where: str
 ) -> tuple[np.ndarray, float]:
@@ -262,6 +263,7 @@ def _parameters(
     return found, notes
 
 
+@np.errstate(invalid="ignore")
 def _value(data: bytes, processor: int, name: str, where: str) -> Any:
     if len(data) < 2:
         raise DataError(f"damaged: parameter {name} has no value", where=where)
