@@ -166,6 +166,7 @@ def test_a_file_holds_it(tmp_path):
         ({"mould_draft": "20 deg"}, "mould_draft", "depth up to 2.75 mm"),
         ({"sin1_sin1": 0.5}, "sin1_sin1", 'symmetry = "none"'),
         ({"channel_width": "8 mm", "lug_width": "8 mm"}, "land", "Take smaller lug_width"),
+        ({"cell_width": "101 mm"}, "cell_width", "up to 100 mm"),
         ({"cos1_cos1": 1.5}, "cos1_cos1", "-1 to 1"),
         ({"depth": "30 mm"}, "depth", "outsole"),
     ],

@@ -248,9 +248,10 @@ def free_land(
         if most is None or least is None:
             break
         held = np.maximum(held, nodes.opened(np.minimum(-least, most), _CORE * smallest_channel))
+    near = " or ".join(f"{land:.2f}" for land in reached if 0 < land < 1)
     raise InputError(
         f"no cut of these waves has {share:.0%} of land and both smallest widths",
-        allowed=f"a land of {reached[0]:.2f} or {reached[1]:.2f} is near",
+        allowed=f"a land of {near} is near" if near else "none at any land",
         remedy="Take smaller lug_width or channel_width, a larger cell, or other coefficients",
     )
 

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 LEAST_FLOOR = 0.5e-3
 """m: of a channel between walls with draft: a rib of the mould that still fills (assumed)."""
 LEAST_LAND, MOST_LAND = 0.1, 0.9
+LARGEST_CELL = 40
+"""Smallest widths in a cell at most: waves are far longer than they beyond it, and slow to cut."""
 MOST_WAVES = 2
 """Waves along or across a cell at most: 24 coefficients, 14 of them with a mirror."""
 Coefficient = Annotated[float, Quantity("1", -1.0, 1.0)]
@@ -136,6 +138,14 @@ class FreeTread(_Waves):
                 allowed=f"below {display(max(cell - self.lug_width, 0.0), 'm')} (cell - lug_width)",
                 remedy="Take a larger cell_length or cell_width",
             )
+        longest = LARGEST_CELL * min(self.lug_width, self.channel_width)
+        for name in ("cell_length", "cell_width"):
+            if getattr(self, name) > longest:
+                yield RangeError(
+                    f"{display(getattr(self, name), 'm')} is far longer than its land and channels",
+                    where=f"{where}.{name}",
+                    allowed=f"up to {display(longest, 'm')} ({LARGEST_CELL} smallest widths)",
+                )
         floor = self.channel_width - 2 * self.depth * math.tan(self.mould_draft)
         if floor < LEAST_FLOOR:
             widest = (self.channel_width - LEAST_FLOOR) / 2 / math.tan(self.mould_draft or 1.0)
