@@ -185,3 +185,23 @@ def test_a_requirement_holds_on_the_right_side():
     high = read_requirement("fluid_load < 90 N", UNITS, STATES)
     assert low.margin(0.25) == pytest.approx(0.05)
     assert high.margin(100.0) == pytest.approx(-10.0)
+
+
+def test_a_list_of_one_is_set_for_all_designs_but_not_for_the_start():
+    text = """
+    base = "work_shoe_full_tread_glycerol.toml"
+    [vary]
+    "shoe.tread.pattern" = ["hexagons"]
+    "shoe.tread.channel_width" = ["2.6 mm"]
+    "shoe.tread.depth" = { from = "1 mm", to = "4 mm" }
+    [method]
+    budget = 4
+    """
+    plan = read_plan(text, Path(__file__).parents[2] / "examples")
+    assert [one.path for one in plan.dimensions] == ["shoe.tread.depth"]
+    changes = plan.design_changes((0.0,))
+    assert changes["shoe.tread.pattern"] == "hexagons"
+    assert changes["shoe.tread.channel_width"] == pytest.approx(2.6e-3)
+    assert plan.design_changes(()) == {}
+    # the channel counts for the grid of the study, too
+    assert plan.base.numerics.quick_grid_spacing <= 1.3e-3
