@@ -12,7 +12,7 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageChops
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "app"))
@@ -46,8 +46,11 @@ PAGES = {
 
 
 def store(name: str, png: bytes, width: int | None = None) -> None:
-    """Write a picture as PNG of few colours, the most that its bytes allow."""
+    """Write a picture without empty rows below as PNG of few colours, the most its bytes allow."""
     image = Image.open(io.BytesIO(png)).convert("RGB")
+    below = Image.new("RGB", image.size, image.getpixel((0, image.height - 1)))
+    _, _, _, end = ImageChops.difference(image, below).getbbox() or (0, 0, 0, image.height)
+    image = image.crop((0, 0, image.width, min(end + 20, image.height)))
     if width and image.width > width:
         image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
     for colours in (256, 128, 64, 32):
