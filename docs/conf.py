@@ -35,6 +35,7 @@ html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_search_scorer = "scorer.js"
 html_split_index = True  # a page a letter
 templates_path = ["_templates"]
 html_context = {"released": released and released[1], "changed": changed}
