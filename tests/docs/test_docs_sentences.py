@@ -19,7 +19,7 @@ PAGES = [
 
 
 def sentences(text):
-    """Yield the sentences of a page that have words, without code, formulas and tables; code is one word."""
+    """Yield the sentences of a page without blocks, formulas and tables; code in one is a word."""
     text = re.sub(r"^(`{3,}).*?^\1$", "", text, flags=re.DOTALL | re.MULTILINE)
     text = re.sub(r"\$\$.*?\$\$", "", text, flags=re.DOTALL)
     text = re.sub(r"^(?:#|\||:::| {4}\S).*$", "", text, flags=re.MULTILINE)
