@@ -32,14 +32,11 @@ QUESTIONS = {
     "Read my C3D": "read_my_c3d",
     "Fit my DMA": "fit_my_dma",
 }
-CUT_OFF = """(() => {
-  const scrolls = (e) =>
-    e && (/auto|scroll/.test(getComputedStyle(e).overflowX) || scrolls(e.parentElement));
-  return [...document.querySelectorAll("article :is(table, pre, img, mjx-container)")]
-    .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !scrolls(e.parentElement))
-    .map((e) => e.outerHTML.slice(0, 80));
-})()"""
-"""Tables, code, pictures and formulas that reach beyond the window and can't be scrolled to."""
+TOO_WIDE = (
+    "Math.max(...[...document.querySelectorAll('html, .content')]"
+    ".map((e) => e.scrollWidth - e.clientWidth))"
+)
+"""Pixels by which a page scrolls sideways; tables, code and formulas scroll by themselves."""
 
 
 @pytest.fixture(scope="module")
@@ -77,8 +74,12 @@ def test_no_page_is_too_long_or_too_wide(site, width):
             # genindex-all is the index by letters once more, to search in
             if width > 800 and page.name != "genindex-all.html":
                 assert session.value("document.documentElement.scrollHeight") < 15_000, page
-            assert session.value("document.documentElement.scrollWidth") <= width, page
-            assert session.value(CUT_OFF) == [], page
+            assert session.value(TOO_WIDE) <= 0, page
+        if width < 800:  # the measure sees tables and code that do not scroll by themselves
+            session.go(site / "physics" / "wear.html")
+            wide = "document.querySelectorAll('.table-wrapper, pre')"
+            session.value(f"{wide}.forEach((e) => {{ e.style.overflow = 'visible' }}), 1")
+            assert session.value(TOO_WIDE) > 100
 
 
 @pytest.mark.slow
