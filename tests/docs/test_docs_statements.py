@@ -37,6 +37,7 @@ from underfoot_design_studies.study_file import FILE_VERSION as STUDY_VERSION
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 CODE = re.compile(r"(?<![`\w}])`([^`\n]+(?:\n[^`\n]+)?)`(?!`)")
+ROLE = re.compile(r"\{[\w:]+\}`[^`]+`")
 GENERATED = {"rooms", "versions"}  # of the code and of CHANGELOG.md, which names what is gone
 PAGES = [
     ROOT / "README.md",
@@ -52,7 +53,8 @@ def prose(page):
 
 def spans(page):
     """Return everything in code type outside of blocks, cells of tables with their bars."""
-    return [" ".join(found.replace("\\|", "|").split()) for found in CODE.findall(prose(page))]
+    text = ROLE.sub("", prose(page))
+    return [" ".join(found.replace("\\|", "|").split()) for found in CODE.findall(text)]
 
 
 def calls(page):
