@@ -102,7 +102,7 @@ def test_five_questions_of_a_newcomer_are_one_click_from_the_first_page_and_foun
                 time.sleep(0.1)
             assert target.startswith(f"gallery/{page}.html"), text
             session.go(site / "gallery" / f"{page}.html")
-            assert session.value("document.querySelector('h1').firstChild.textContent") == text
+            assert session.value("document.querySelector('h1').textContent").startswith(text)
 
 
 @pytest.mark.slow
