@@ -236,7 +236,7 @@ def words_of_the_program():
 
 
 ELSEWHERE = set(
-    "array_peak_row_N sbatch SLURMCluster my_package NAME_history hrad walks_done "
+    "array_peak_row_N design_N sbatch SLURMCluster my_package NAME_history hrad walks_done "
     "study_done".split()
 )
 """Words of other programs, and names that an example on the page makes up."""
