@@ -5,6 +5,8 @@ import sys
 from importlib import metadata
 from pathlib import Path
 
+from docutils import nodes
+
 sys.path.insert(0, str(Path(__file__).parent))
 
 project = "Underfoot"
@@ -33,6 +35,7 @@ html_theme = "furo"
 html_title = f"Underfoot {release}"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_split_index = True  # a page a letter
 templates_path = ["_templates"]
 html_context = {"released": released and released[1], "changed": changed}
@@ -71,6 +74,14 @@ def _plain_formulas(app, what, name, object_, options, lines) -> None:
     lines[:] = shown
 
 
+def _mark_prose(app, tree) -> None:
+    """Mark outputs without columns: their lines may be folded, those of a table may not."""
+    for block in tree.findall(nodes.literal_block):
+        if block.get("language") == "text" and not re.search(r"\S {2,}\S", block.astext()):
+            block["classes"].append("prose")
+
+
 def setup(app) -> None:
     """Called by Sphinx."""
+    app.connect("doctree-read", _mark_prose)
     app.connect("autodoc-process-docstring", _plain_formulas)

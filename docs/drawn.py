@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib
 from docutils import nodes
 from docutils.parsers.rst import directives
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 STYLE = {
@@ -20,7 +21,13 @@ STYLE = {
     "axes.grid": True,
     "grid.alpha": 0.3,
     "legend.frameon": False,
+    "axes.formatter.min_exponent": 3,  # 10 on a logarithmic axis, not a power of ten
 }
+
+
+def drawn_page(env: BuildEnvironment, page: str | None = None) -> bool:
+    """Return whether a page's figures are drawn: all, or those that ``-D draw=PAGE,PAGE`` names."""
+    return env.config.draw == "all" or (page or env.docname) in env.config.draw.split(",")
 
 
 class Plot(SphinxDirective):
@@ -30,8 +37,8 @@ class Plot(SphinxDirective):
     option_spec = {"alt": directives.unchanged_required}  # noqa: RUF012
 
     def run(self) -> list[nodes.Node]:
-        """Return the image, or nothing where figures are not to be drawn (``-D draw=0``)."""
-        if not self.config.draw:
+        """Return the image, or nothing where the page is not to be drawn."""
+        if not drawn_page(self.env):
             return []
         matplotlib.use("Agg")
         os.environ.setdefault("UNDERFOOT", str(Path(__file__).parents[1]))
@@ -53,5 +60,5 @@ class Plot(SphinxDirective):
 def setup(app):
     """Called by Sphinx."""
     app.add_directive("plot", Plot)
-    app.add_config_value("draw", True, "env", bool)
+    app.add_config_value("draw", "all", "env", str)
     return {"parallel_read_safe": True}

@@ -9,6 +9,7 @@ import contextlib
 import io
 import json
 import os
+import posixpath
 import re
 import shutil
 import tempfile
@@ -17,7 +18,7 @@ from pathlib import Path
 import matplotlib
 from docutils import nodes
 from docutils.parsers.rst import directives
-from drawn import STYLE
+from drawn import STYLE, drawn_page
 from sphinx import addnodes
 from sphinx.util.docutils import SphinxDirective
 
@@ -121,8 +122,8 @@ class Picture(SphinxDirective):
     option_spec = {"alt": directives.unchanged_required}  # noqa: RUF012
 
     def run(self) -> list[nodes.Node]:
-        """Return image and downloads, or nothing where figures are not to be drawn."""
-        if not self.config.draw:
+        """Return image and downloads, or nothing where the page is not to be drawn."""
+        if not drawn_page(self.env):
             return []
         page, source = Path(self.env.doc2path(self.env.docname)), Path(self.env.srcdir)
         draw(page, source)
@@ -137,24 +138,24 @@ class Picture(SphinxDirective):
 
 
 class Cards(SphinxDirective):
-    """Pages beside this one, each as its picture over its question."""
+    """Pages by their paths from this one, each as its picture over its question."""
 
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """Return one card for each line of the content, the name of a page."""
+        """Return one card for each line of the content."""
         source = Path(self.env.srcdir)
         folder = Path(self.env.doc2path(self.env.docname)).parent
         cards = nodes.container(classes=["cards"])
         for name in self.content:
             page = folder / f"{name}.md"
             self.env.note_dependency(str(page))
-            target = f"{self.env.docname.rpartition('/')[0]}/{name}"
+            target = posixpath.join(posixpath.dirname(self.env.docname), name)
             address = self.env.app.builder.get_relative_uri(self.env.docname, target)
             link = nodes.reference("", "", internal=True, refuri=address, classes=["card"])
-            if self.config.draw:
+            if drawn_page(self.env, target):
                 draw(page, source)
-                link += nodes.image(uri=f"/_drawn/{name}/picture.svg", alt="")
+                link += nodes.image(uri=f"/_drawn/{page.stem}/picture.svg", alt="")
             link += nodes.inline(text=question(page))
             cards += nodes.paragraph("", "", link)
         return [cards]

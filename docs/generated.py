@@ -442,6 +442,12 @@ def write_interface_pages(folder: Path) -> list[str]:
             f"## {title}\n\n```{{toctree}}\n:maxdepth: 1\n" + "\n".join(listed) + "\n```\n"
         )
     pages["index"] = "# By room\n\n" + "\n".join(index)
+    _write_pages(folder, pages)
+    return list(pages)
+
+
+def _write_pages(folder: Path, pages: dict[str, str]) -> None:
+    """Leave these pages and no others in a folder; one that says the same stays as it is."""
     folder.mkdir(exist_ok=True)
     for path in folder.glob("*.md"):
         if path.stem not in pages:
@@ -450,7 +456,6 @@ def write_interface_pages(folder: Path) -> list[str]:
         path = folder / f"{stem}.md"
         if not path.exists() or path.read_text("utf-8") != text:
             path.write_text(text, "utf-8")
-    return list(pages)
 
 
 def _page(
@@ -470,6 +475,26 @@ def _page(
         members = "\n   :members:" if kind == "autoclass" else ""
         text.append(f"```{{eval-rst}}\n.. {kind}:: {module}.{name}{members}\n```")
     return "\n\n".join(text) + "\n"
+
+
+# --- notes of each version --------------------------------------------------------------------
+
+
+def write_version_pages(folder: Path) -> list[str]:
+    """Write what each released version broke, and what else it changed; return the pages' names."""
+    pages: dict[str, str] = {}
+    changes = (ROOT / "CHANGELOG.md").read_text("utf-8").replace("](docs/", "](/")
+    for version, date, notes in re.findall(
+        r"^## (\d\S*) \((\S+)\)\n(.*?)(?=^## |\Z)", changes, re.DOTALL | re.MULTILINE
+    ):
+        sections = re.split(r"^(?=### )", notes.strip(), flags=re.MULTILINE)
+        breaking = [text for text in sections if text.startswith("### Breaking")]
+        others = [text for text in sections if text not in breaking]
+        for what, some in (("what breaks", breaking), ("what is new and mended", others)):
+            title = f"# {version} ({date}): {what}\n\n"
+            pages[f"{version}_{what.split()[-1]}"] = title + "".join(some).replace("### ", "## ")
+    _write_pages(folder, pages)
+    return list(pages)
 
 
 # --- Sphinx -----------------------------------------------------------------------------------
@@ -580,4 +605,5 @@ def setup(app) -> dict[str, bool]:
     app.add_role("default", Default())
     app.add_transform(TermLinks)
     app.connect("builder-inited", lambda _: write_interface_pages(DOCS / "api" / "rooms"))
+    app.connect("builder-inited", lambda _: write_version_pages(DOCS / "reference" / "versions"))
     return {"parallel_read_safe": True}

@@ -1,7 +1,8 @@
 """Pictures of the app and of the pages that commands write, for ``docs/images``.
 
 ``.venv/bin/python docs/screenshots.py`` makes them anew (some minutes), with names only those:
-``app``, ``measured``, ``place``, ``designer``, ``ergonomist``. Tutorials: pages of their blocks.
+``app``, ``measured``, ``run``, ``place``, ``designer``, ``ergonomist``. Tutorials: pages of their
+blocks.
 Chromium is needed (``make chromium``).
 """
 
@@ -12,13 +13,13 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageChops
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "app"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 
-from pages import ROOT, blocks_of, reader
+from pages import ROOT, blocks_of, command_output, reader
 from web_app import begin, drawn, page_of, served
 
 from underfoot_places.choice import chosen
@@ -26,6 +27,7 @@ from underfoot_places.place import read_place
 
 IMAGES = ROOT / "docs" / "images"
 
+FIRST = "work_shoe_untreaded_glycerol"
 MOST = 150_000
 """Bytes of a picture."""
 FILM_WIDTH, FRAME = 800, 2500  # px, ms
@@ -46,8 +48,11 @@ PAGES = {
 
 
 def store(name: str, png: bytes, width: int | None = None) -> None:
-    """Write a picture as PNG of few colours, the most that its bytes allow."""
+    """Write a picture without empty rows below as PNG of few colours, the most its bytes allow."""
     image = Image.open(io.BytesIO(png)).convert("RGB")
+    below = Image.new("RGB", image.size, image.getpixel((0, image.height - 1)))
+    _, _, _, end = ImageChops.difference(image, below).getbbox() or (0, 0, 0, image.height)
+    image = image.crop((0, 0, image.width, min(end + 20, image.height)))
     if width and image.width > width:
         image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
     for colours in (256, 128, 64, 32):
@@ -184,6 +189,16 @@ def page_picture(name: str, file: Path) -> None:
         store(name, page.screenshot())
 
 
+def run_picture() -> None:
+    """Run the case of the first page and look at its report."""
+    with tempfile.TemporaryDirectory() as folder, reader(Path(folder)):
+        case = ROOT / "examples" / f"{FIRST}.toml"
+        command_output(f"underfoot run {case} --out out --no-advice")
+        with page_of(Path("out/report.html").resolve().as_uri(), width=960, height=1080) as page:
+            page.wait_for_timeout(2000)
+            store(FIRST, page.screenshot())
+
+
 def place_picture() -> None:
     """Choose a shoe for the hospital corridor of the examples."""
     with tempfile.TemporaryDirectory() as folder:
@@ -209,6 +224,9 @@ def tutorial_pictures(tutorial: str) -> None:
 
 
 if __name__ == "__main__":
-    of_the_app = {"app": app_pictures, "measured": measured_picture, "place": place_picture}
-    for wanted in sys.argv[1:] or [*of_the_app, *PAGES]:
-        of_the_app[wanted]() if wanted in of_the_app else tutorial_pictures(wanted)
+    others = {
+        "app": app_pictures, "measured": measured_picture, "run": run_picture,
+        "place": place_picture,
+    }  # fmt: skip
+    for name in sys.argv[1:] or [*others, *PAGES]:
+        others[name]() if name in others else tutorial_pictures(name)

@@ -77,8 +77,8 @@ class Session:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
 
-    def go(self, page):
-        self.call("Page.navigate", url=page.resolve().as_uri())
+    def go(self, page, query=""):
+        self.call("Page.navigate", url=page.resolve().as_uri() + query)
         ready = "[...document.querySelectorAll('.viewer')].every((v) => v.dataset.ready)"
         limit = time.monotonic() + 60
         while not self.value(f"document.readyState === 'complete' && {ready}"):

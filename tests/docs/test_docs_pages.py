@@ -42,7 +42,7 @@ def test_a_page_of_physics_computes_its_numbers_and_figures(page, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["trials_analysis", "design_studies"])
+@pytest.mark.parametrize("name", ["trials_analysis", "design_studies", "risk"])
 def test_a_guide_prints_what_it_says(name, tmp_path):
     assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
 

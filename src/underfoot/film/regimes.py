@@ -119,7 +119,7 @@ def compare_regimes(lambda_ratio: float, fluid_share: float) -> RegimeComparison
     elif order.index(second) > order.index(first):
         why = (
             f"{given}. Lambda sets the thinnest place of a smooth film against roughness as it "
-            "was measured; the load is carried over the whole contact, where the film is thicker, "
+            "was measured. The load is carried over the whole contact, where the film is thicker, "
             "and soft asperities flatten or are held apart by a mean pressure far below their own "
             "stiffness."
         )

@@ -381,7 +381,9 @@ class PairContactLaw(UncertainInputs):
     draws: PairDraws = field(default_factory=packaged_pair_draws)
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
-    spread_basis: str = field(default="without a reading of this pair, any shoe", init=False)
+    spread_basis: str = field(
+        default="without a reading of this pair or a slip class of the shoe", init=False
+    )
 
     def __post_init__(self) -> None:
         if self.viscosity is not None:

@@ -8,14 +8,14 @@ from underfoot.surface import HeightMap
 from .sliding_input import Modulus, modulus_function
 
 PLAIN = (
-    "composite of two surfaces, exact for elastic bodies at each moment; in a viscoelastic shoe it "
-    "takes the shoe's roughness to move with the floor, so it underrates contact, overrates the "
+    "composite of two surfaces, exact for elastic bodies at each moment. In a viscoelastic shoe it "
+    "takes the shoe's roughness to move with the floor: it underrates contact, overrates the "
     "gap and much overrates hysteresis, which belongs to the floor's surface alone"
 )
 RESTING = (
     "composite of two surfaces with the shoe's waves reduced by E(0)/E*(q_x v), since they rest in "
-    "the rubber: exact in full contact; in partial contact it overrates contact by up to 10 % and "
-    "underrates the gap by up to 18 % (against time marches); take hysteresis from the floor alone"
+    "the rubber: exact in full contact. In partial contact it overrates contact by up to 10 % and "
+    "underrates the gap by up to 18 % (against time marches). Take hysteresis from the floor alone"
 )
 
 

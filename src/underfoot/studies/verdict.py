@@ -59,9 +59,8 @@ class Verdict(StrEnum):
             Verdict.AGREES: "every computed value lies within the tolerance of the printed one, "
             "and is more likely inside than outside where a probability is known",
             Verdict.OVERLAPS: "the computed 95 % interval (or the values over the conditions) "
-            "reaches into the tolerance of the printed one, lies in it with a probability of "
-            "0.2 or more, and is no wider than half the scale (100 points of a share; twice the "
-            "printed value)",
+            "reaches into the tolerance of the printed one, with a probability of 0.2 or more. It "
+            "is no wider than half the scale (100 points of a share; twice the printed value)",
             Verdict.TREND_ONLY: "a change of the printed sign in every condition, of another size",
             Verdict.UNDECIDED: "the computed interval reaches into the tolerance, but is too wide "
             "or too improbable there to say that they agree",

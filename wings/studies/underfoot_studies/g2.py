@@ -438,11 +438,11 @@ def _conclusions(comparison: MechanismComparison, fit: Mapping[str, float]) -> t
         f"Supported: films at asperities ({error('asperity_ehl')}), with a fine roughness of "
         f"{1e9 * number('asperity_ehl'):.0f} nm. The self-affine spectrum, continued below the "
         "stylus' resolution, would have 83 nm: the number is calibrated, not predicted.",
-        f"Not told apart by these data: the film of the pin against a roughness of "
-        f"{1e6 * number('mean_film_free'):.2f} um ({error('mean_film_free')}; measured: 8.3 um "
-        "both, 1.34 um the floor), the floor's roughness with the report's film "
+        "These data do not tell three explanations apart: the film of the pin against a "
+        f"roughness of {1e6 * number('mean_film_free'):.2f} um ({error('mean_film_free')}; "
+        "measured: 8.3 um both, 1.34 um the floor); the floor's roughness with the report's film "
         f"({error('mean_film_floor_printed')}, nothing of the film calibrated; with half the "
-        f"sliding speed and E' = 2 E*: {error('mean_film_floor')}), and a formula without "
+        f"sliding speed and E' = 2 E*: {error('mean_film_floor')}); and a formula without "
         f"mechanism ({error('one_constant')}). Differences of 0.002 mean nothing where COF_BL is "
         "known to 0.03.",
         "What would decide: a change of the pin's radius or load (a film of the pin follows it, a "

@@ -461,10 +461,10 @@ def _words_on_loss(splits: Mapping[tuple[str, str], Split]) -> str:
     most = max(_interval(one.loss)[1] for one in splits.values())
     return (
         f"What the compounds lose by their loss tangent is {by_floor[0]:.2f} N on vinyl and "
-        f"{by_floor[1]:.2f} N on marble (95 % of the joint draws: up to {most:.1f} N), {share:.0%} "
-        "or less of the friction under gear oil: the rest is adhesion that the oil leaves. What is "
-        "published does not tell the loss of polyurethane from that of rubber, so it orders no "
-        "soles; marble, the smoother floor, gives the least."
+        f"{by_floor[1]:.2f} N on marble (95 % of the joint draws: up to {most:.1f} N). That is "
+        f"{share:.0%} or less of the friction under gear oil: the rest is adhesion that the oil "
+        "leaves. What is published does not tell the loss of polyurethane from that of rubber, so "
+        "it orders no soles; marble, the smoother floor, gives the least."
     )
 
 

@@ -109,7 +109,7 @@ def profile(name: str, unit: str, grid: ArrayLike, misfit: ArrayLike, *, data: i
     places = np.asarray(grid, dtype=float)
     values = np.asarray(misfit, dtype=float)
     if places.ndim != 1 or places.size < 3 or (np.diff(places) <= 0).any():
-        raise InputError("three or more rising values are wanted", where=f"{name}.grid")
+        raise InputError("needs three or more rising values", where=f"{name}.grid")
     if values.shape[:1] != places.shape:
         raise InputError(f"{values.shape} for {places.size} values", where=f"{name}.misfit")
     flat = values.reshape(places.size, -1).min(axis=1)
@@ -145,6 +145,6 @@ def model_error(predicted: ArrayLike, observed: ArrayLike) -> tuple[float, float
     """
     ours, theirs = np.asarray(predicted, float), np.asarray(observed, float)
     if not ((ours > 0).all() and (theirs > 0).all()):
-        raise InputError("positive values are wanted", where="model_error")
+        raise InputError("needs positive values", where="model_error")
     ratio = np.log(ours / theirs)
     return float(ratio.mean()), float(np.sqrt(np.mean(ratio**2)))

@@ -36,7 +36,7 @@ STANDS = {
     "with": "with the report",
     "against": "against the report",
     "part": "in part with it",
-    "undecided": "not told apart",
+    "undecided": "undecided",
 }
 PRESSURE, SPEED = 266.1e3, 0.3
 """Pa and m/s: contact pressure of the report's pins, sliding speed of its slip tester in G.6."""
@@ -221,10 +221,10 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         "## What the report concluded, and what this program finds",
         "",
         "Contact friction by the default law at its medians (Shore A 60, sole Rq 8 µm, floor Rq "
-        "1.5 µm, 266 kPa, 0.3 m/s, but for what is named); where a sentence rests on friction "
-        "that the report read, by that law without any of its readings. A level is known to a "
-        "factor of two to three; a difference between two soles far better, but not to a few per "
-        "cent (`underfoot compare` says how sure).",
+        "1.5 µm, 266 kPa, 0.3 m/s, but for what is named). Where a sentence rests on friction "
+        "that the report read, that law knows none of the report's readings. A level is known to "
+        "a factor of two to three; a difference between two soles far better, but not to a few "
+        "per cent (`underfoot compare` says how sure).",
         "",
         f"{len(told)} sentences: " + ", ".join(f"{stands[k]} {v}" for k, v in STANDS.items()) + ".",
         "",

@@ -157,8 +157,8 @@ _SENTENCES = {
 _DONE = {
     "stribeck": (
         "COF against speed was fitted with COF = asymptote + (COF_BL - asymptote) exp(-v / tau) by "
-        "separable bounded least squares with profile-likelihood intervals; fits with R^2 above "
-        "0.8 count as good, above 0.5 as moderate, below the mean COF stands for COF_BL."
+        "separable bounded least squares with profile-likelihood intervals. Fits with R^2 above "
+        "0.8 count as good, above 0.5 as moderate; below that the mean COF stands for COF_BL."
     ),
     "master_curve": "All COF were brought on one curve against viscosity times speed by isotonic "
     "regression.",
