@@ -299,16 +299,20 @@ def test_a_job_is_the_same_after_its_line():
     assert json.loads(job.line())["changes"]["contaminant"] == "water"
 
 
-def test_time_left_is_told_once_every_worker_has_ended_a_case():
+def test_time_left_is_told_once_every_worker_has_ended_a_case(store):
     jobs = [Job(str(n), n, 0, 0, 0, (), {}) for n in range(10)]
     session = {"began": 1000.0, "ended": None, "workers": 2}
 
-    def left(count):
-        records = {str(n): replace(record(str(n)), ended=1000.0 + 5 * n) for n in range(count)}
-        return StudyStatus(read_plan(TEXT, EXAMPLES), jobs, records, [session], 1060.0).seconds_left
+    def left():
+        known = Store(store.folder).records()
+        return StudyStatus(store.plan(), jobs, known, [session], 1060.0).seconds_left
 
-    assert [left(0), left(1)] == [None, None]
-    assert left(2) == pytest.approx(8 * 30.0)
+    told = [left()]
+    for n in range(2):
+        added(store, replace(record(str(n)), ended=1000.0 + 5 * n))
+        told.append(left())
+    assert told[:2] == [None, None]
+    assert told[2] == pytest.approx(8 * 30.0)
 
 
 def test_what_dead_processes_left_is_tidied_and_their_times_are_kept(store):

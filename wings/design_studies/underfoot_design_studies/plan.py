@@ -18,7 +18,7 @@ from underfoot.case.section import Section
 from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
 
-from .goals import AnyGoal, Condition, Requirement
+from .goals import AnyGoal, Condition, Goal, Requirement
 from .inputs import Distribution, Follow, Input
 from .record import Job
 
@@ -127,6 +127,13 @@ class StudyPlan:
         return (*self.maximise, *self.minimise)
 
     @property
+    def asked(self) -> tuple[AnyGoal, ...]:
+        """The goals and what is required; COF and the load on the film where nothing is."""
+        required = (each.goal for each in self.require)
+        unique = tuple(dict.fromkeys((*self.goals, *required)))
+        return unique or (Goal("cof", "1"), Goal("fluid_load", "N"))
+
+    @property
     def signs(self) -> Array:
         """1 for goals to be small, -1 for those to be large."""
         return np.array([-1.0] * len(self.maximise) + [1.0] * len(self.minimise))
@@ -154,7 +161,7 @@ class StudyPlan:
             rows = qmc.LatinHypercube(size, rng=seed).random(count)
         else:
             rows = qmc.Sobol(size, rng=seed).random_base2(math.ceil(math.log2(max(count, 2))))
-        return [tuple(map(float, row)) for row in rows[:count]]
+        return list(map(tuple, rows[:count].tolist()))
 
     def design_changes(self, point: Sequence[float]) -> dict[str, Any]:
         """Return what a point of the unit cube changes in the case, followers included.

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
+
+import numpy as np
 
 from underfoot.core.presentation import Table
 from underfoot.core.progress import time_text
 
 from .record import Ending
+from .records import Records
 from .result import StudyResult
+from .scan import Scan, scanned
 from .study import Study
+
+USUAL = (Ending.OPEN, Ending.COMPUTED)
+MOST_REASONS = 5000
+"""Cases without numbers whose reasons are read."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +31,7 @@ class StudyStatus(StudyResult):
 
     kind: ClassVar[str] = "study_status"
 
+    records: Records
     now: float = 0.0
 
     @cached_property
@@ -33,9 +44,14 @@ class StudyStatus(StudyResult):
         return sum(one["workers"] for one in self._alive)
 
     @cached_property
+    def scan(self) -> Scan:
+        """Numbers of all finished cases."""
+        return scanned(self.records)
+
+    @property
     def case_seconds(self) -> float:
         """Sum over the finished cases of the seconds each took."""
-        return sum(record.seconds for record in self.records.values())
+        return float(np.nansum(self.scan.case["seconds"]))
 
     @cached_property
     def worker_seconds(self) -> float:
@@ -52,7 +68,7 @@ class StudyStatus(StudyResult):
     def _ended(self) -> int:
         """Cases that ended since the processes began that are alive, or were."""
         began = min((one["began"] for one in self._alive or self.sessions), default=self.now)
-        return sum(record.ended >= began for record in self.records.values())
+        return int(np.count_nonzero(self.scan.case["ended"] >= began))
 
     @cached_property
     def per_minute(self) -> float:
@@ -64,19 +80,51 @@ class StudyStatus(StudyResult):
         elapsed = max(one["ended"] or self.now for one in counted) - began
         return 60 * self._ended / max(elapsed, 1e-9)
 
+    @cached_property
+    def cases_left(self) -> int:
+        """Cases that the study still takes, those not yet proposed with them."""
+        plan, total = self.plan, self.endings.total()
+        planned = plan.designs * plan.cases_per_design
+        if plan.goals and plan.method.again_on and self.start is None:
+            planned += (min(plan.method.again, plan.designs) + 1) * plan.cases_per_design
+        return max(planned, total) - (total - self.endings[Ending.OPEN])
+
     @property
     def seconds_left(self) -> float | None:
-        """Time left of the cases set so far, at that rate; None before each worker ended one."""
+        """Time left at that rate; None before each worker ended a case."""
         known = self._alive and self._ended >= max(1, self.working)
-        return 60 * self.endings[Ending.OPEN] / self.per_minute if known else None
+        return 60 * self.cases_left / self.per_minute if known else None
+
+    @property
+    def programs(self) -> Collection[str]:
+        """Versions of the program that computed the cases."""
+        return self.scan.programs
 
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, how fast, and when it ends."""
-        at_work = f"{self.working} workers at work" if self.working else "Nobody works on it"
+        count, seconds = self.working, self.seconds_left
+        at_work = f"{count} worker{'s' * (count > 1)} at work" if count else "Nobody works on it"
         rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
-        seconds = self.seconds_left
+        if not count and not self._ended:
+            rate = at_work
         left = "" if seconds is None else f", about {time_text(seconds)} left"
-        return (super().headline()[0], f"{rate}{left}.")
+        return (f"{self.ended_text(self.cases_left)}.", f"{rate}{left}.")
+
+    @property
+    def lost_text(self) -> str:
+        """Nothing: the remarks tell why."""
+        return ""
+
+    def remarks(self) -> Mapping[str, Sequence[str]]:
+        """Return why cases have no numbers, the most frequent reason first."""
+        bad = [key for key in self.keys if self.records.ending(key) not in USUAL]
+        reasons = Counter(
+            self.records[key].reason for key in bad[:: max(1, -(-len(bad) // MOST_REASONS))]
+        )
+        title = "Without numbers"
+        if len(bad) > reasons.total():
+            title += f" ({reasons.total()} of {len(bad)}, evenly taken)"
+        return {title: [f"{n} x {text}" for text, n in reasons.most_common()]}
 
     def table(self) -> Table:
         """Return how many cases ended in each way."""
@@ -98,5 +146,5 @@ class StudyStatus(StudyResult):
 
 def study_status(study: Study) -> StudyStatus:
     """Return how far a study in its folder is."""
-    result = study.result()
-    return StudyStatus(result.plan, result.jobs, result.records, result.sessions, time.time())
+    store = study.store
+    return StudyStatus(study.plan, store.jobs(), store.records(), store.sessions(), time.time())

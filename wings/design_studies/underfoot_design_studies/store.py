@@ -7,6 +7,7 @@
     draws-WORKER.f4     the draws of COF of those cases
     packed-HASH.npz     ten thousand finished cases, of processes that ended
     claims/             who computes what now (``claims``)
+    stop                the study is to stop: who works on it takes no further case
     alive/WORKER        touched while a process works; sessions.jsonl tells of those that ended
 
 A case is finished when its line is written; every line has a check sum. Lines are only added, so
@@ -62,6 +63,8 @@ RESERVE = 1 << 18
 """Bytes kept free on the disk for the cases that end after it filled up."""
 LED = ("base.toml", "study.toml", "sessions.jsonl", "jobs", "packed", "lead.claim")
 """Files that only the leading process writes."""
+STOP = "stop"
+"""File that asks all who work on a study to stop."""
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
 
@@ -171,7 +174,7 @@ class Store:
         """Write jobs of version 1 anew, in closed batches."""
         whole = self.folder / f".jobs-{uuid4().hex}"
         whole.touch()
-        unique = {(job.key, job.design): job for job in before}.values()
+        unique = {(j.batch, j.design, j.condition, j.draw): j for j in before}.values()
         for batch, jobs in groupby(unique, lambda job: job.batch):
             add_batch(whole, batch, jobs, whole.stat().st_size)
         os.replace(whole, self.folder / "jobs.jsonl")
@@ -375,6 +378,19 @@ class Store:
         """Another living process that computes cases of the study; "" without."""
         latest = self.round
         return "" if latest is None else latest.other(self._alive)
+
+    def stop(self) -> None:
+        """Ask all who work on the study to take no further case."""
+        write_file(self.folder / STOP, self.name.encode("utf-8"))
+
+    def go_on(self) -> None:
+        """Take that back."""
+        (self.folder / STOP).unlink(missing_ok=True)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the study is to stop."""
+        return (self.folder / STOP).exists()
 
     @property
     def share(self) -> float:
