@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -57,12 +58,12 @@ DRAWS = np.random.default_rng(0).normal(0.0, 0.02, 500)
 
 def jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
     """Yield jobs as a plan sets them, with made-up keys: its own take a case each to hash."""
-    number, conditions = 0, len(plan.states)
+    number = 0
     for design, point in enumerate(plan.sampled_points(-(-count // plan.cases_per_design))):
         changes = plan.design_changes(point)
-        for k in range(plan.cases_per_design):
+        for state, draw in product(range(len(plan.states)), range(len(plan.draws))):
             key = f"{number * 2654435761 % 2**96:024x}"
-            yield Job(key, design, k % conditions, k // conditions, 0, point, changes)
+            yield Job(key, design, state, draw, 0, point, changes)
             number += 1
 
 

@@ -71,8 +71,8 @@ def made_up(monkeypatch):
         return keys.setdefault(repr((changes, quick)), f"{len(keys):024x}")
 
     def computed(base, job):
-        draws = np.full(3, job.point[0])
-        return Record(job.key, Ending.COMPUTED, numbers={"cof": job.point[0]}, draws=draws)
+        (cof,) = job.point or (0.5,)
+        return Record(job.key, Ending.COMPUTED, numbers={"cof": cof}, draws=np.full(3, cof))
 
     def promising(so_far, count):
         values = so_far.goal_values(so_far.designs)[:, 0]
@@ -153,3 +153,24 @@ def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, pl
     assert len(Store(tmp_path).jobs()) < 12
     Study(made_up, tmp_path).run(workers=1)
     assert answers(tmp_path) == whole
+
+
+def test_an_optimisation_with_a_larger_budget_goes_on_from_what_is_finished(made_up, tmp_path):
+    again = TEXT.replace('"none"', '"quick"\nagain = 2')
+    run(read_plan(again, EXAMPLES), tmp_path, True)
+    first = answers(tmp_path)
+    assert [len(place) for _, place, _ in first] == [1] * 14 + [0]  # two again, and the start
+    longer = Study(read_plan(again.replace("12", "20"), EXAMPLES), tmp_path)
+    longer.run(workers=1)
+    jobs = answers(tmp_path)
+    assert jobs[:15] == first
+    result = longer.result()
+    assert len(result.designs) == 20
+    numbers = [one.number for one in result.all_designs if one.again and one.point]
+    assert len(set(numbers)) == len(numbers)  # none is run again twice
+    assert set(numbers) >= {one.number for one in result.best(2)}
+    assert not jobs[-1][1]
+    assert not longer._begin_next()
+    shorter = Study(made_up, tmp_path)
+    shorter.run(workers=1)
+    assert len(answers(tmp_path)) == 12  # anything else is another study

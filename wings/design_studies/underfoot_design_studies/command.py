@@ -112,7 +112,8 @@ def stop(
         print(f"nobody works on the study in {chosen.store.folder}")
         return
     chosen.store.stop()
-    print(f"asked {working} processes to stop; underfoot study run goes on from there")
+    who = "1 process" if working == 1 else f"{working} processes"
+    print(f"asked {who} to stop; underfoot study run goes on from there")
 
 
 def live(study: StudyPath, out: Folder = None) -> None:

@@ -268,10 +268,9 @@ def live_study(study: Study) -> LiveStudy:
 
 def live_sections(live: LiveStudy) -> list[Section]:
     """Return the designs, the best of them, and why some have no numbers."""
-    table, parts = live.table(), list[Section]()
-    if live.shown:
-        html = explorer(live, live.shown)
-        parts.append(Section("Designs", live.drawn_text(), html=html))
+    html = explorer(live, live.shown) if live.shown else ""
+    parts = [Section("Designs", live.drawn_text() if html else "None ended yet.", html=html)]
+    table = live.table()
     if table.rows:
         parts.append(Section(table.title, table=table))
     return [*parts, *remark_sections(live)]

@@ -85,7 +85,8 @@ class StudyStatus(StudyResult):
         """Cases that the study still takes, those not yet proposed with them."""
         plan, total = self.plan, self.endings.total()
         planned = plan.designs * plan.cases_per_design
-        if plan.goals and plan.method.again_on and self.start is None:
+        ends_with_start = bool(self.jobs) and not self.jobs[-1].point
+        if plan.goals and plan.method.again_on and not ends_with_start:
             planned += (min(plan.method.again, plan.designs) + 1) * plan.cases_per_design
         return max(planned, total) - (total - self.endings[Ending.OPEN])
 

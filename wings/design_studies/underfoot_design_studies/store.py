@@ -26,6 +26,7 @@ import threading
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
@@ -36,7 +37,7 @@ from zlib import crc32
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import DataError, InputError
+from underfoot.core import DataError, InputError, UnderfootError
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER, whole_file
 from underfoot.core.optional import optional_module
@@ -113,7 +114,8 @@ class Store:
     def adopt(self, plan: StudyPlan) -> None:
         """Write the plan; only the leading process does. What dead processes left is tidied.
 
-        Where the folder has another plan its jobs are set aside; cases of both stay finished.
+        Where the folder has another plan its jobs are set aside; cases of both stay finished. An
+        optimisation that only got a larger budget keeps them, and goes on.
         """
         self._tidy()
         base = f"{plan.base.to_toml(complete=True)}\n# hash: {plan.base.hash}\n"
@@ -121,12 +123,28 @@ class Store:
         paths = {self.folder / name: text for name, text in texts.items()}
         if all(path.exists() and path.read_bytes() == text for path, text in paths.items()):
             return
+        if self._gets_longer(plan):
+            write_file(self.folder / "study.toml", texts["study.toml"])
+            return
         with suppress(FileNotFoundError):
             aside = f"jobs-before-{uuid4().hex[:8]}.jsonl"
             os.rename(self.folder / "jobs.jsonl", self.folder / aside)
         self.begin_round(Jobs(self.folder / "jobs.jsonl"), ended=False)
         for path, text in paths.items():
             write_file(path, text)
+
+    def _gets_longer(self, plan: StudyPlan) -> bool:
+        """Return whether a plan is that of the folder but for more designs of an optimisation."""
+        if plan.method.kind not in ("optimise", "robust") or not self.exists:
+            return False
+        try:
+            before = self.plan()
+        except (UnderfootError, OSError):
+            return False
+        more = {"base": plan.base, "text": plan.text, "remarks": plan.remarks}
+        method = before.method.model_copy(update={"budget": plan.method.budget})
+        same = before.base.hash == plan.base.hash and replace(before, **more, method=method) == plan
+        return same and plan.designs > before.designs
 
     @property
     def exists(self) -> bool:

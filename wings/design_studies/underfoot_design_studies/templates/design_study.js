@@ -13,13 +13,13 @@ function startStudy(root) {
   // A scale of one column: names stand at even places.
   const scale = (column, low, high) => {
     const values = designs.map((d) => d.values[column]).filter((v) => v !== null);
-    const names = values.some((v) => typeof v === "string") ? [...new Set(values.map(String))] : null;
+    const names = !values.length || values.some((v) => typeof v === "string") ? [...new Set(values.map(String))] : null;
     const ends = names ? [0, Math.max(names.length - 1, 1)] : [Math.min(...values), Math.max(...values)];
     const span = ends[1] - ends[0] || 1;
     return { names, ends, place: (v) => (v === null ? null : low + (high - low) * ((names ? names.indexOf(String(v)) : v) - ends[0]) / span) };
   };
   const label = (column) => columns[column].name + (columns[column].unit ? ` (${columns[column].unit})` : "");
-  const kind = (d) => (d.reason ? "failed" : d.front ? "front" : d.allowed ? "" : "not");
+  const kind = (d) => (d.reason ? "lost" : d.front ? "front" : d.allowed ? "" : "not");
   let chosen = null;
 
   function mark() {
