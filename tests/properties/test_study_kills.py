@@ -6,6 +6,8 @@ from there on nothing is written, as after kill -9 or a power cut.
 
 import os
 import shutil
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -174,3 +176,13 @@ def test_an_optimisation_with_a_larger_budget_goes_on_from_what_is_finished(made
     shorter = Study(made_up, tmp_path)
     shorter.run(workers=1)
     assert len(answers(tmp_path)) == 12  # anything else is another study
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the processes are forked")
+def test_commands_killed_at_random_moments_leave_the_undisturbed_study():
+    """Many more: ``python tests/study_kills.py 50``."""
+    script = Path(__file__).parents[1] / "study_kills.py"
+    run = [sys.executable, str(script), "4", "1"]
+    done = subprocess.run(run, capture_output=True, text=True, check=False)
+    assert "finished: equal, none twice, none left" in done.stdout, done.stdout + done.stderr

@@ -19,7 +19,6 @@ import numpy as np
 
 from underfoot.core import Progress, UnderfootError
 from underfoot.core.arrays import AnyArray, Array
-from underfoot.core.files import whole_file
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Table, quantity_text
 from underfoot.core.progress import time_text
@@ -301,8 +300,9 @@ def live_page(study: Study) -> str:
 
 def write_live_page(study: Study) -> None:
     """Write the page into the study's folder, whole or not at all."""
-    text = live_page(Study(study.plan, study.store.folder))  # of all, whatever this process knows
-    with whole_file(study.store.folder / PAGE) as part:
+    now = Study(study.plan, study.store.folder)  # of all, whatever this process knows
+    text = live_page(now)
+    with now.store.view(PAGE) as part:
         part.write_text(text, encoding="utf-8")
 
 
@@ -353,5 +353,5 @@ class _Writer:
 def _fresh(path: Path) -> bool:
     """Return whether another process wrote the page lately."""
     with suppress(OSError):
-        return time.time() - path.stat().st_mtime < PERIOD
+        return abs(time.time() - path.stat().st_mtime) < PERIOD
     return False

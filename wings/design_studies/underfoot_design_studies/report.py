@@ -16,7 +16,6 @@ import numpy as np
 from underfoot.case import unit_at
 from underfoot.core import Progress, UnderfootError, silent
 from underfoot.core.fields import Fields
-from underfoot.core.files import whole_file
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
 from underfoot.report.dispatch import FigureMakers, figures, page_text, sections
@@ -103,11 +102,11 @@ def write_study_report(
     ready = shown(result, _soles(study, result, progress))
     if ready.models:
         models = [one.to_dict() for one in ready.models]
-        with whole_file(study.store.folder / "surrogate.json") as part:
+        with study.store.view("surrogate.json") as part:
             part.write_text(json.dumps(models) + "\n", encoding="utf-8")
     path = study.store.folder / "report.html"
     drawn = {name: png(make()) for name, make in figures(ready).items()}
-    with whole_file(path) as part:
+    with study.store.view(path.name) as part:
         part.write_text(page_text(ready, drawn), encoding="utf-8")
     return Written(study.store.folder, path)
 

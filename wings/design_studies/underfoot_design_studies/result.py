@@ -380,7 +380,7 @@ class StudyResult(Presentable):
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:
-                sentences.append("No design meets every requirement.")
+                sentences.append(f"No design meets every requirement: {self._unmet_text()}.")
             elif len(self.plan.goals) == 1:
                 sentences.append(f"Best: design {best[0].number}, {self._goals_text(best[0])}.")
                 if len(best) > 1 and (chance := self.higher_cof(best[0], best[1])) is not None:
@@ -400,6 +400,18 @@ class StudyResult(Presentable):
     def programs(self) -> Collection[str]:
         """Versions of the program that computed the cases."""
         return {record.program for record in self.records.values()} - {""}
+
+    def _unmet_text(self) -> str:
+        """Return which requirements no design meets, and how near one comes."""
+        designs = [one for one in self.all_designs if one.point and one.usable]
+        texts = []
+        for each, margins in zip(self.plan.require, self.margins(designs).T, strict=True):
+            margins = np.nan_to_num(margins, nan=-np.inf)
+            nearest = int(np.argmax(margins))
+            if margins[nearest] < 0:
+                value = quantity_text(each.bound + each.sense * margins[nearest], each.goal.unit)
+                texts.append(f"{each} is {value} at best (design {designs[nearest].number})")
+        return "; ".join(texts) or "some meet each, none meets all"
 
     @property
     def lost_text(self) -> str:

@@ -21,6 +21,8 @@ from .scan import Scan, scanned
 from .study import Study
 
 USUAL = (Ending.OPEN, Ending.COMPUTED)
+AHEAD = 60.0
+"""s by which the clocks of two machines may differ."""
 MOST_REASONS = 5000
 """Cases without numbers whose reasons are read."""
 
@@ -57,7 +59,14 @@ class StudyStatus(StudyResult):
     def worker_seconds(self) -> float:
         """Time that workers had, all processes together, to now."""
         ends = [(one, one["ended"] or self.now) for one in self.sessions]
-        return sum(one["workers"] * (end - one["began"]) for one, end in ends)
+        return sum(one["workers"] * max(end - one["began"], 0.0) for one, end in ends)
+
+    @property
+    def clock_went_back(self) -> bool:
+        """Whether a process began, or ended a case, later than it is now: no rate is known."""
+        ended = np.nan_to_num(self.scan.case["ended"])
+        latest = max((one["began"] for one in self.sessions), default=0.0)
+        return max(latest, float(ended.max(initial=0.0))) > self.now + AHEAD
 
     @property
     def busy(self) -> float:
@@ -74,7 +83,7 @@ class StudyStatus(StudyResult):
     def per_minute(self) -> float:
         """Cases that end in a minute, over the processes that are alive, or were."""
         counted = self._alive or self.sessions
-        if not counted:
+        if not counted or self.clock_went_back:
             return 0.0
         began = min(one["began"] for one in counted)
         elapsed = max(one["ended"] or self.now for one in counted) - began
@@ -93,7 +102,7 @@ class StudyStatus(StudyResult):
     @property
     def seconds_left(self) -> float | None:
         """Time left at that rate; None before each worker ended a case."""
-        known = self._alive and self._ended >= max(1, self.working)
+        known = self._alive and self.per_minute and self._ended >= max(1, self.working)
         return 60 * self.cases_left / self.per_minute if known else None
 
     @property
@@ -106,10 +115,17 @@ class StudyStatus(StudyResult):
         count, seconds = self.working, self.seconds_left
         at_work = f"{count} worker{'s' * (count > 1)} at work" if count else "Nobody works on it"
         rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
-        if not count and not self._ended:
+        if not self.per_minute:
             rate = at_work
         left = "" if seconds is None else f", about {time_text(seconds)} left"
         return (f"{self.ended_text(self.cases_left)}.", f"{rate}{left}.")
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what keeps the numbers from being taken as they are."""
+        texts = super().cautions()
+        if self.clock_went_back:
+            texts = (*texts, "The clock was set back as it ran: rates and times are not known.")
+        return texts
 
     @property
     def lost_text(self) -> str:

@@ -39,7 +39,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import DataError, InputError, UnderfootError
 from underfoot.core.fields import Fields, from_xarray
-from underfoot.core.files import MARKER, whole_file
+from underfoot.core.files import MARKER
 from underfoot.core.optional import optional_module
 from underfoot.core.text import harmless
 
@@ -64,6 +64,8 @@ RESERVE = 1 << 18
 """Bytes kept free on the disk for the cases that end after it filled up."""
 LED = ("base.toml", "study.toml", "sessions.jsonl", "jobs", "packed", "lead.claim")
 """Files that only the leading process writes."""
+VIEWS = ("live.html", "report.html", "results.csv", "results.parquet", "surrogate.json")
+"""Files made of the cases, by any process."""
 STOP = "stop"
 """File that asks all who work on a study to stop."""
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
@@ -86,6 +88,7 @@ class Store:
         self._left: dict[tuple[Round, int], int] = {}
         self._open: dict[Path, tuple[int, int]] = {}
         self._committed = 0.0
+        self._touched: dict[Path, tuple[float, float]] = {}
 
     @classmethod
     def made(cls, folder: Path | str) -> Store:
@@ -467,9 +470,11 @@ class Store:
             write_file(self.folder / "sessions.jsonl", b"".join(lines))
         for name in ended:
             (self.folder / "alive" / name).unlink(missing_ok=True)
-        for path in (*self.folder.glob(".reserve-*"), *(self.folder / "alive").glob(".*-*")):
-            reserve = path.parent == self.folder
-            owner = path.name.removeprefix(".reserve-") if reserve else path.name[1:-33]
+        halves = [(path, path.name[1:-33]) for path in (self.folder / "alive").glob(".*-*")]
+        for name in ("reserve", *VIEWS):
+            begin = f".{name}-"
+            halves += [(p, p.name.removeprefix(begin)) for p in self.folder.glob(f"{begin}*")]
+        for path, owner in halves:
             if not self._alive(owner, path):
                 path.unlink(missing_ok=True)
         for name in LED:  # halves: only who leads writes them
@@ -493,7 +498,15 @@ class Store:
             clock = own if own.exists() else self.folder / "alive"
             if clock == own:
                 os.utime(own)  # times of one clock, that of the file system
-            return clock.stat().st_mtime - mark.stat().st_mtime < SILENT
+            moment = mark.stat().st_mtime
+            silence = clock.stat().st_mtime - moment
+            if silence < 0:  # the clock was set back: then by this process's own
+                before, since = self._touched.get(mark, (None, 0.0))
+                if moment != before:
+                    since = time.monotonic()
+                    self._touched[mark] = moment, since
+                silence = time.monotonic() - since
+            return silence < SILENT
         return False
 
     @property
@@ -502,10 +515,20 @@ class Store:
 
     # --- views ---
 
+    @contextmanager
+    def view(self, name: str) -> Iterator[Path]:
+        """Yield a file that takes the place of one of ``VIEWS`` when the block ends well."""
+        part = self.folder / f".{name}-{self.name}"
+        try:
+            yield part
+            os.replace(part, self.folder / name)
+        finally:
+            part.unlink(missing_ok=True)
+
     def write_views(self, cases: DataFrame) -> None:
         """Write results.csv and, where DuckDB is installed, results.parquet."""
         table = self.folder / "results.csv"
-        with whole_file(table) as part:
+        with self.view(table.name) as part:
             texts = cases.select_dtypes(exclude="number").columns
             cases.assign(**{name: cases[name].map(_cell) for name in texts}).to_csv(
                 part, index=False
@@ -514,7 +537,7 @@ class Store:
             return
         import duckdb
 
-        with whole_file(table.with_suffix(".parquet")) as part, duckdb.connect() as database:
+        with self.view("results.parquet") as part, duckdb.connect() as database:
             database.read_csv(str(table), sample_size=-1).write_parquet(str(part))
 
 
