@@ -145,6 +145,53 @@ def test_a_folder_that_was_copied_in_part_is_completed(made_up, tmp_path, name, 
         shutil.rmtree(copy)
 
 
+@pytest.mark.parametrize("name", ["jobs.jsonl", "cases-"])
+@pytest.mark.parametrize("line", [0, 5, -1])
+def test_a_line_that_was_lost_is_set_or_computed_again(made_up, tmp_path, name, line, monkeypatch):
+    monkeypatch.setattr(records, "PACK", 10**6)
+    run(made_up, tmp_path, True)
+    whole, path = answers(tmp_path), next(tmp_path.glob(f"{name}*"))
+    lines = path.read_bytes().splitlines(keepends=True)
+    del lines[line]
+    path.write_bytes(b"".join(lines))
+    assert Study.load(tmp_path).result().endings != {"computed": 12}
+    Study(made_up, tmp_path).run(workers=1)
+    assert answers(tmp_path) == whole
+
+
+def test_a_goal_that_no_design_meets_is_told_with_the_nearest_design(made_up, tmp_path):
+    text = TEXT + 'require = ["cof > 1.5", "cof > 0.1"]\n'
+    result = Study(read_plan(text, EXAMPLES), tmp_path).run(workers=1)
+    assert len(result.designs) == 12
+    (best,) = np.flatnonzero(
+        result.goal_values(result.designs)[:, 0] == result.goal_values(result.designs).max()
+    )
+    told = " ".join(result.headline())
+    assert "No design meets every requirement: cof > 1.5 is" in told
+    assert f"at best (design {result.designs[best].number})" in told
+    assert "cof > 0.1 is" not in told
+    assert result.front == result.best() == []
+    assert "cof" in result.summary()
+
+
+def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, monkeypatch):
+    """An input that changes nothing: every case has the same numbers."""
+
+    def computed(base, job):
+        return Record(job.key, Ending.COMPUTED, numbers={"cof": 0.25}, errors={"cof": 0.0})
+
+    monkeypatch.setattr(study, "computed", computed)
+    plan = read_plan(TEXT, EXAMPLES)
+    result = Study(plan, tmp_path).run(workers=1)
+    assert len(result.designs) == 12
+    assert [one.number for one in result.front] == [0]
+    assert "cof 0.25" in " ".join(result.headline())
+    (surrogate,) = result.surrogates(plan.goals)
+    mean, deviation = surrogate.predicted(np.array([[0.3]]))
+    assert mean == pytest.approx(0.25)
+    assert deviation < 1e-3
+
+
 @pytest.mark.parametrize("place", range(0, 2400, 160))
 def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, place):
     run(made_up, tmp_path, True)

@@ -1,5 +1,7 @@
 """Study files: what they mean, and what a person is told who wrote one that can't be."""
 
+import time
+import tracemalloc
 from itertools import islice
 from pathlib import Path
 
@@ -185,3 +187,66 @@ def test_a_requirement_holds_on_the_right_side():
     high = read_requirement("fluid_load < 90 N", UNITS, STATES)
     assert low.margin(0.25) == pytest.approx(0.05)
     assert high.margin(100.0) == pytest.approx(-10.0)
+
+
+BIG = """\
+base = "work_shoe_full_tread_glycerol.toml"
+[vary]
+"shoe.tread.depth" = { from = "1 mm", to = "4 mm", steps = 1000 }
+"shoe.tread.channel_width" = { from = "2.5 mm", to = "4 mm", steps = 1000 }
+"shoe.material.shore_a" = { from = 50, to = 70, steps = 1000 }
+"""
+WEARS, SPEEDS, LOADS = (
+    [f"{first + k / scale} {unit}" for k in range(1000)]
+    for first, scale, unit in ((0, 1000, "mm"), (0.3, 10_000, "m/s"), (400, 1, "N"))
+)
+THREE = f"wear = {WEARS}\n'motion.speed' = {SPEEDS}\n'motion.normal_force' = {LOADS}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            BIG,
+            ["vary", "line 2", "1e+09 cases", "years of one processor", "at most 1e+06", "budget"],
+        ),
+        (BIG + "[method]\nbudget = 1000000000\n", ["method.budget", "line 7", "at most 1000000"]),
+        (
+            f"{BIG}[conditions]\n{THREE}[method]\nbudget = 1000\n",
+            ["conditions", "line 6", "1e+09 conditions", "at most 1e+06", "Fewer"],
+        ),
+    ],
+)
+def test_a_thousand_million_designs_are_refused_before_any_is_made(text, words):
+    tracemalloc.start()
+    began = time.process_time()
+    with pytest.raises(CaseError) as caught:
+        plan(text)
+    assert time.process_time() - began < 1.0
+    assert tracemalloc.get_traced_memory()[1] < 100e6
+    tracemalloc.stop()
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            "[uncertain]",
+            'shoe.tread.depth = { from = "2 mm", to = "3 mm" }\n[uncertain]',
+            ["vary.shoe.tread.depth", "line 4", "stands twice", "Drop one"],
+        ),
+        ("wear = [", '"shoe.wear.depth" = ["1 mm"]\nwear = [', ["stands twice", "Drop one"]),
+        ('["rubber_volume"]', '["land", "mean(land)"]', ["line 15", "land stands twice"]),
+        ('["grid", "hexagons"]', '["grid", "grid"]', ["line 7", "different values"]),
+        ('"canola_oil"]', '"glycerol_90pct"]', ["line 11", "different values"]),
+        ('from = "1 mm", to = "4 mm"', 'from = "1 mm", to = "0.001 m"', ["line 4", "from < to"]),
+    ],
+)
+def test_inputs_that_are_the_same_are_refused(old, new, words):
+    assert old in GOOD
+    with pytest.raises(CaseError) as caught:
+        plan(GOOD.replace(old, new, 1))
+    for word in words:
+        assert word in str(caught.value)
