@@ -218,7 +218,8 @@ class StudyResult(Presentable):
 
     def _surrogate(self, goal: AnyGoal) -> Surrogate:
         if goal not in self._fitted:
-            runs = [one for one in self.all_designs if one.point and one.usable]
+            known = [one for one in self.all_designs if one.point and one.usable]
+            runs = list({one.records.key: one for one in reversed(known)}.values())[::-1]
             dimensions = self.plan.dimensions
             points = np.array([one.point for one in runs]).reshape(len(runs), len(dimensions))
             errors = np.array([goal.error(one.records, self.plan.states) for one in runs])
@@ -430,6 +431,16 @@ class StudyResult(Presentable):
             advice = "run the study in a new folder to have all by this one"
             reasons.append(f"{mixed if len(programs) > 1 else older}: {advice}.")
         reasons += filter(None, [self.lost_text])
+        same = 0
+        if self.jobs and not self.jobs[-1].point and not self.plan.again_is_the_same:
+            first = {one.records.key for one in self.designs}
+            same = sum(one.records.key in first for one in self.again)
+        if same:
+            reasons.append(
+                f"{same} of the {len(self.again)} best designs were not run again: on the same "
+                "grid a sole without lugs, or one position of a tread, gives the same run. The "
+                "best may be the luckiest: check it with a smaller numerics.grid_spacing."
+            )
         if self.plan.method.quick and self.plan.method.again_on != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -166,6 +167,13 @@ def read_plan(
     cost = f", {low:g} to {high:g} years of one processor"
     reader.refuse_many("vary" if grid else "method", "cases", cases, cost)
     reader.end()
+    if plan.goals and method.again_on and plan.again_is_the_same:
+        remark = (
+            "The best designs are not run again: on the same grid a sole without lugs, or one "
+            "position of a tread, gives the same run. Take "
+        )
+        remark += 'front_grid = "standard".' if method.quick else 'grid = "quick".'
+        return replace(plan, remarks=(*remarks, remark))
     return plan
 
 
