@@ -1,18 +1,22 @@
 """The live page of a study of made-up cases: processor time to make it, Chromium's time to show it.
 
-``python -m benchmarks study_page``; UNDERFOOT_BENCH_CASES (100,000) sets the size. Half of it is a
-sweep of one case a design, half a robust study of sixteen. Nothing is solved.
+``python -m benchmarks study_page``; UNDERFOOT_BENCH_CASES (100,000) sets the size of two studies: a
+sweep of one case a design, and a robust optimisation of sixteen. Nothing is solved.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 
+from underfoot_design_studies.live import PAGE, write_live_page
 from underfoot_design_studies.plan import StudyPlan
 from underfoot_design_studies.record import Ending, Job, Record
 from underfoot_design_studies.store import Store
@@ -102,3 +106,39 @@ def made(folder: Path, text: str, count: int, ended: float = 0.9) -> Study:
         for number, job in enumerate(listed[: int(ended * len(listed))]):
             store.add_record(record(job, number))
     return study
+
+
+def shown(pages: Sequence[Path]) -> list[float]:
+    """Return the seconds until Chromium has drawn each page, from the request on."""
+    from playwright.sync_api import sync_playwright
+
+    path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))))
+    frame = "requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now())))"
+    drawn = f"new Promise((done) => {frame})"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        tab = browser.new_page(viewport={"width": 1366, "height": 768})
+        times = []
+        for page in pages:
+            tab.goto(page.as_uri())
+            times.append(tab.evaluate(drawn) / 1e3)
+        browser.close()
+    return times
+
+
+def main() -> None:
+    """Print what the page of each study takes."""
+    with tempfile.TemporaryDirectory() as place:
+        pages, spent = [], []
+        for name, text in (("sweep", TEXT + SWEEP), ("robust", TEXT + ROBUST)):
+            study = made(Path(place) / name, text, CASES)
+            write_live_page(study)  # what it imports
+            began = time.process_time()
+            write_live_page(study)
+            spent.append(time.process_time() - began)
+            pages.append(study.store.folder / PAGE)
+        for page, cpu, wall in zip(pages, spent, shown(pages), strict=True):
+            print(
+                f"{page.parent.name}, {CASES} made-up cases: {cpu:.2f} s of CPU to make, "
+                f"{page.stat().st_size / 1e3:.0f} kB, {wall:.2f} s until Chromium has drawn it"
+            )

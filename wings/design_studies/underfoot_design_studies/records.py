@@ -54,7 +54,7 @@ class Records(Mapping[str, Record]):
         self._numbers: dict[Path, int] = {}
         self._places: dict[str, int] = {}
         self._sizes: dict[str, int] = {}
-        self.endings: Counter[Ending] = Counter()
+        self._counts = [0] * len(ENDINGS)
         self._record = lru_cache(RECENT)(self._read)
         self._packed = lru_cache(4)(_packed_columns)
 
@@ -73,6 +73,11 @@ class Records(Mapping[str, Record]):
         except FileNotFoundError:  # packed since the last look
             self.look()
             return self._record(self._places[key] >> 3)
+
+    @property
+    def endings(self) -> Counter[Ending]:
+        """How many cases ended in each way."""
+        return Counter(dict(zip(ENDINGS, self._counts, strict=True)))
 
     def ending(self, key: str) -> Ending:
         """Return how a case ended; ``OPEN`` of one that is not finished. Nothing is read."""
@@ -181,7 +186,7 @@ class Records(Mapping[str, Record]):
     def _put(self, key: str, ending: int, number: int, place: int) -> None:
         if key not in self._places:
             self._places[key] = (number << 48 | place) << 3 | ending
-            self.endings[ENDINGS[ending]] += 1
+            self._counts[ending] += 1
 
     def _add_lines(self, path: Path) -> None:
         number, draws, size = self._number(path), _draws_of(path), -1

@@ -125,7 +125,7 @@ class _Study:
                 self.checked = ui.element("div").props('role="status"')
                 self.progress = ui.element("div")
                 with ui.element("div").classes("study-row") as self.steps:
-                    self.stop_button = ui.button(self.text("jobs.stop"), on_click=self.stop)
+                    self.stop_button = ui.button(self.text("studies.stop"), on_click=self.stop)
                     self.more = ui.number(self.text("studies.more"), min=1, step=1)
                     self.more.props("dense outlined")
                     widen = ui.button(self.text("studies.widen"), on_click=self.widen)
