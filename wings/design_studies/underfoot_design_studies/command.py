@@ -121,9 +121,14 @@ def live(study: StudyPath, out: Folder = None) -> None:
 
     A study that runs writes it by itself.
     """
+    from underfoot.core import InputError
+
     from .live import PAGE, write_live_page
 
     chosen = _study(study, out)
+    if not chosen.store.exists:
+        what = f"the study in {chosen.store.folder} has not begun"
+        raise InputError(what, where="STUDY", remedy=f"Begin it: underfoot study run {study}")
     write_live_page(chosen)
     print(f"Page: {chosen.store.folder / PAGE}")
 

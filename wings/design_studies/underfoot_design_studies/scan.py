@@ -72,8 +72,8 @@ def _scanned(records: Records, outputs: Collection[str], draws: bool) -> Scan:
     programs, every = set[str](), 1
     table = np.full((len(keys) + 1 if draws else 0, 1), np.nan, np.float32)
     for k, line, draws_at in records.lines(keys):
-        start = line.index(b'"numbers": {')
-        end = line.index(b"}", start)
+        start = line.find(b'"numbers": {')
+        end = line.find(b"}", start)
         second = line.find(b'"errors": {', end)  # lines of version 1 have none
         last = line.find(b"}", second) if second >= 0 else second
         for pattern, values, deviations in marks:
@@ -81,11 +81,10 @@ def _scanned(records: Records, outputs: Collection[str], draws: bool) -> Scan:
                 values[k] = known[1]
             if known := pattern.search(line, second, last):
                 deviations[k] = known[1]
-        known = _CASE.match(line, line.rindex(b'"seconds": '))
-        assert known is not None
-        for column, text in zip(case.values(), known.group(1, 2, 4), strict=True):
-            column[k] = text
-        programs.add(known[3].decode())
+        if known := _CASE.search(line, end):
+            for column, text in zip(case.values(), known.group(1, 2, 4), strict=True):
+                column[k] = text
+            programs.add(known[3].decode())
         if draws:
             row = _draws(line, draws_at)
             if row.size * len(keys) > MOST_DRAWS:

@@ -154,6 +154,8 @@ class _Study:
         task = self.session.jobs.latest(self.name, COMPUTED)
         if task is not None and task.open:
             self._follow(task)
+        elif self._working:
+            self._watch(others=True)
         if self.sheet and self.sheet["ended"]:
             await self._show(whole=not self._working)
 
@@ -304,18 +306,7 @@ class _Study:
         await self.run()
 
     def _follow(self, task: Task) -> None:
-        self.run_button.set_enabled(False)
-        count = self.sheet["ended"] if self.sheet else 0
-
-        async def look() -> None:
-            nonlocal count
-            began = time.monotonic()
-            sheet = await self._check()
-            self.run_button.set_enabled(False)
-            if sheet and sheet["ended"] != count:
-                count = sheet["ended"]
-                await self._show(whole=False)
-            timer.interval = max(LOOK, SELDOM * (time.monotonic() - began))
+        timer = self._watch()
 
         async def done(ended: Task) -> None:
             timer.deactivate()
@@ -326,7 +317,27 @@ class _Study:
 
         with self.progress:
             task_line(self.session, task, done)
+
+    def _watch(self, *, others: bool = False) -> ui.timer:
+        """Show again and again how far it is, with ``others`` as long as they work on it."""
+        self.run_button.set_enabled(False)
+        count = self.sheet["ended"] if self.sheet else 0
+
+        async def look() -> None:
+            nonlocal count
+            began = time.monotonic()
+            self.sheet = sheet = await self._check()
+            self.run_button.set_enabled(others and not self._working)
+            if others and not self._working:
+                timer.deactivate()
+                await self._show()
+            elif sheet and sheet["ended"] != count:
+                count = sheet["ended"]
+                await self._show(whole=False)
+            timer.interval = max(LOOK, SELDOM * (time.monotonic() - began))
+
         timer = ui.timer(LOOK, look)
+        return timer
 
     # what came of it
 
