@@ -280,13 +280,13 @@ def live_page(study: Study) -> str:
     live, folder = live_study(study), study.store.folder
     total = sum(live.endings.values()) - live.endings[Ending.OPEN] + live.cases_left
     share = 1.0 - live.cases_left / max(total, 1)
-    report = folder / "report.html"
+    report = (folder / "report.html").exists() or not live.cases_left  # then it comes next
     head = template("live_study.html").render(
         share=share,
         now=1e3 * live.now,
         period=1e3 * PERIOD,
         working=live.working,
-        report=report.name if report.exists() and not live.working else "",
+        report=report and not live.working,
     )
     steps = template("live_steps.html").render(
         folder=str(folder.absolute()), working=live.working, method=live.plan.method
