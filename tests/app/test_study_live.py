@@ -38,7 +38,7 @@ def test_goals_as_run_are_those_of_the_records_read_whole(name, request):
     assert len(shown) > 30
     same = [read[one.number] for one in shown]
     assert [one.ending for one in shown] == [one.ending for one in same]
-    goals = page.plan.asked
+    goals = page.plan.shown_goals
     np.testing.assert_allclose(page.values(shown, goals), whole.values(same, goals), rtol=1e-6)
     assert page.endings == whole.endings
     assert page.case_seconds == pytest.approx(sum(r.seconds for r in whole.records.values()))

@@ -66,8 +66,8 @@ class LiveStudy(StudyStatus):
     @cached_property
     def scan(self) -> Scan:
         """What is asked of all finished cases."""
-        outputs = {goal.output for goal in self.plan.asked}
-        draws = any(goal.of_draws for goal in self.plan.asked)
+        outputs = {goal.output for goal in self.plan.shown_goals}
+        draws = any(goal.of_draws for goal in self.plan.shown_goals)
         return scanned(self.records, outputs, draws=draws)
 
     @cached_property
@@ -82,7 +82,7 @@ class LiveStudy(StudyStatus):
         return self.records.ending_places(keys).reshape(-1, self.plan.cases_per_design)
 
     @cached_property
-    def _asked(self) -> dict[AnyGoal, Array]:
+    def _values_of_runs(self) -> dict[AnyGoal, Array]:
         """(runs,) of each goal and requirement, SI; nan where a case has no numbers."""
         scan, plan = self.scan, self.plan
         shape = (-1, len(plan.states), len(plan.draws))
@@ -90,22 +90,22 @@ class LiveStudy(StudyStatus):
         rows = np.array([scan.rows.get(key, last) for run in self._keys_of_runs for key in run])
         rows = rows.astype(np.int64).reshape(shape)
         bad = (self._endings_of_runs != ENDINGS.index(Ending.COMPUTED)).any(axis=1)
-        asked = {}
-        for goal in plan.asked:
+        values = {}
+        for goal in plan.shown_goals:
             columns = scan.draws if goal.of_draws else scan.outputs[goal.output][:, None]
             assert columns is not None
             parts = [
                 goal.values(columns[rows[k : k + TOGETHER]], plan.states)
                 for k in range(0, len(rows), TOGETHER)
             ]
-            asked[goal] = np.where(bad, np.nan, np.concatenate([*parts, np.empty(0)]))
-        return asked
+            values[goal] = np.where(bad, np.nan, np.concatenate([*parts, np.empty(0)]))
+        return values
 
     @cached_property
     def _allowed_runs(self) -> AnyArray:
         done = (self._endings_of_runs == ENDINGS.index(Ending.COMPUTED)).all(axis=1)
         for each in self.plan.require:
-            done &= np.asarray(each.margin(self._asked[each.goal])) >= 0
+            done &= np.asarray(each.margin(self._values_of_runs[each.goal])) >= 0
         return done
 
     @cached_property
@@ -113,7 +113,7 @@ class LiveStudy(StudyStatus):
         """Places of the runs on the front of all, the best in the first goal first."""
         if not self.plan.goals:
             return []
-        values = np.column_stack([self._asked[goal] for goal in self.plan.goals])
+        values = np.column_stack([self._values_of_runs[goal] for goal in self.plan.goals])
         return front_places(values * self.plan.signs, self._allowed_runs)
 
     @cached_property
@@ -131,7 +131,7 @@ class LiveStudy(StudyStatus):
             return ended
         chosen = {*thinned(self.front_runs, MOST_FRONT), *ended[-LATEST:]}
         for goal, sign in zip(self.plan.goals, self.plan.signs, strict=True):
-            values = np.where(self._allowed_runs, sign * self._asked[goal], np.nan)
+            values = np.where(self._allowed_runs, sign * self._values_of_runs[goal], np.nan)
             order = np.argsort(values)[: np.count_nonzero(np.isfinite(values))]
             chosen |= {*order[:MOST_ROWS].tolist(), *order[-1:].tolist()}
         others = [k for k in ended if k not in chosen]
@@ -157,7 +157,7 @@ class LiveStudy(StudyStatus):
     def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI of those that are asked for; nan where one has none."""
         places = self._places(designs)
-        columns = [self._asked[goal][places] for goal in goals]
+        columns = [self._values_of_runs[goal][places] for goal in goals]
         return np.array(columns, dtype=float).reshape(len(goals), len(designs)).T
 
     def believed(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> tuple[Array, Array]:

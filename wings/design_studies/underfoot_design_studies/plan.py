@@ -128,7 +128,7 @@ class StudyPlan:
         return (*self.maximise, *self.minimise)
 
     @property
-    def asked(self) -> tuple[AnyGoal, ...]:
+    def shown_goals(self) -> tuple[AnyGoal, ...]:
         """The goals and what is required; COF and the load on the film where nothing is."""
         required = (each.goal for each in self.require)
         unique = tuple(dict.fromkeys((*self.goals, *required)))

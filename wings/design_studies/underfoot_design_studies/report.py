@@ -187,7 +187,7 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         values = [one.changes.get(path) for one in designs]
         add(path.split(".", 1)[-1], unit_at(path), values, False)
     for goal, values in zip(
-        plan.asked, result.believed(designs, plan.asked)[0].T.tolist(), strict=True
+        plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
     ):
         add(str(goal), goal.unit, values, goal in plan.goals)
     listed = [

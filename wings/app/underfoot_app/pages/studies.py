@@ -128,8 +128,8 @@ class _Study:
                     self.stop_button = ui.button(self.text("studies.stop"), on_click=self.stop)
                     self.more = ui.number(self.text("studies.more"), min=1, step=1)
                     self.more.props("dense outlined")
-                    widen = ui.button(self.text("studies.widen"), on_click=self.widen)
-                    for each in (self.stop_button, widen):
+                    self.widen_button = ui.button(self.text("studies.widen"), on_click=self.widen)
+                    for each in (self.stop_button, self.widen_button):
                         each.props("flat no-caps")
                     ui.label(self.text("studies.wider")).classes("soft")
                 self.plots = ui.element("div").classes("report")
@@ -279,6 +279,8 @@ class _Study:
         budget = sheet["budget"] if sheet and sheet["begun"] else None
         self.steps.set_visibility(bool(self._working or budget))
         self.stop_button.set_visibility(self._working > 0)
+        for each in (self.more, self.widen_button):
+            each.set_visibility(budget is not None)
         self.more.value = self.more.value or (budget and max(1, budget // 2))
         return sheet
 
