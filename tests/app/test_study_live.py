@@ -78,7 +78,7 @@ def test_no_row_of_a_front_is_beaten_and_every_other_is():
             assert beaten != (values[front] == row).all(axis=1).any()
 
 
-def test_a_page_takes_its_share_at_most_and_is_whole_at_any_time(sweep, monkeypatch):
+def test_pages_take_their_share_of_the_time_at_most(sweep, monkeypatch):
     """Looks are a second apart; a page takes 0.5 s, so that one comes every 50 s."""
     clock, written = [0.0, 0.0], []
     monkeypatch.setattr(time, "monotonic", lambda: clock[0])
@@ -98,6 +98,22 @@ def test_a_page_takes_its_share_at_most_and_is_whole_at_any_time(sweep, monkeypa
     assert len(written) >= 6
     for count, moment in enumerate(written[1:], start=2):
         assert 0.5 * count <= live.SHARE * moment + 1e-9
+
+
+def test_a_page_that_could_not_be_written_whole_leaves_the_one_before(robust, monkeypatch):
+    folder, real = robust.store.folder, Path.write_text
+    live.write_live_page(robust)
+    before = (folder / live.PAGE).read_bytes()
+
+    def half(path, text, **options):
+        real(path, text[: len(text) // 2], **options)
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", half)
+    with pytest.raises(OSError, match="No space"):
+        live.write_live_page(robust)
+    assert (folder / live.PAGE).read_bytes() == before
+    assert not list(folder.glob(".live*"))
 
 
 def test_a_full_disk_or_a_damaged_case_costs_the_page_and_not_the_study(sweep, monkeypatch):
