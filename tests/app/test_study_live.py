@@ -1,6 +1,7 @@
 """The live page of a study: what it says of made-up cases, when it is written, how it is shown."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
