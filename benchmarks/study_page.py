@@ -64,9 +64,10 @@ def jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
     """Yield jobs as a plan sets them, with made-up keys: its own take a case each to hash."""
     number = 0
     for design, point in enumerate(plan.sampled_points(-(-count // plan.cases_per_design))):
-        changes = plan.design_changes(point)
+        own = plan.design_changes(point)
         for state, draw in product(range(len(plan.states)), range(len(plan.draws))):
             key = f"{number * 2654435761 % 2**96:024x}"
+            changes = {**own, **plan.draws[draw], **plan.states[state].changes}
             yield Job(key, design, state, draw, 0, point, changes)
             number += 1
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from underfoot.core import InputError
 from underfoot_design_studies import plan as plan_module
 from underfoot_design_studies import proposals, records, study
 from underfoot_design_studies.record import Ending, Record
@@ -157,6 +158,22 @@ def test_a_line_that_was_lost_is_set_or_computed_again(made_up, tmp_path, name, 
     assert Study.load(tmp_path).result().endings != {"computed": 12}
     Study(made_up, tmp_path).run(workers=1)
     assert answers(tmp_path) == whole
+
+
+def test_a_study_file_that_was_changed_in_the_folder_is_not_taken_for_the_one_that_ran(
+    made_up, tmp_path
+):
+    run(made_up, tmp_path / "study", True)
+    before = Study.load(tmp_path / "study").result().jobs[3].changes
+    file = tmp_path / "study" / "study.toml"
+    file.write_text(file.read_text().replace("0.7 m/s", "0.9 m/s"))
+    with pytest.raises(InputError, match=r"study.toml: was changed.*study run COPY.toml --out"):
+        Study.load(tmp_path / "study")
+    changed = read_plan(file.read_text(), EXAMPLES)
+    run(changed, tmp_path / "study", True)
+    jobs = Study.load(tmp_path / "study").result().jobs
+    assert len(jobs) == 12
+    assert jobs[3].changes == changed.design_changes(jobs[3].point) != before
 
 
 def test_a_goal_that_no_design_meets_is_told_with_the_nearest_design(made_up, tmp_path):

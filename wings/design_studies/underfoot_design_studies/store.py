@@ -124,7 +124,8 @@ class Store:
         base = f"{plan.base.to_toml(complete=True)}\n# hash: {plan.base.hash}\n"
         texts = {"base.toml": base.encode("utf-8"), "study.toml": plan.text.encode("utf-8")}
         paths = {self.folder / name: text for name, text in texts.items()}
-        if all(path.exists() and path.read_bytes() == text for path, text in paths.items()):
+        same = all(path.exists() and path.read_bytes() == text for path, text in paths.items())
+        if same and self._set_by(plan):
             return
         if self._gets_longer(plan):
             write_file(self.folder / "study.toml", texts["study.toml"])
@@ -167,7 +168,30 @@ class Store:
             text = (self.folder / "study.toml").read_text(encoding="utf-8")
         except UnicodeDecodeError as error:
             raise DataError(f"can't be read ({error})", where=str(self.folder)) from error
-        return read_plan(text, self.folder, str(self.folder / "study.toml"), base=base)
+        file = self.folder / "study.toml"
+        plan = read_plan(text, self.folder, str(file), base=base)
+        if not self._set_by(plan):
+            raise InputError(
+                "was changed after its designs were set",
+                where=str(file),
+                remedy="Copy it to where your studies are and give underfoot study run COPY.toml "
+                f"--out {self.folder}: designs are set anew, and cases that both have are kept",
+            )
+        return plan
+
+    def _set_by(self, plan: StudyPlan) -> bool:
+        """Return whether the first job that is set is one of a plan."""
+        for _, _, body in whole_lines(self.folder / "jobs.jsonl"):
+            if b'"point": ' not in body:
+                continue  # closes a batch
+            job = Job.from_line(body)
+            if not 0 <= job.condition < len(plan.states) or job.draw >= len(plan.draws):
+                return False
+            if len(job.point) not in (0, len(plan.dimensions)):
+                return False
+            own = plan.job(job.design, job.point, job.batch, job.condition, job.draw)
+            return own.changes == job.changes
+        return True
 
     # --- what is there ---
 
