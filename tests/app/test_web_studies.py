@@ -59,7 +59,8 @@ def test_a_study_is_checked_run_shown_and_a_design_of_it_becomes_a_case(project)
     assert (after["begun"], after["ended"], after["open"]) == (True, 4, False)
     plots, rest = work.results(*at, False, progress=silent)  # as while it runs
     assert 'class="study"' in plots
-    assert "Left, at most about" in rest
+    assert "Left, at most about" in plots
+    assert "a lucky run looks better than it is" in plots
     assert "Best designs, as run" in rest
     plots, rest = work.results(*at, progress=silent)
     assert 'class="study"' in plots

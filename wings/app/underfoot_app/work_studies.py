@@ -70,12 +70,12 @@ def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -
         ready = shown(study.result())
         pictures = {name: png(make()) for name, make in figures(ready).items()}
         plots, *rest = sections(ready, pictures)[0]
-    else:
-        live = live_study(study)
-        plots, *rest = live_sections(live)
-        caution = Section("", items=live.cautions()[:1])
-        rest = [Section("Cost", table=live.cost_table()), caution, *rest]
-    return [page_part([plots]), page_part(rest)]
+        return [page_part([plots]), page_part(rest)]
+    live = live_study(study)
+    plots, *rest = live_sections(live)
+    cost = Section("Cost", table=live.cost_table())
+    plots = replace(plots, intro=" ".join((*live.cautions()[:1], plots.intro)))
+    return [page_part([cost, plots]), page_part(rest)]
 
 
 def stop(file: str, folder: str, *, progress: Progress) -> None:
