@@ -57,6 +57,11 @@ def test_a_study_is_checked_run_shown_and_a_design_of_it_becomes_a_case(project)
     work.computed(*at, progress=silent)
     after = work.state(*at, progress=silent)
     assert (after["begun"], after["ended"], after["open"]) == (True, 4, False)
+    plots, rest = work.results(*at, False, progress=silent)  # as while it runs
+    assert 'class="study"' in plots
+    assert "Left, at most about" in plots
+    assert "a lucky run looks better than it is" in plots
+    assert "Best designs, as run" in rest
     plots, rest = work.results(*at, progress=silent)
     assert 'class="study"' in plots
     assert "Best designs" in rest
@@ -65,6 +70,8 @@ def test_a_study_is_checked_run_shown_and_a_design_of_it_becomes_a_case(project)
     case = Case.from_text(made["case"])
     assert (case.motion.speed, case.shoe.material.shore_a) == (0.7, 65)
     assert "viewer" in made["html"]
+    work.stop(*at, progress=silent)
+    assert (Path(at[1]) / "stop").exists()
     text = Path(file).read_text()
     Path(file).write_text(text.replace("0.7 m/s", "0.7 parsec"))
     with pytest.raises(CaseError, match="line 4"):
@@ -127,7 +134,8 @@ def test_the_studies_page_changes_the_file_runs_stops_and_goes_on(project, tmp_p
         assert "# the worn heel" in file.read_text()
         page.get_by_role("button", name="Compute", exact=True).click()
         page.wait_for_function("document.querySelectorAll('.study circle').length > 1")
-        page.get_by_role("button", name="Stop").click()
+        page.get_by_text("Left, at most about").wait_for()
+        page.get_by_role("button", name="Stop", exact=True).click()
         page.get_by_role("button", name="Go on").wait_for()
         stopped = len(list(ended(project)))
         assert 2 <= stopped < 60

@@ -6,12 +6,15 @@ from there on nothing is written, as after kill -9 or a power cut.
 
 import os
 import shutil
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from underfoot.core import InputError
 from underfoot_design_studies import plan as plan_module
 from underfoot_design_studies import proposals, records, study
 from underfoot_design_studies.record import Ending, Record
@@ -71,8 +74,8 @@ def made_up(monkeypatch):
         return keys.setdefault(repr((changes, quick)), f"{len(keys):024x}")
 
     def computed(base, job):
-        draws = np.full(3, job.point[0])
-        return Record(job.key, Ending.COMPUTED, numbers={"cof": job.point[0]}, draws=draws)
+        (cof,) = job.point or (0.5,)
+        return Record(job.key, Ending.COMPUTED, numbers={"cof": cof}, draws=np.full(3, cof))
 
     def promising(so_far, count):
         values = so_far.goal_values(so_far.designs)[:, 0]
@@ -143,6 +146,69 @@ def test_a_folder_that_was_copied_in_part_is_completed(made_up, tmp_path, name, 
         shutil.rmtree(copy)
 
 
+@pytest.mark.parametrize("name", ["jobs.jsonl", "cases-"])
+@pytest.mark.parametrize("line", [0, 5, -1])
+def test_a_line_that_was_lost_is_set_or_computed_again(made_up, tmp_path, name, line, monkeypatch):
+    monkeypatch.setattr(records, "PACK", 10**6)
+    run(made_up, tmp_path, True)
+    whole, path = answers(tmp_path), next(tmp_path.glob(f"{name}*"))
+    lines = path.read_bytes().splitlines(keepends=True)
+    del lines[line]
+    path.write_bytes(b"".join(lines))
+    assert Study.load(tmp_path).result().endings != {"computed": 12}
+    Study(made_up, tmp_path).run(workers=1)
+    assert answers(tmp_path) == whole
+
+
+def test_a_study_file_that_was_changed_in_the_folder_is_not_taken_for_the_one_that_ran(
+    made_up, tmp_path
+):
+    run(made_up, tmp_path / "study", True)
+    before = Study.load(tmp_path / "study").result().jobs[3].changes
+    file = tmp_path / "study" / "study.toml"
+    file.write_text(file.read_text().replace("0.7 m/s", "0.9 m/s"))
+    with pytest.raises(InputError, match=r"study.toml: was changed.*study run COPY.toml --out"):
+        Study.load(tmp_path / "study")
+    changed = read_plan(file.read_text(), EXAMPLES)
+    run(changed, tmp_path / "study", True)
+    jobs = Study.load(tmp_path / "study").result().jobs
+    assert len(jobs) == 12
+    assert jobs[3].changes == changed.design_changes(jobs[3].point) != before
+
+
+def test_a_goal_that_no_design_meets_is_told_with_the_nearest_design(made_up, tmp_path):
+    text = TEXT + 'require = ["cof > 1.5", "cof > 0.1"]\n'
+    result = Study(read_plan(text, EXAMPLES), tmp_path).run(workers=1)
+    assert len(result.designs) == 12
+    (best,) = np.flatnonzero(
+        result.goal_values(result.designs)[:, 0] == result.goal_values(result.designs).max()
+    )
+    told = " ".join(result.headline())
+    assert "No design meets every requirement: cof > 1.5 is" in told
+    assert f"at best (design {result.designs[best].number})" in told
+    assert "cof > 0.1 is" not in told
+    assert result.front == result.best() == []
+    assert "cof" in result.summary()
+
+
+def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, monkeypatch):
+    """An input that changes nothing: every case has the same numbers."""
+
+    def computed(base, job):
+        return Record(job.key, Ending.COMPUTED, numbers={"cof": 0.25}, errors={"cof": 0.0})
+
+    monkeypatch.setattr(study, "computed", computed)
+    plan = read_plan(TEXT, EXAMPLES)
+    result = Study(plan, tmp_path).run(workers=1)
+    assert len(result.designs) == 12
+    assert [one.number for one in result.front] == [0]
+    assert "cof 0.25" in " ".join(result.headline())
+    (surrogate,) = result.surrogates(plan.goals)
+    mean, deviation = surrogate.predicted(np.array([[0.3]]))
+    assert mean == pytest.approx(0.25)
+    assert deviation < 1e-3
+
+
 @pytest.mark.parametrize("place", range(0, 2400, 160))
 def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, place):
     run(made_up, tmp_path, True)
@@ -153,3 +219,34 @@ def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, pl
     assert len(Store(tmp_path).jobs()) < 12
     Study(made_up, tmp_path).run(workers=1)
     assert answers(tmp_path) == whole
+
+
+def test_an_optimisation_with_a_larger_budget_goes_on_from_what_is_finished(made_up, tmp_path):
+    again = TEXT.replace('"none"', '"quick"\nagain = 2')
+    run(read_plan(again, EXAMPLES), tmp_path, True)
+    first = answers(tmp_path)
+    assert [len(place) for _, place, _ in first] == [1] * 14 + [0]  # two again, and the start
+    longer = Study(read_plan(again.replace("12", "20"), EXAMPLES), tmp_path)
+    longer.run(workers=1)
+    jobs = answers(tmp_path)
+    assert jobs[:15] == first
+    result = longer.result()
+    assert len(result.designs) == 20
+    numbers = [one.number for one in result.all_designs if one.again and one.point]
+    assert len(set(numbers)) == len(numbers)  # none is run again twice
+    assert set(numbers) >= {one.number for one in result.best(2)}
+    assert not jobs[-1][1]
+    assert not longer._begin_next()
+    shorter = Study(made_up, tmp_path)
+    shorter.run(workers=1)
+    assert len(answers(tmp_path)) == 12  # anything else is another study
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the processes are forked")
+def test_commands_killed_at_random_moments_leave_the_undisturbed_study():
+    """Many more: ``python tests/study_kills.py 50``."""
+    script = Path(__file__).parents[1] / "study_kills.py"
+    run = [sys.executable, str(script), "4", "1"]
+    done = subprocess.run(run, capture_output=True, text=True, check=False)
+    assert "finished: equal, none twice, none left" in done.stdout, done.stdout + done.stderr

@@ -1,5 +1,8 @@
 """Study files: what they mean, and what a person is told who wrote one that can't be."""
 
+import math
+import time
+import tracemalloc
 from itertools import islice
 from pathlib import Path
 
@@ -7,6 +10,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case, CaseError
+from underfoot.compute.positions import places, position_count
 from underfoot_design_studies.goals import Condition, Goal, read_goal, read_requirement
 from underfoot_design_studies.proposals import next_batch
 from underfoot_design_studies.record import Ending, Record
@@ -122,6 +126,72 @@ def test_all_errors_come_at_once():
     assert len(caught.value.errors) == 2
 
 
+AGAIN = """\
+base = "BASE.toml"
+[set]
+"numerics.tread_positions" = COUNT
+[vary]
+"motion.speed" = { from = "0.3 m/s", to = "0.7 m/s" }
+[outputs]
+maximise = ["cof"]
+[method]
+kind = "optimise"
+budget = 20
+grid = "quick"
+front_grid = "GRID"
+"""
+
+
+def again(base, count, grid):
+    text = AGAIN.replace("BASE", base).replace("COUNT", str(count)).replace("GRID", grid)
+    made = plan(text)
+    return made, *(next(made.jobs(3, (0.25,), 0, again=again)) for again in (False, True))
+
+
+@pytest.mark.parametrize("count", [2, 3, 6, 7, 8, 63, 64])
+@pytest.mark.parametrize("grid", ["quick", "standard"])
+def test_run_again_a_tread_lies_elsewhere_whatever_the_grid(count, grid):
+    made, first, second = again("work_shoe_full_tread_glycerol", count, grid)
+    numbers = [
+        position_count(made.base.replace(one.changes), quick=one.quick) for one in (first, second)
+    ]
+    assert numbers[0] != numbers[1]
+    periods = np.array([[7e-3, 0.0], [0.0, 5e-3]])
+    shared = set(places(periods, numbers[0])) & set(places(periods, numbers[1]))
+    assert len(shared) <= math.gcd(*numbers)
+    assert not made.remarks
+
+
+@pytest.mark.parametrize(
+    ("base", "count"),
+    [("work_shoe_untreaded_glycerol", 8), ("work_shoe_full_tread_glycerol", 1)],
+)
+def test_what_has_no_other_positions_is_run_again_on_a_finer_grid_or_not_at_all(base, count):
+    made, first, second = again(base, count, "standard")
+    assert first.key != second.key
+    assert (first.quick, second.quick) == (True, False)
+    assert not made.remarks
+    made, first, second = again(base, count, "quick")
+    assert first.key == second.key
+    assert 'Take front_grid = "standard"' in " ".join(made.remarks)
+    repeated = [*made.jobs(0, (0.1,), 0), first, *made.jobs(0, (0.1,), 1, again=True), second]
+    records = {
+        one.key: Record(
+            one.key, Ending.COMPUTED, numbers={"cof": one.point[0]}, errors={"cof": 0.01}
+        )
+        for one in repeated
+    }
+    more = [next(made.jobs(k, (k / 20,), 0)) for k in range(6, 15)]
+    records |= {
+        one.key: Record(one.key, Ending.COMPUTED, numbers={"cof": 0.3}, errors={"cof": 0.01})
+        for one in more
+    }
+    result = StudyResult(made, [*repeated[:2], *more, *repeated[2:]], records)
+    (surrogate,) = result.surrogates(made.goals)
+    assert len(surrogate.runs.values) == 11  # a run that stands twice is one run
+    assert not surrogate.runs.finer.any()
+
+
 def test_a_narrow_channel_refines_the_grid_of_every_design_and_says_so():
     made = plan(GOOD.replace('from = "2.5 mm"', 'from = "1.2 mm"'))
     assert made.base.numerics.quick_grid_spacing == pytest.approx(0.6e-3)
@@ -205,3 +275,66 @@ def test_a_list_of_one_is_set_for_all_designs_but_not_for_the_start():
     assert plan.design_changes(()) == {}
     # the channel counts for the grid of the study, too
     assert plan.base.numerics.quick_grid_spacing <= 1.3e-3
+
+
+BIG = """\
+base = "work_shoe_full_tread_glycerol.toml"
+[vary]
+"shoe.tread.depth" = { from = "1 mm", to = "4 mm", steps = 1000 }
+"shoe.tread.channel_width" = { from = "2.5 mm", to = "4 mm", steps = 1000 }
+"shoe.material.shore_a" = { from = 50, to = 70, steps = 1000 }
+"""
+WEARS, SPEEDS, LOADS = (
+    [f"{first + k / scale} {unit}" for k in range(1000)]
+    for first, scale, unit in ((0, 1000, "mm"), (0.3, 10_000, "m/s"), (400, 1, "N"))
+)
+THREE = f"wear = {WEARS}\n'motion.speed' = {SPEEDS}\n'motion.normal_force' = {LOADS}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            BIG,
+            ["vary", "line 2", "1e+09 cases", "years of one processor", "at most 1e+06", "budget"],
+        ),
+        (BIG + "[method]\nbudget = 1000000000\n", ["method.budget", "line 7", "at most 1000000"]),
+        (
+            f"{BIG}[conditions]\n{THREE}[method]\nbudget = 1000\n",
+            ["conditions", "line 6", "1e+09 conditions", "at most 1e+06", "Fewer"],
+        ),
+    ],
+)
+def test_a_thousand_million_designs_are_refused_before_any_is_made(text, words):
+    tracemalloc.start()
+    began = time.process_time()
+    with pytest.raises(CaseError) as caught:
+        plan(text)
+    assert time.process_time() - began < 1.0
+    assert tracemalloc.get_traced_memory()[1] < 100e6
+    tracemalloc.stop()
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            "[uncertain]",
+            'shoe.tread.depth = { from = "2 mm", to = "3 mm" }\n[uncertain]',
+            ["vary.shoe.tread.depth", "line 4", "stands twice", "Drop one"],
+        ),
+        ("wear = [", '"shoe.wear.depth" = ["1 mm"]\nwear = [', ["stands twice", "Drop one"]),
+        ('["rubber_volume"]', '["land", "mean(land)"]', ["line 15", "land stands twice"]),
+        ('["grid", "hexagons"]', '["grid", "grid"]', ["line 7", "different values"]),
+        ('"canola_oil"]', '"glycerol_90pct"]', ["line 11", "different values"]),
+        ('from = "1 mm", to = "4 mm"', 'from = "1 mm", to = "0.001 m"', ["line 4", "from < to"]),
+    ],
+)
+def test_inputs_that_are_the_same_are_refused(old, new, words):
+    assert old in GOOD
+    with pytest.raises(CaseError) as caught:
+        plan(GOOD.replace(old, new, 1))
+    for word in words:
+        assert word in str(caught.value)

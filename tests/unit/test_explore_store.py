@@ -107,6 +107,16 @@ def test_lines_of_a_newer_version_are_refused(store):
         Store(store.folder).records()
 
 
+@pytest.mark.parametrize("name", ["jobs.jsonl", "cases-"])
+def test_a_study_of_format_99_is_refused(store, name):
+    begun(store)
+    added(store, record("a"))
+    path = next(store.folder.glob(f"{name}*"))
+    path.write_text(path.read_text().replace('"format": 2', '"format": 99'))
+    with pytest.raises(DataError, match=r"newer version.*format 99.*2 or older.*Update underfoot"):
+        Study.load(store.folder).result()
+
+
 def test_a_full_disk_costs_no_finished_case(store, monkeypatch):
     """The first write fails as on a full disk until the reserve is gone."""
     real = os.write
@@ -195,6 +205,42 @@ def test_a_silent_process_of_another_machine_loses_its_claim(store):
         old = time.time() - store_module.SILENT - 5
         os.utime(alive, (old, old))
         assert took(store) in keys
+
+
+@pytest.mark.parametrize("beats", [False, True])
+def test_a_clock_that_was_set_back_keeps_nobody_s_claim_for_ever(store, monkeypatch, beats):
+    """Its file was touched an hour from now; whoever lives touches it again."""
+    keys, elsewhere = begun(store), Store(store.folder)
+    elsewhere.name = "elsewhere-12-abcdef"
+    clock = [0.0]
+    monkeypatch.setattr(store_module.time, "monotonic", lambda: clock[0])
+    with elsewhere.working(1), store.working(1):
+        assert [took(elsewhere) for _ in keys] == keys
+        alive = store.folder / "alive" / elsewhere.name
+        later = time.time() + 3600
+        for k in range(7):
+            if beats or not k:
+                os.utime(alive, (later + k, later + k))
+            clock[0] = 20.0 * k
+            took_over = took(store)
+            assert (took_over is not None) == (k == 6 and not beats), k
+        assert took_over in (keys if not beats else [None])
+
+
+def test_no_rate_is_told_where_the_clock_was_set_back(store):
+    added(store, replace(record("a"), ended=5000.0))
+    jobs = [Job(key, k, 0, 0, 0, (), {}) for k, key in enumerate("abc")]
+    session = {"began": 4900.0, "ended": None, "workers": 1}
+
+    def status(now):
+        return StudyStatus(store.plan(), jobs, Store(store.folder).records(), [session], now)
+
+    right, back = status(5010.0), status(1000.0)
+    assert right.seconds_left == pytest.approx(2 * 110)
+    assert not any("clock" in text for text in right.cautions())
+    assert (back.seconds_left, back.per_minute, back.worker_seconds) == (None, 0.0, 0.0)
+    assert any("The clock was set back" in text for text in back.cautions())
+    assert back.headline() == ("1 of 3 cases ended: 1 computed.", "1 worker at work.")
 
 
 def test_the_lead_goes_without_locks_of_the_kernel(store, monkeypatch):
@@ -299,16 +345,20 @@ def test_a_job_is_the_same_after_its_line():
     assert json.loads(job.line())["changes"]["contaminant"] == "water"
 
 
-def test_time_left_is_told_once_every_worker_has_ended_a_case():
+def test_time_left_is_told_once_every_worker_has_ended_a_case(store):
     jobs = [Job(str(n), n, 0, 0, 0, (), {}) for n in range(10)]
     session = {"began": 1000.0, "ended": None, "workers": 2}
 
-    def left(count):
-        records = {str(n): replace(record(str(n)), ended=1000.0 + 5 * n) for n in range(count)}
-        return StudyStatus(read_plan(TEXT, EXAMPLES), jobs, records, [session], 1060.0).seconds_left
+    def left():
+        known = Store(store.folder).records()
+        return StudyStatus(store.plan(), jobs, known, [session], 1060.0).seconds_left
 
-    assert [left(0), left(1)] == [None, None]
-    assert left(2) == pytest.approx(8 * 30.0)
+    told = [left()]
+    for n in range(2):
+        added(store, replace(record(str(n)), ended=1000.0 + 5 * n))
+        told.append(left())
+    assert told[:2] == [None, None]
+    assert told[2] == pytest.approx(8 * 30.0)
 
 
 def test_what_dead_processes_left_is_tidied_and_their_times_are_kept(store):

@@ -37,8 +37,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             text, code = f"terminated; {stop or KEPT}", TERMINATED
         except KeyboardInterrupt as stop:
             text, code = f"stopped; {stop or KEPT}", INTERRUPTED
-        except Cancelled:
-            text, code = f"stopped; {KEPT}", INTERRUPTED
+        except Cancelled as stop:
+            text, code = f"stopped; {stop.remedy or KEPT}", INTERRUPTED
         except (UnderfootError, MemoryError) as error:
             text, code = f"error: {error_text(error)}", getattr(error, "exit_code", 1)
         except BrokenPipeError:

@@ -16,10 +16,11 @@ from underfoot.questions.comparison import chance_higher, compare
 from underfoot.report.dispatch import figures, sections
 from underfoot.report.export import export_result
 from underfoot.report.html import png
-from underfoot.report.page import page_part
+from underfoot.report.page import Section, page_part
 from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot_design_studies import Study
 from underfoot_design_studies.check import study_check
+from underfoot_design_studies.live import live_sections, live_study, with_live_page
 from underfoot_design_studies.report import design_sole, shown, write_study_report
 from underfoot_design_studies.status import study_status
 from underfoot_design_studies.study_file import flat_paths
@@ -46,28 +47,40 @@ def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
     if not ended or not store.jobs() or store.plan().text != plan.text:
         return {**presented(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
     status = study_status(study)
-    most = plan.designs * plan.cases_per_design
-    more = ended < most or (plan.goals and plan.method.again_on and status.start is None)
-    left = bool(more) or status.endings["open"] > 0
-    return {**presented(status), "ended": ended, "begun": True, "open": left}
+    budget = None if plan.method.design in ("grid", "lhs") else plan.method.budget
+    so_far = {"ended": ended, "begun": True, "open": status.cases_left > 0}
+    return {**presented(status), **so_far, "working": status.working, "budget": budget}
 
 
 def computed(file: str, folder: str, *, progress: Progress) -> None:
     """Compute what is not finished of a study, as ``underfoot study run`` does."""
-    study = Study.load(file, folder)
-    write_study_report(study, study.run(workers=available_processors(), progress=progress))
+    study, workers = Study.load(file, folder), available_processors()
+    with with_live_page(study, progress, workers) as told:
+        result = study.run(workers=workers, progress=told)
+    write_study_report(study, result)
 
 
 def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -> list[str]:
     """Return what is finished of a study as parts of a page: the plots, and all that follows.
 
-    While it runs (not ``whole``) without surrogates, indices and their figures.
+    While it runs (not ``whole``) that of its live page.
     """
-    result = Study.load(file, folder).result()
-    ready = shown(result) if whole else result
-    pictures = {name: png(make()) for name, make in figures(ready).items()} if whole else {}
-    plots, *rest = sections(ready, pictures)[0]
-    return [page_part([plots]), page_part(rest)]
+    study = Study.load(file, folder)
+    if whole:
+        ready = shown(study.result())
+        pictures = {name: png(make()) for name, make in figures(ready).items()}
+        plots, *rest = sections(ready, pictures)[0]
+        return [page_part([plots]), page_part(rest)]
+    live = live_study(study)
+    plots, *rest = live_sections(live)
+    cost = Section("Cost", table=live.cost_table())
+    plots = replace(plots, intro=" ".join((*live.cautions()[:1], plots.intro)))
+    return [page_part([cost, plots]), page_part(rest)]
+
+
+def stop(file: str, folder: str, *, progress: Progress) -> None:
+    """Ask all who work on a study to stop, as ``underfoot study stop`` does."""
+    Study.load(file, folder).store.stop()
 
 
 def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[str, str]:

@@ -67,14 +67,16 @@ def run(
 ) -> None:
     """Compute what is not finished, then write tables and report.html.
 
-    The same command goes on where it stopped, whatever stopped it.
+    Meanwhile live.html in its folder shows how far it is. The same command goes on where it
+    stopped, whatever stopped it.
     """
     from underfoot.core.progress import bar
 
+    from .live import with_live_page
     from .report import write_study_report
 
     chosen = _study(study, out)
-    with bar(chosen.plan.name) as progress:
+    with bar(chosen.plan.name) as bare, with_live_page(chosen, bare, workers) as progress:
         result = chosen.run(on, workers, progress)
     with bar("report") as progress:
         written = write_study_report(chosen, result, progress=progress)
@@ -88,10 +90,47 @@ def work(study: StudyPath, out: Folder = None, workers: Workers = 1) -> None:
     """
     from underfoot.core.progress import bar
 
+    from .live import with_live_page
+
     chosen = _study(study, out)
-    with bar(chosen.plan.name) as progress:
+    with bar(chosen.plan.name) as bare, with_live_page(chosen, bare, workers) as progress:
         count = chosen.work(workers, progress)
     print(f"computed {count} cases; the study in {chosen.store.folder} is done")
+
+
+def stop(
+    study: StudyPath,
+    out: Folder = None,
+) -> None:
+    """Stop a study wherever it runs: cases that are being computed end first, none is lost.
+
+    ``underfoot study run`` goes on from there.
+    """
+    chosen = _study(study, out)
+    working = sum(one["ended"] is None for one in chosen.store.sessions())
+    if not working:
+        print(f"nobody works on the study in {chosen.store.folder}")
+        return
+    chosen.store.stop()
+    who = "1 process" if working == 1 else f"{working} processes"
+    print(f"asked {who} to stop; underfoot study run goes on from there")
+
+
+def live(study: StudyPath, out: Folder = None) -> None:
+    """Write live.html of what is finished now: front, failures, cost so far and what is left.
+
+    A study that runs writes it by itself.
+    """
+    from underfoot.core import InputError
+
+    from .live import PAGE, write_live_page
+
+    chosen = _study(study, out)
+    if not chosen.store.exists:
+        what = f"the study in {chosen.store.folder} has not begun"
+        raise InputError(what, where="STUDY", remedy=f"Begin it: underfoot study run {study}")
+    write_live_page(chosen)
+    print(f"Page: {chosen.store.folder / PAGE}")
 
 
 def status(study: StudyPath, out: Folder = None, json: AsJson = False) -> None:
@@ -200,5 +239,5 @@ def posterior(
         print(f'\nwrote {out}\nUse it: posterior = "{out.name}" under [uncertain] of a study')
 
 
-for command in (check, run, work, status, report, best, export):
+for command in (check, run, work, stop, status, live, report, best, export):
     study_app.command()(guarded(command))

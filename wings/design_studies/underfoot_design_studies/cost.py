@@ -78,8 +78,10 @@ def spread_jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
         yield plan.job(design, points[design].tolist(), 0, state, draw)
 
 
-def study_cost(plan: StudyPlan, store: Store) -> StudyCost | None:
+def study_cost(plan: StudyPlan, store: Store, jobs: Jobs | None = None) -> StudyCost | None:
     """Return what the cases of a study take, from those in its folder; None from too few.
+
+    ``jobs`` are those of the folder, where they are read already.
 
     The logarithm of the CPU time is linear in inputs and conditions, by a ridge regression whose
     weight is chosen by leaving one case out after the other; the mean is that over the study, so
@@ -88,10 +90,10 @@ def study_cost(plan: StudyPlan, store: Store) -> StudyCost | None:
     and its tables, does not count.
     """
     records = store.records()
-    jobs = _some(store.jobs(), records)
-    if records and not jobs:  # timed alone
-        jobs = list(takewhile(lambda job: job.key in records, spread_jobs(plan, MOST)))
-    known = [(job, records[job.key]) for job in jobs if job.quick == plan.method.quick]
+    some = _some(store.jobs() if jobs is None else jobs, records)
+    if records and not some:  # timed alone
+        some = list(takewhile(lambda job: job.key in records, spread_jobs(plan, MOST)))
+    known = [(job, records[job.key]) for job in some if job.quick == plan.method.quick]
     failures = Counter(one.reason for _, one in known if one.ending is not Ending.COMPUTED)
     used = _steady([pair for pair in known if pair[1].cpu_seconds > 0])
     if len(used) < FEWEST:

@@ -63,27 +63,34 @@ class Goal:
         text += f" in {', '.join(self.within)}" if self.within else ""
         return text + (f" over {self.over}" if self.over != OVER[2] else "")
 
+    @property
+    def of_draws(self) -> bool:
+        """Whether the friction law's draws of COF count; a mean is that of the numbers computed."""
+        return self.statistic != "mean" and self.over != "conditions" and self.output == "cof"
+
     def value(
         self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
     ) -> float:
-        """Return the statistic over a design's records by (condition, draw); nan if one lacks.
+        """Return the statistic over a design's records by (condition, draw); nan if one lacks."""
+        values = output_array(records, range(len(states)), self.output, law=self.of_draws)
+        return float(self.values(values[None], states)[0])
 
-        Draws of the friction law count among the draws of COF. "Over conditions" takes the mean
-        over draws first, "over draws" the mean over conditions.
+    def values(self, outputs: Array, states: Sequence[Condition]) -> Array:
+        """Return the statistic (designs,) of outputs (designs, conditions, draws, law's draws).
+
+        "Over conditions" takes the mean over draws first, "over draws" the mean over conditions.
         """
-        chosen = _chosen(states, self.within)
-        values = output_array(records, chosen, self.output, law=self.over != "conditions")
-        if self.over == "conditions":
-            values = values.mean(axis=(1, 2))
-        elif self.over == "draws":
-            values = values.mean(axis=0)
-        if np.isnan(values).any():
-            return float("nan")
+        chosen = outputs[:, _chosen(states, self.within)]
+        if self.statistic != "mean" and self.over == "conditions":
+            chosen = chosen.mean(axis=(2, 3))
+        elif self.statistic != "mean" and self.over == "draws":
+            chosen = chosen.mean(axis=1)
+        flat = chosen.reshape(len(chosen), -1)
         if self.statistic == "quantile":
-            return float(np.quantile(values, self.share))
-        if self.statistic == "mean":  # of the numbers as computed, not of their draws
-            return float(output_array(records, chosen, self.output).mean())
-        return float({"min": np.min, "max": np.max, "sd": np.std}[self.statistic](values))
+            return np.quantile(flat, self.share, axis=1)
+        return {"mean": np.mean, "min": np.min, "max": np.max, "sd": np.std}[self.statistic](
+            flat, axis=1
+        )
 
     def error(
         self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
@@ -124,27 +131,48 @@ class WearLife:
     """
 
     requirement: Requirement
-    output = LIFE
     unit = "m"
 
     def __str__(self) -> str:
         return f"{LIFE}({self.requirement})"
 
+    @property
+    def output(self) -> str:
+        """The output that is bounded."""
+        return self.requirement.goal.output
+
+    @property
+    def of_draws(self) -> bool:
+        """As of a goal."""
+        return self._bounded.of_draws
+
+    @property
+    def _bounded(self) -> Goal:
+        goal = self.requirement.goal
+        return Goal(goal.output, goal.unit, goal.statistic, goal.share)
+
     def value(
         self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
     ) -> float:
         """Return the life over the records of a design; nan where one lacks."""
-        groups: dict[str, list[tuple[float, float]]] = {}
-        goal = self.requirement.goal
-        for number in _chosen(states, goal.within):
-            rest = {k: v for k, v in states[number].changes.items() if k != WEAR}
-            wear = float(states[number].changes[WEAR])
-            here = {(0, draw): r for (state, draw), r in records.items() if state == number}
-            alone = Goal(goal.output, goal.unit, goal.statistic, goal.share)
-            margin = self.requirement.margin(alone.value(here, [Condition("", {})]))
-            groups.setdefault(repr(rest), []).append((wear, float(margin)))
-        lives = [_crossing(sorted(group)) for group in groups.values()]
-        return float("nan") if np.isnan(lives).any() else min(lives)
+        values = output_array(records, range(len(states)), self.output, law=self.of_draws)
+        return float(self.values(values[None], states)[0])
+
+    def values(self, outputs: Array, states: Sequence[Condition]) -> Array:
+        """Return the lives (designs,) of outputs (designs, conditions, draws, law's draws)."""
+        groups: dict[str, dict[float, Array]] = {}
+        for number in _chosen(states, self.requirement.goal.within):
+            changes = dict(states[number].changes)
+            wear = float(changes.pop(WEAR))
+            values = self._bounded.values(outputs[:, [number]], [Condition("", {})])
+            margins = np.asarray(self.requirement.margin(values))
+            groups.setdefault(repr(changes), {})[wear] = margins
+        lives = []
+        for group in groups.values():
+            wears = sorted(group)
+            rows = np.transpose([group[wear] for wear in wears])
+            lives.append([_crossing(list(zip(wears, row, strict=True))) for row in rows])
+        return np.min(lives, axis=0)  # nan where one lacks
 
     def error(self, *_: object) -> float:
         """Return nan: how far the error of a run moves a crossing is not known."""

@@ -72,6 +72,10 @@ class Jobs(Sequence[Job]):
             return jobs_at(self._path, self.places[index])
         return jobs_at(self._path, [self.places[index]])[0]
 
+    def at(self, indices: Iterable[int]) -> list[Job]:
+        """Return the jobs of some indices."""
+        return jobs_at(self._path, self.places[np.fromiter(indices, dtype=np.int64)])
+
     def __iter__(self) -> Iterator[Job]:
         places = set(self.places.tolist())
         for start, _, body in whole_lines(self._path):

@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import BinaryIO
 from uuid import uuid4
 from zlib import crc32
 
@@ -43,15 +44,15 @@ def unsealed(line: bytes) -> bytes | None:
     Raises:
         NewerFormat: The line is of a later version.
     """
+    if line.startswith(CURRENT):
+        body = line[: 1 - SEAL]
+        return body if line[1 - SEAL :] == b"\t%08x" % crc32(body) else None
     version = line[len(_HEAD) : line.find(b",")]
     if not line.startswith(_HEAD) or not version.isdigit():
         return None
     if int(version) > FORMAT:
         raise NewerFormat(int(version))
-    if int(version) == 1:
-        return line if line.endswith(b"}") else None
-    body, _, check = line.rpartition(b"\t")
-    return body if b"%08x" % crc32(body) == check else None
+    return line if int(version) == 1 and line.endswith(b"}") else None
 
 
 def whole_lines(path: Path, start: int = 0) -> Iterator[tuple[int, int, bytes]]:
@@ -83,11 +84,10 @@ def whole_lines(path: Path, start: int = 0) -> Iterator[tuple[int, int, bytes]]:
             start = end
 
 
-def line_at(path: Path, place: int) -> bytes | None:
-    """Return the text of the line that begins at a byte; None where it is damaged."""
-    with path.open("rb") as stream:
-        stream.seek(place)
-        return unsealed(stream.readline().removesuffix(b"\n"))
+def line_of(stream: BinaryIO, place: int) -> bytes | None:
+    """Return the text of the line of a file that begins at a byte; None where it is damaged."""
+    stream.seek(place)
+    return unsealed(stream.readline().removesuffix(b"\n"))
 
 
 def write_all(descriptor: int, data: bytes) -> None:

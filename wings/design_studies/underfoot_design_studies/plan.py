@@ -15,10 +15,11 @@ from scipy.stats import qmc
 from underfoot.case import Case
 from underfoot.case.quantity import Flag
 from underfoot.case.section import Section
+from underfoot.compute.positions import position_count, treaded
 from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
 
-from .goals import AnyGoal, Condition, Requirement
+from .goals import AnyGoal, Condition, Goal, Requirement
 from .inputs import Distribution, Follow, Input
 from .record import Job
 
@@ -127,6 +128,13 @@ class StudyPlan:
         return (*self.maximise, *self.minimise)
 
     @property
+    def shown_goals(self) -> tuple[AnyGoal, ...]:
+        """The goals and what is required; COF and the load on the film where nothing is."""
+        required = (each.goal for each in self.require)
+        unique = tuple(dict.fromkeys((*self.goals, *required)))
+        return unique or (Goal("cof", "1"), Goal("fluid_load", "N"))
+
+    @property
     def signs(self) -> Array:
         """1 for goals to be small, -1 for those to be large."""
         return np.array([-1.0] * len(self.maximise) + [1.0] * len(self.minimise))
@@ -154,7 +162,7 @@ class StudyPlan:
             rows = qmc.LatinHypercube(size, rng=seed).random(count)
         else:
             rows = qmc.Sobol(size, rng=seed).random_base2(math.ceil(math.log2(max(count, 2))))
-        return [tuple(map(float, row)) for row in rows[:count]]
+        return list(map(tuple, rows[:count].tolist()))
 
     def design_changes(self, point: Sequence[float]) -> dict[str, Any]:
         """Return what a point of the unit cube changes in the case, followers included.
@@ -188,19 +196,40 @@ class StudyPlan:
     ) -> Job:
         """Return the job of a design in one condition with one draw.
 
-        ``again`` takes the grid of ``Method.again_on`` and one position of the tread more, or less
-        where there are as many as can be: of their lattice (``underfoot.compute.positions``) only
-        the first is the same.
+        ``again`` takes the grid of ``Method.again_on``, and other positions of the tread where it
+        has any: else, on the same grid, it is the same job.
         """
         own, place = self.design_changes(point), tuple(map(float, point))
         quick, fields = self.method.quick, self.method.fields
-        if again:
-            quick, count = self.method.again_on == "quick", self.base.numerics.tread_positions
-            if count > 1:  # 1 is the tread as it lies, and stays so
-                own = {**own, POSITIONS: count + (1 if count < MOST_POSITIONS else -1)}
         changes = {**own, **self.draws[draw], **self.states[state].changes}
+        if again:
+            quick = self.method.again_on == "quick"
+            changes |= self._elsewhere(changes, quick)
         key = self._key(changes, quick)
         return Job(key, design, state, draw, batch, place, changes, quick, fields)
+
+    def _elsewhere(self, changes: Mapping[str, Any], quick: bool) -> dict[str, Any]:
+        """Return the number of positions whose lattice shares the first alone with a first run's.
+
+        Nothing for a sole without lugs, and for the tread as it lies (1 position).
+        """
+        try:
+            case = self.base.replace(changes)
+        except InputError:  # no case: its record will say why
+            return {}
+        count = case.numerics.tread_positions
+        if count == 1 or not treaded(case):
+            return {}
+        step = 1 if count < MOST_POSITIONS - 1 else -1
+        first = position_count(case, quick=self.method.quick)
+        others = ({POSITIONS: count + step}, {POSITIONS: count + 2 * step})  # a quick run halves it
+        return next(o for o in others if position_count(case.replace(o), quick=quick) != first)
+
+    @property
+    def again_is_the_same(self) -> bool:
+        """Whether the base case run again would be the run that it had."""
+        first, second = (self.job(0, (), 0, 0, 0, again=again) for again in (False, True))
+        return first.key == second.key
 
     def _key(self, changes: Mapping[str, Any], quick: bool) -> str:
         try:

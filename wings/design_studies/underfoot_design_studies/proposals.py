@@ -53,10 +53,10 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     if not so_far.jobs:
         return _jobs(plan, first_points(plan), 0, 0)
     last = so_far.jobs[-1]
-    if not last.point or last.quick != plan.method.quick:
-        return []  # the best designs and the start were the last
     batch, count = last.batch + 1, last.design + 1
-    left = min(plan.designs - count, plan.method.batch)
+    left = min(plan.designs - len(so_far.designs), plan.method.batch)
+    if left <= 0 and (not last.point or last.quick != plan.method.quick):
+        return []  # the best designs and the start were the last
     try:
         if left > 0 and plan.method.kind in ("optimise", "robust"):
             return _jobs(plan, _promising(so_far, left), count, batch)
@@ -65,7 +65,9 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     except DataError:  # too few usable runs for a surrogate: spread more of them
         return _jobs(plan, plan.sampled_points(count + left)[count:], count, batch)
     best = so_far.best(plan.method.again) if plan.goals and plan.method.again_on else []
-    points = {one.number: one.point for one in best} | ({count: ()} if best else {})
+    done = {one.number for one in so_far.again}  # of an optimisation that got a larger budget
+    points = {one.number: one.point for one in best if one.number not in done}
+    points |= {count: ()} if best else {}
     return [job for k, place in points.items() for job in plan.jobs(k, place, batch, again=True)]
 
 

@@ -162,6 +162,12 @@ class Record:
         return cls(**_known(cls, plain))
 
 
+def draws_place(line: bytes) -> tuple[int, int, int]:
+    """Return where the draws of a line are: first byte, number, check sum. Not of version 1."""
+    first, count, check = line[line.rindex(b"[") + 1 : -2].split(b",")
+    return int(first), int(count), int(check)
+
+
 def _known(kind: Any, plain: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a class has a field for: a later program of this format may have written more."""
     return {one.name: plain[one.name] for one in fields(kind) if one.name in plain}

@@ -11,21 +11,24 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from functools import cache, lru_cache, partial
 from hashlib import blake2b
 from io import BytesIO
+from itertools import groupby
 from pathlib import Path
+from typing import BinaryIO
 from zipfile import BadZipFile
 from zlib import crc32
 
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.arrays import AnyArray
 
-from .lines import CURRENT, KEY, line_at, whole_lines, write_file
-from .record import Ending, Record
+from .lines import CURRENT, KEY, line_of, whole_lines, write_file
+from .record import Ending, Record, draws_place
 
 RECENT = 4096
 """Records that stay in memory after they were read."""
@@ -36,6 +39,10 @@ BETWEEN = len(b'", "ending": "')
 """Bytes between key and ending in a line."""
 ENDED = {ending.encode(): k for k, ending in enumerate(ENDINGS)}
 LINES, DRAWS, PACKED = "cases-", "draws-", "packed-"
+AT = (1 << 48) - 1
+"""Of a place in memory: where in its file."""
+DrawsAt = Callable[[int, int, int], bytes]
+"""Reads the draws that a line names by first byte, number and check sum."""
 
 
 class Records(Mapping[str, Record]):
@@ -47,7 +54,7 @@ class Records(Mapping[str, Record]):
         self._numbers: dict[Path, int] = {}
         self._places: dict[str, int] = {}
         self._sizes: dict[str, int] = {}
-        self.endings: Counter[Ending] = Counter()
+        self._counts = [0] * len(ENDINGS)
         self._record = lru_cache(RECENT)(self._read)
         self._packed = lru_cache(4)(_packed_columns)
 
@@ -67,16 +74,41 @@ class Records(Mapping[str, Record]):
             self.look()
             return self._record(self._places[key] >> 3)
 
+    @property
+    def endings(self) -> Counter[Ending]:
+        """How many cases ended in each way."""
+        return Counter(dict(zip(ENDINGS, self._counts, strict=True)))
+
     def ending(self, key: str) -> Ending:
         """Return how a case ended; ``OPEN`` of one that is not finished. Nothing is read."""
         place = self._places.get(key)
         return Ending.OPEN if place is None else ENDINGS[place & 7]
 
+    def ending_places(self, keys: Iterable[str]) -> AnyArray:
+        """Return the place in ``ENDINGS`` of how each case ended; 0 is open."""
+        places = self._places
+        return np.array([places.get(key, 0) & 7 for key in keys], dtype=np.int64)
+
     def endings_of(self, keys: Iterable[str]) -> dict[str, int]:
         """Return how many of some cases ended in each way."""
-        places = self._places
-        counts = np.bincount([places.get(key, 0) & 7 for key in keys], minlength=len(ENDINGS))
+        counts = np.bincount(self.ending_places(keys), minlength=len(ENDINGS))
         return {str(name): int(n) for name, n in zip(ENDINGS, counts, strict=True) if n}
+
+    def lines(self, keys: Iterable[str]) -> Iterator[tuple[int, bytes, DrawsAt]]:
+        """Yield (index, line, what reads its draws) of those of some cases that are finished.
+
+        File by file, not in the order of the keys; damaged lines are left out.
+
+        Raises:
+            FileNotFoundError: The files were packed since the last look.
+        """
+        known = ((self._places.get(key), k) for k, key in enumerate(keys))
+        places = sorted((place >> 3, k) for place, k in known if place is not None)
+        for number, some in groupby(places, lambda one: one[0] >> 48):
+            with self._opened(self._files[number]) as (line_at, draws_at):
+                for place, k in some:
+                    if (body := line_at(place & AT)) is not None:
+                        yield k, body, draws_at
 
     def look(self, owners: Sequence[str] | None = None) -> Records:
         """Read what is new in the files of some processes, by default of all; return this.
@@ -154,7 +186,7 @@ class Records(Mapping[str, Record]):
     def _put(self, key: str, ending: int, number: int, place: int) -> None:
         if key not in self._places:
             self._places[key] = (number << 48 | place) << 3 | ending
-            self.endings[ENDINGS[ending]] += 1
+            self._counts[ending] += 1
 
     def _add_lines(self, path: Path) -> None:
         number, draws, size = self._number(path), _draws_of(path), -1
@@ -164,8 +196,8 @@ class Records(Mapping[str, Record]):
             close = body.index(b'"', KEY)
             ending = close + BETWEEN
             if body.startswith(CURRENT):
-                first, count, _ = body[body.rindex(b"[") + 1 : -2].split(b",")
-                last = int(first) + 4 * int(count)
+                first, count, _ = draws_place(body)
+                last = first + 4 * count
                 if last > size:
                     size = draws.stat().st_size if draws.exists() else 0
                 if last > size:
@@ -185,25 +217,37 @@ class Records(Mapping[str, Record]):
             self._put(key, ending, number, place)
 
     def _read(self, place: int) -> Record:
-        path, place = self._files[place >> 48], place & (1 << 48) - 1
+        path = self._files[place >> 48]
+        with self._opened(path) as (line_at, draws_at):
+            body = line_at(place & AT)
+            if body is None:
+                raise _damaged(path)
+            return Record.from_line(body, draws_at)
+
+    @contextmanager
+    def _opened(self, path: Path) -> Iterator[tuple[Callable[[int], bytes | None], DrawsAt]]:
+        """Yield what reads a line of a file at its place, and what reads the draws of a line."""
         if path.suffix == ".npz":
             lines, draws = self._packed(path)
-            return Record.from_line(lines[place], lambda a, n, _: draws[a : a + 4 * n])
-        body = line_at(path, place)
-        if body is None:
-            raise _damaged(path)
+            yield lines.__getitem__, lambda first, count, _: draws[first : first + 4 * count]
+            return
+        with ExitStack() as stack:
+            stream = stack.enter_context(path.open("rb"))
 
-        def read(first: int, count: int, check: int) -> bytes:
-            if not count:
-                return b""
-            with _draws_of(path).open("rb") as stream:
-                stream.seek(first)
-                packed = stream.read(4 * count)
-            if crc32(packed) != check:
-                raise _damaged(_draws_of(path))
-            return packed
+            @cache
+            def beside() -> BinaryIO:
+                return stack.enter_context(_draws_of(path).open("rb"))
 
-        return Record.from_line(body, read)
+            def draws_at(first: int, count: int, check: int) -> bytes:
+                if not count:
+                    return b""
+                beside().seek(first)
+                packed = beside().read(4 * count)
+                if crc32(packed) != check:
+                    raise _damaged(_draws_of(path))
+                return packed
+
+            yield partial(line_of, stream), draws_at
 
 
 def _draws_of(path: Path) -> Path:

@@ -16,7 +16,6 @@ import numpy as np
 from underfoot.case import unit_at
 from underfoot.core import Progress, UnderfootError, silent
 from underfoot.core.fields import Fields
-from underfoot.core.files import whole_file
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
 from underfoot.report.dispatch import FigureMakers, figures, page_text, sections
@@ -103,11 +102,11 @@ def write_study_report(
     ready = shown(result, _soles(study, result, progress))
     if ready.models:
         models = [one.to_dict() for one in ready.models]
-        with whole_file(study.store.folder / "surrogate.json") as part:
+        with study.store.view("surrogate.json") as part:
             part.write_text(json.dumps(models) + "\n", encoding="utf-8")
     path = study.store.folder / "report.html"
     drawn = {name: png(make()) for name, make in figures(ready).items()}
-    with whole_file(path) as part:
+    with study.store.view(path.name) as part:
         part.write_text(page_text(ready, drawn), encoding="utf-8")
     return Written(study.store.folder, path)
 
@@ -132,7 +131,7 @@ def _study_sections(
     result: StudyResult, pictures: dict[str, bytes]
 ) -> tuple[Sequence[Section], str]:
     designs = result.shown or result.designs
-    parts = [Section("Designs", html=_explorer(result, designs)), *table_sections(result)]
+    parts = [Section("Designs", html=explorer(result, designs)), *table_sections(result)]
     best = result.best(8)
     if len(best) > 1:
         rows = [
@@ -163,18 +162,13 @@ def _study_sections(
     parts += remark_sections(result)
     parts.append(Section("Study file (TOML)", text=result.plan.text, folded=True))
     kept = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text or p.intro]
-    return kept, viewer_script(_template("design_study.js").render())
+    return kept, viewer_script(template("design_study.js").render())
 
 
-def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
+def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     """Return the plots of all designs, with the soles that a click shows."""
     plan = result.plan
     paths = [one.path for one in plan.dimensions]
-    goals: list[Any] = [
-        *plan.goals,
-        *(each.goal for each in plan.require if each.goal not in plan.goals),
-    ]
-    goals = goals or [Goal("cof", "1"), Goal("fluid_load", "N")]
     allowed, front = result.allowed(designs), {one.number for one in result.front}
     columns: list[dict[str, Any]] = []
     rows: list[list[Any]] = [[] for _ in designs]
@@ -192,7 +186,9 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     for path in paths:
         values = [one.changes.get(path) for one in designs]
         add(path.split(".", 1)[-1], unit_at(path), values, False)
-    for goal, values in zip(goals, result.believed(designs, goals)[0].T.tolist(), strict=True):
+    for goal, values in zip(
+        plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
+    ):
         add(str(goal), goal.unit, values, goal in plan.goals)
     listed = [
         {
@@ -210,11 +206,11 @@ def _explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         for number, fields in result.soles.items():
             sole: Any = SimpleNamespace(name=f"design {number}", data=fields)
             soles[number] = viewer_section([sole])
-    template = _template("design_study.html")
-    return template.render(data=data.replace("<", "\\u003c"), soles=soles)
+    return template("design_study.html").render(data=data.replace("<", "\\u003c"), soles=soles)
 
 
-def _template(name: str) -> Template:
+def template(name: str) -> Template:
+    """Return a template of this package."""
     return environment(__package__ or "").get_template(name)
 
 

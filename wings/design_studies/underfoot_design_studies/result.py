@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -51,6 +51,17 @@ class DesignRecords(Mapping[tuple[int, int], Record]):
         key = self._keys[place]
         return self._records.get(key) or Record(key, Ending.OPEN)
 
+    def ending(self, place: tuple[int, int]) -> Ending:
+        """Return how a case ended; in a study on disk nothing is read for it."""
+        if isinstance(self._records, Records):
+            return self._records.ending(self._keys[place])
+        return self[place].ending
+
+    @property
+    def key(self) -> str:
+        """Of its first case."""
+        return next(iter(self._keys.values()))
+
     def __iter__(self) -> Iterator[tuple[int, int]]:
         return iter(self._keys)
 
@@ -70,23 +81,24 @@ class Design:
     changes: Mapping[str, Any]
     quick: bool
     again: bool
-    records: Mapping[tuple[int, int], Record]
+    records: DesignRecords
 
     @property
     def usable(self) -> bool:
         """Whether every case of it has numbers."""
-        return all(record.usable for record in self.records.values())
+        return self.ending == Ending.COMPUTED
 
     @property
     def ending(self) -> str:
         """How it ended: computed, or what kept the first of its cases from it."""
-        bad = (record.ending for record in self.records.values() if not record.usable)
-        return str(next(bad, Ending.COMPUTED))
+        endings = map(self.records.ending, self.records)
+        return str(next((one for one in endings if one != Ending.COMPUTED), Ending.COMPUTED))
 
     @property
     def reason(self) -> str:
         """Why it has no numbers."""
-        return next((r.reason for r in self.records.values() if not r.usable), "")
+        bad = (place for place in self.records if self.records.ending(place) != Ending.COMPUTED)
+        return next((self.records[place].reason for place in bad), "")
 
     @property
     def states(self) -> list[int]:
@@ -138,6 +150,13 @@ class StudyResult(Presentable):
             run = job.design, job.batch
             keys.setdefault(run, {})[job.condition, job.draw] = job.key
             first.setdefault(run, job)
+        return self._designs_of(first.values(), keys)
+
+    def _designs_of(
+        self, jobs: Iterable[Job], keys: Mapping[tuple[int, int], Mapping[tuple[int, int], str]]
+    ) -> list[Design]:
+        """Return the designs of a job each; ``keys`` are those of all, by (design, batch)."""
+        first = {(job.design, job.batch): job for job in jobs}
         begun = dict(sorted(keys, reverse=True))
         return [
             Design(
@@ -199,7 +218,8 @@ class StudyResult(Presentable):
 
     def _surrogate(self, goal: AnyGoal) -> Surrogate:
         if goal not in self._fitted:
-            runs = [one for one in self.all_designs if one.point and one.usable]
+            known = [one for one in self.all_designs if one.point and one.usable]
+            runs = list({one.records.key: one for one in reversed(known)}.values())[::-1]
             dimensions = self.plan.dimensions
             points = np.array([one.point for one in runs]).reshape(len(runs), len(dimensions))
             errors = np.array([goal.error(one.records, self.plan.states) for one in runs])
@@ -255,11 +275,8 @@ class StudyResult(Presentable):
         """Return the designs that no other beats in every goal, best in the first goal first."""
         if not self.plan.goals:
             return []
-        values, good = self.believed(designs, self.plan.goals)[0], self.allowed(designs)
-        values = values * self.plan.signs
-        kept = [k for k in np.flatnonzero(good).tolist() if not _beaten(values[k], values[good])]
-        unique = {tuple(values[k]): k for k in reversed(kept)}
-        return [designs[k] for k in sorted(unique.values(), key=lambda k: values[k, 0])]
+        values = self.believed(designs, self.plan.goals)[0] * self.plan.signs
+        return [designs[k] for k in front_places(values, self.allowed(designs))]
 
     @cached_property
     def front(self) -> list[Design]:
@@ -337,25 +354,34 @@ class StudyResult(Presentable):
         """Whether any design has numbers."""
         return any(one.usable for one in self.designs)
 
+    @property
+    def keys(self) -> Sequence[str]:
+        """Of what was set so far."""
+        return self.jobs.keys if isinstance(self.jobs, Jobs) else [job.key for job in self.jobs]
+
     @cached_property
     def endings(self) -> Counter[str]:
         """How many cases ended in each way, open ones too."""
-        keys = set(self.jobs.keys if isinstance(self.jobs, Jobs) else (j.key for j in self.jobs))
+        keys = set(self.keys)
         if isinstance(self.records, Records):
             return Counter(self.records.endings_of(keys))
         known = {key: self.records[key].ending for key in keys & self.records.keys()}
         return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 
+    def ended_text(self, left: int) -> str:
+        """Return how many cases ended and how, where so many are left."""
+        ended = {name: n for name, n in self.endings.items() if name != Ending.OPEN}
+        done, parts = sum(ended.values()), [f"{n} {name}" for name, n in ended.items()]
+        return f"{done} of {done + left} cases ended: {', '.join(parts) or 'none'}"
+
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, and the best design."""
-        total = self.endings.total()
-        done = f"{total - self.endings[Ending.OPEN]} of {total} cases"
-        parts = [f"{count} {name}" for name, count in self.endings.items() if name != Ending.OPEN]
-        sentences = [f"{done} of {len(self.designs)} designs ended: {', '.join(parts) or 'none'}."]
+        done, _, parts = self.ended_text(self.endings[Ending.OPEN]).partition(" ended")
+        sentences = [f"{done} of {len(self.designs)} designs ended{parts}."]
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:
-                sentences.append("No design meets every requirement.")
+                sentences.append(f"No design meets every requirement: {self._unmet_text()}.")
             elif len(self.plan.goals) == 1:
                 sentences.append(f"Best: design {best[0].number}, {self._goals_text(best[0])}.")
                 if len(best) > 1 and (chance := self.higher_cof(best[0], best[1])) is not None:
@@ -371,19 +397,50 @@ class StudyResult(Presentable):
             sentences += filter(None, [self.above_start()])
         return tuple(sentences)
 
+    @property
+    def programs(self) -> Collection[str]:
+        """Versions of the program that computed the cases."""
+        return {record.program for record in self.records.values()} - {""}
+
+    def _unmet_text(self) -> str:
+        """Return which requirements no design meets, and how near one comes."""
+        designs = [one for one in self.all_designs if one.point and one.usable]
+        texts = []
+        for each, margins in zip(self.plan.require, self.margins(designs).T, strict=True):
+            margins = np.nan_to_num(margins, nan=-np.inf)
+            nearest = int(np.argmax(margins))
+            if margins[nearest] < 0:
+                value = quantity_text(each.bound + each.sense * margins[nearest], each.goal.unit)
+                texts.append(f"{each} is {value} at best (design {designs[nearest].number})")
+        return "; ".join(texts) or "some meet each, none meets all"
+
+    @property
+    def lost_text(self) -> str:
+        """How many cases have no numbers, and where to look why."""
+        lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
+        have = "1 case has" if lost == 1 else f"{lost} cases have"
+        return f"{have} no numbers: underfoot study status tells why." if lost else ""
+
     def cautions(self) -> tuple[str, ...]:
         """Return what keeps the numbers from being taken as they are."""
         reasons = list(self.plan.remarks)
-        programs = {record.program for record in self.records.values()} - {""}
-        if programs - {program()}:
+        programs = self.programs
+        if set(programs) - {program()}:
             mixed = f"Cases of {len(programs)} versions of the program are mixed"
             older = "The cases were computed by another version of the program"
             advice = "run the study in a new folder to have all by this one"
             reasons.append(f"{mixed if len(programs) > 1 else older}: {advice}.")
-        lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
-        if lost:
-            have = "1 case has" if lost == 1 else f"{lost} cases have"
-            reasons.append(f"{have} no numbers: underfoot study status tells why.")
+        reasons += filter(None, [self.lost_text])
+        same = 0
+        if self.jobs and not self.jobs[-1].point and not self.plan.again_is_the_same:
+            first = {one.records.key for one in self.designs}
+            same = sum(one.records.key in first for one in self.again)
+        if same:
+            reasons.append(
+                f"{same} of the {len(self.again)} best designs were not run again: on the same "
+                "grid a sole without lugs, or one position of a tread, gives the same run. The "
+                "best may be the luckiest: check it with a smaller numerics.grid_spacing."
+            )
         if self.plan.method.quick and self.plan.method.again_on != "standard":
             reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
         return tuple(reasons)
@@ -510,6 +567,16 @@ def _repeats(path: str, paths: Sequence[str]) -> bool:
     return sum(other.split(".")[-1] == path.split(".")[-1] for other in paths) > 1
 
 
-def _beaten(values: Array, others: Array) -> bool:
-    """Return whether another is at least as small everywhere and smaller somewhere."""
-    return bool(((others <= values).all(axis=1) & (others < values).any(axis=1)).any())
+def front_places(values: Array, allowed: Mask) -> list[int]:
+    """Return which rows of goals to be small no allowed one beats, the least in the first first.
+
+    One beats another that is at least as small in every goal and smaller in one; of equal rows the
+    first is taken, and none with a goal that is not determined.
+    """
+    left = np.flatnonzero(allowed & np.isfinite(values).all(axis=1))
+    left = left[np.lexsort(values[left].T[::-1])]  # nobody is beaten by one that comes later
+    front = []
+    while len(left):
+        front.append(int(left[0]))
+        left = left[(values[left] < values[left[0]]).any(axis=1)]
+    return front

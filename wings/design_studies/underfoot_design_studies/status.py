@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
+
+import numpy as np
 
 from underfoot.core.presentation import Table
 from underfoot.core.progress import time_text
 
 from .record import Ending
+from .records import Records
 from .result import StudyResult
+from .scan import Scan, scanned
 from .study import Study
+
+USUAL = (Ending.OPEN, Ending.COMPUTED)
+AHEAD = 60.0
+"""s by which the clocks of two machines may differ."""
+MOST_REASONS = 5000
+"""Cases without numbers whose reasons are read."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +33,7 @@ class StudyStatus(StudyResult):
 
     kind: ClassVar[str] = "study_status"
 
+    records: Records
     now: float = 0.0
 
     @cached_property
@@ -33,15 +46,27 @@ class StudyStatus(StudyResult):
         return sum(one["workers"] for one in self._alive)
 
     @cached_property
+    def scan(self) -> Scan:
+        """Numbers of all finished cases."""
+        return scanned(self.records)
+
+    @property
     def case_seconds(self) -> float:
         """Sum over the finished cases of the seconds each took."""
-        return sum(record.seconds for record in self.records.values())
+        return float(np.nansum(self.scan.case["seconds"]))
 
     @cached_property
     def worker_seconds(self) -> float:
         """Time that workers had, all processes together, to now."""
         ends = [(one, one["ended"] or self.now) for one in self.sessions]
-        return sum(one["workers"] * (end - one["began"]) for one, end in ends)
+        return sum(one["workers"] * max(end - one["began"], 0.0) for one, end in ends)
+
+    @property
+    def clock_went_back(self) -> bool:
+        """Whether a process began, or ended a case, later than it is now: no rate is known."""
+        ended = np.nan_to_num(self.scan.case["ended"])
+        latest = max((one["began"] for one in self.sessions), default=0.0)
+        return max(latest, float(ended.max(initial=0.0))) > self.now + AHEAD
 
     @property
     def busy(self) -> float:
@@ -52,31 +77,71 @@ class StudyStatus(StudyResult):
     def _ended(self) -> int:
         """Cases that ended since the processes began that are alive, or were."""
         began = min((one["began"] for one in self._alive or self.sessions), default=self.now)
-        return sum(record.ended >= began for record in self.records.values())
+        return int(np.count_nonzero(self.scan.case["ended"] >= began))
 
     @cached_property
     def per_minute(self) -> float:
         """Cases that end in a minute, over the processes that are alive, or were."""
         counted = self._alive or self.sessions
-        if not counted:
+        if not counted or self.clock_went_back:
             return 0.0
         began = min(one["began"] for one in counted)
         elapsed = max(one["ended"] or self.now for one in counted) - began
         return 60 * self._ended / max(elapsed, 1e-9)
 
+    @cached_property
+    def cases_left(self) -> int:
+        """Cases that the study still takes, those not yet proposed with them."""
+        plan, total = self.plan, self.endings.total()
+        planned = plan.designs * plan.cases_per_design
+        ends_with_start = bool(self.jobs) and not self.jobs[-1].point
+        if plan.goals and plan.method.again_on and not ends_with_start:
+            planned += (min(plan.method.again, plan.designs) + 1) * plan.cases_per_design
+        return max(planned, total) - (total - self.endings[Ending.OPEN])
+
     @property
     def seconds_left(self) -> float | None:
-        """Time left of the cases set so far, at that rate; None before each worker ended one."""
-        known = self._alive and self._ended >= max(1, self.working)
-        return 60 * self.endings[Ending.OPEN] / self.per_minute if known else None
+        """Time left at that rate; None before each worker ended a case."""
+        known = self._alive and self.per_minute and self._ended >= max(1, self.working)
+        return 60 * self.cases_left / self.per_minute if known else None
+
+    @property
+    def programs(self) -> Collection[str]:
+        """Versions of the program that computed the cases."""
+        return self.scan.programs
 
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, how fast, and when it ends."""
-        at_work = f"{self.working} workers at work" if self.working else "Nobody works on it"
+        count, seconds = self.working, self.seconds_left
+        at_work = f"{count} worker{'s' * (count > 1)} at work" if count else "Nobody works on it"
         rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
-        seconds = self.seconds_left
+        if not self.per_minute:
+            rate = at_work
         left = "" if seconds is None else f", about {time_text(seconds)} left"
-        return (super().headline()[0], f"{rate}{left}.")
+        return (f"{self.ended_text(self.cases_left)}.", f"{rate}{left}.")
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what keeps the numbers from being taken as they are."""
+        texts = super().cautions()
+        if self.clock_went_back:
+            texts = (*texts, "The clock was set back as it ran: rates and times are not known.")
+        return texts
+
+    @property
+    def lost_text(self) -> str:
+        """Nothing: the remarks tell why."""
+        return ""
+
+    def remarks(self) -> Mapping[str, Sequence[str]]:
+        """Return why cases have no numbers, the most frequent reason first."""
+        bad = [key for key in self.keys if self.records.ending(key) not in USUAL]
+        reasons = Counter(
+            self.records[key].reason for key in bad[:: max(1, -(-len(bad) // MOST_REASONS))]
+        )
+        title = "Without numbers"
+        if len(bad) > reasons.total():
+            title += f" ({reasons.total()} of {len(bad)}, evenly taken)"
+        return {title: [f"{n} x {text}" for text, n in reasons.most_common()]}
 
     def table(self) -> Table:
         """Return how many cases ended in each way."""
@@ -98,5 +163,5 @@ class StudyStatus(StudyResult):
 
 def study_status(study: Study) -> StudyStatus:
     """Return how far a study in its folder is."""
-    result = study.result()
-    return StudyStatus(result.plan, result.jobs, result.records, result.sessions, time.time())
+    store = study.store
+    return StudyStatus(study.plan, store.jobs(), store.records(), store.sessions(), time.time())

@@ -7,6 +7,7 @@
     draws-WORKER.f4     the draws of COF of those cases
     packed-HASH.npz     ten thousand finished cases, of processes that ended
     claims/             who computes what now (``claims``)
+    stop                the study is to stop: who works on it takes no further case
     alive/WORKER        touched while a process works; sessions.jsonl tells of those that ended
 
 A case is finished when its line is written; every line has a check sum. Lines are only added, so
@@ -25,6 +26,7 @@ import threading
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
@@ -35,9 +37,9 @@ from zlib import crc32
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import DataError, InputError
+from underfoot.core import DataError, InputError, UnderfootError
 from underfoot.core.fields import Fields, from_xarray
-from underfoot.core.files import MARKER, whole_file
+from underfoot.core.files import MARKER
 from underfoot.core.optional import optional_module
 from underfoot.core.text import harmless
 
@@ -62,6 +64,10 @@ RESERVE = 1 << 18
 """Bytes kept free on the disk for the cases that end after it filled up."""
 LED = ("base.toml", "study.toml", "sessions.jsonl", "jobs", "packed", "lead.claim")
 """Files that only the leading process writes."""
+VIEWS = ("live.html", "report.html", "results.csv", "results.parquet", "surrogate.json")
+"""Files made of the cases, by any process."""
+STOP = "stop"
+"""File that asks all who work on a study to stop."""
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
 
@@ -82,6 +88,7 @@ class Store:
         self._left: dict[tuple[Round, int], int] = {}
         self._open: dict[Path, tuple[int, int]] = {}
         self._committed = 0.0
+        self._touched: dict[Path, tuple[float, float]] = {}
 
     @classmethod
     def made(cls, folder: Path | str) -> Store:
@@ -110,13 +117,18 @@ class Store:
     def adopt(self, plan: StudyPlan) -> None:
         """Write the plan; only the leading process does. What dead processes left is tidied.
 
-        Where the folder has another plan its jobs are set aside; cases of both stay finished.
+        Where the folder has another plan its jobs are set aside; cases of both stay finished. An
+        optimisation that only got a larger budget keeps them, and goes on.
         """
         self._tidy()
         base = f"{plan.base.to_toml(complete=True)}\n# hash: {plan.base.hash}\n"
         texts = {"base.toml": base.encode("utf-8"), "study.toml": plan.text.encode("utf-8")}
         paths = {self.folder / name: text for name, text in texts.items()}
-        if all(path.exists() and path.read_bytes() == text for path, text in paths.items()):
+        same = all(path.exists() and path.read_bytes() == text for path, text in paths.items())
+        if same and self._set_by(plan):
+            return
+        if self._gets_longer(plan):
+            write_file(self.folder / "study.toml", texts["study.toml"])
             return
         with suppress(FileNotFoundError):
             aside = f"jobs-before-{uuid4().hex[:8]}.jsonl"
@@ -124,6 +136,19 @@ class Store:
         self.begin_round(Jobs(self.folder / "jobs.jsonl"), ended=False)
         for path, text in paths.items():
             write_file(path, text)
+
+    def _gets_longer(self, plan: StudyPlan) -> bool:
+        """Return whether a plan is that of the folder but for more designs of an optimisation."""
+        if plan.method.kind not in ("optimise", "robust") or not self.exists:
+            return False
+        try:
+            before = self.plan()
+        except (UnderfootError, OSError):
+            return False
+        more = {"base": plan.base, "text": plan.text, "remarks": plan.remarks}
+        method = before.method.model_copy(update={"budget": plan.method.budget})
+        same = before.base.hash == plan.base.hash and replace(before, **more, method=method) == plan
+        return same and plan.designs > before.designs
 
     @property
     def exists(self) -> bool:
@@ -143,7 +168,30 @@ class Store:
             text = (self.folder / "study.toml").read_text(encoding="utf-8")
         except UnicodeDecodeError as error:
             raise DataError(f"can't be read ({error})", where=str(self.folder)) from error
-        return read_plan(text, self.folder, str(self.folder / "study.toml"), base=base)
+        file = self.folder / "study.toml"
+        plan = read_plan(text, self.folder, str(file), base=base)
+        if not self._set_by(plan):
+            raise InputError(
+                "was changed after its designs were set",
+                where=str(file),
+                remedy="Copy it to where your studies are and give underfoot study run COPY.toml "
+                f"--out {self.folder}: designs are set anew, and cases that both have are kept",
+            )
+        return plan
+
+    def _set_by(self, plan: StudyPlan) -> bool:
+        """Return whether the first job that is set is one of a plan."""
+        for _, _, body in whole_lines(self.folder / "jobs.jsonl"):
+            if b'"point": ' not in body:
+                continue  # closes a batch
+            job = Job.from_line(body)
+            if not 0 <= job.condition < len(plan.states) or job.draw >= len(plan.draws):
+                return False
+            if len(job.point) not in (0, len(plan.dimensions)):
+                return False
+            own = plan.job(job.design, job.point, job.batch, job.condition, job.draw)
+            return own.changes == job.changes
+        return True
 
     # --- what is there ---
 
@@ -171,7 +219,7 @@ class Store:
         """Write jobs of version 1 anew, in closed batches."""
         whole = self.folder / f".jobs-{uuid4().hex}"
         whole.touch()
-        unique = {(job.key, job.design): job for job in before}.values()
+        unique = {(j.batch, j.design, j.condition, j.draw): j for j in before}.values()
         for batch, jobs in groupby(unique, lambda job: job.batch):
             add_batch(whole, batch, jobs, whole.stat().st_size)
         os.replace(whole, self.folder / "jobs.jsonl")
@@ -376,6 +424,19 @@ class Store:
         latest = self.round
         return "" if latest is None else latest.other(self._alive)
 
+    def stop(self) -> None:
+        """Ask all who work on the study to take no further case."""
+        write_file(self.folder / STOP, self.name.encode("utf-8"))
+
+    def go_on(self) -> None:
+        """Take that back."""
+        (self.folder / STOP).unlink(missing_ok=True)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the study is to stop."""
+        return (self.folder / STOP).exists()
+
     @property
     def share(self) -> float:
         """Share of the jobs set so far that are finished."""
@@ -433,9 +494,11 @@ class Store:
             write_file(self.folder / "sessions.jsonl", b"".join(lines))
         for name in ended:
             (self.folder / "alive" / name).unlink(missing_ok=True)
-        for path in (*self.folder.glob(".reserve-*"), *(self.folder / "alive").glob(".*-*")):
-            reserve = path.parent == self.folder
-            owner = path.name.removeprefix(".reserve-") if reserve else path.name[1:-33]
+        halves = [(path, path.name[1:-33]) for path in (self.folder / "alive").glob(".*-*")]
+        for name in ("reserve", *VIEWS):
+            begin = f".{name}-"
+            halves += [(p, p.name.removeprefix(begin)) for p in self.folder.glob(f"{begin}*")]
+        for path, owner in halves:
             if not self._alive(owner, path):
                 path.unlink(missing_ok=True)
         for name in LED:  # halves: only who leads writes them
@@ -459,7 +522,15 @@ class Store:
             clock = own if own.exists() else self.folder / "alive"
             if clock == own:
                 os.utime(own)  # times of one clock, that of the file system
-            return clock.stat().st_mtime - mark.stat().st_mtime < SILENT
+            moment = mark.stat().st_mtime
+            silence = clock.stat().st_mtime - moment
+            if silence < 0:  # the clock was set back: then by this process's own
+                before, since = self._touched.get(mark, (None, 0.0))
+                if moment != before:
+                    since = time.monotonic()
+                    self._touched[mark] = moment, since
+                silence = time.monotonic() - since
+            return silence < SILENT
         return False
 
     @property
@@ -468,10 +539,20 @@ class Store:
 
     # --- views ---
 
+    @contextmanager
+    def view(self, name: str) -> Iterator[Path]:
+        """Yield a file that takes the place of one of ``VIEWS`` when the block ends well."""
+        part = self.folder / f".{name}-{self.name}"
+        try:
+            yield part
+            os.replace(part, self.folder / name)
+        finally:
+            part.unlink(missing_ok=True)
+
     def write_views(self, cases: DataFrame) -> None:
         """Write results.csv and, where DuckDB is installed, results.parquet."""
         table = self.folder / "results.csv"
-        with whole_file(table) as part:
+        with self.view(table.name) as part:
             texts = cases.select_dtypes(exclude="number").columns
             cases.assign(**{name: cases[name].map(_cell) for name in texts}).to_csv(
                 part, index=False
@@ -480,7 +561,7 @@ class Store:
             return
         import duckdb
 
-        with whole_file(table.with_suffix(".parquet")) as part, duckdb.connect() as database:
+        with self.view("results.parquet") as part, duckdb.connect() as database:
             database.read_csv(str(table), sample_size=-1).write_parquet(str(part))
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
 from underfoot.core import InputError, Progress, nearest_match, silent
+from underfoot.core.errors import Cancelled
 
 from .claims import Round
 from .computing import computed, crashed
@@ -17,11 +19,15 @@ from .plan import StudyPlan
 from .proposals import first_points, next_batch
 from .record import Ending, Job
 from .result import StudyResult
-from .store import SILENT, Store
+from .store import SILENT, STOP, Store
 from .study_file import load_plan
 
 PAUSE, LONGEST_PAUSE = 1.0, 16.0
 """s between two looks for work while others work, at first and at most."""
+
+
+class Stopped(Cancelled):
+    """A person stopped a study from another process."""
 
 
 class Study:
@@ -76,6 +82,7 @@ class Study:
 
         Raises:
             InputError: Another process leads the study.
+            Stopped: ``underfoot study stop``, or the app.
             DataError: A full disk; what is finished is on it.
         """
         self.store = Store.made(self.store.folder)
@@ -86,6 +93,7 @@ class Study:
                     where="STUDY",
                     remedy=f"To help it: underfoot study work {self.store.folder}",
                 )
+            self.store.go_on()
             self.store.adopt(self.plan)
             compute, count = engine(on, workers, self._told(progress))
             self._compute(compute, count, progress, leads=True)
@@ -143,6 +151,7 @@ class Study:
                     self.store.add_record(record)
                     count += 1
                     progress(self._stage(), self.store.share)
+                self._end_if_stopped()
             except KeyboardInterrupt as stop:
                 kept = "every finished case is kept; the same command goes on from there"
                 raise type(stop)(kept) from None
@@ -152,11 +161,16 @@ class Study:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
         if leads and not self.store.other:
             self._begin_next()
-        pause, waited = PAUSE, 0.0
-        while True:
+        pause, waited, looked = PAUSE, 0.0, -math.inf
+        while not self.store.stopped:
             jobs = self.store.take(in_order=leads)
             if jobs is not None:
-                yield from jobs
+                for job in jobs:
+                    if time.monotonic() - looked > PAUSE:
+                        looked = time.monotonic()
+                        if self.store.stopped:
+                            return
+                    yield job
                 pause, waited = PAUSE, 0.0
             elif self.store.holds:
                 yield None
@@ -181,6 +195,15 @@ class Study:
         if not leads:
             time.sleep(PAUSE)
         return True
+
+    def _end_if_stopped(self) -> None:
+        if self.store.stopped:
+            raise Stopped(
+                "the study was stopped",
+                where=str(self.store.folder),
+                remedy="every finished case is kept; underfoot study run goes on from there "
+                f"(without one: remove {self.store.folder / STOP}, then underfoot study work)",
+            )
 
     def _begin_next(self) -> bool:
         """Give out what has no record, or else the next batch; return whether there was any."""

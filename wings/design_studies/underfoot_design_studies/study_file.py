@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -15,6 +16,7 @@ from scipy.stats import qmc
 from underfoot.case import Case, CaseError
 from underfoot.case import text as toml
 from underfoot.case.errors import placed, translated
+from underfoot.compute.positions import run_cost
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.shoe.geometry import CELLS_REFUSED
@@ -65,6 +67,8 @@ ALIASES = {"wear": WEAR}
 VALUE_KEYS = {"from", "to", "times", "of", "normal", "sd", "lognormal", "factor"}
 """Keys of a table that is one value, not a section of further paths."""
 MOST_CASES = 1_000_000
+YEAR = 365.25 * 24 * 3600.0
+"""s."""
 
 
 def load_plan(path: Path | str, *, catalogue: Catalogue | None = None) -> StudyPlan:
@@ -156,10 +160,20 @@ def read_plan(
         allowed=f"from {least} ({'designs times ' * grid}conditions times draws)",
     )
     cases = plan.designs * plan.cases_per_design
-    reader.refuse_if(
-        cases > MOST_CASES, "method", f"{cases:.2g} cases", allowed=f"at most {MOST_CASES:g}"
+    low, high = (
+        float(f"{cases * seconds / YEAR:.1g}")
+        for seconds in run_cost(plan.base, quick=method.quick).seconds
     )
+    cost = f", {low:g} to {high:g} years of one processor"
+    reader.refuse_many("vary" if grid else "method", "cases", cases, cost)
     reader.end()
+    if plan.goals and method.again_on and plan.again_is_the_same:
+        remark = (
+            "The best designs are not run again: on the same grid a sole without lugs, or one "
+            "position of a tread, gives the same run. Take "
+        )
+        remark += 'front_grid = "standard".' if method.quick else 'grid = "quick".'
+        return replace(plan, remarks=(*remarks, remark))
     return plan
 
 
@@ -270,6 +284,19 @@ class _Reader:
         if name not in known:
             self.errors.append(unknown_name(kind, name, known, where=self.places(path)))
 
+    def refuse_many(self, path: str, what: str, count: int, cost: str = "") -> bool:
+        """Return whether there are more than a study may have, and keep that as an error."""
+        many = count > MOST_CASES
+        remedy = "Fewer steps, values or conditions; or a budget, whose designs are spread evenly"
+        self.refuse_if(
+            many,
+            path,
+            f"{count:.2g} {what}{cost}",
+            allowed=f"at most {MOST_CASES:g}",
+            remedy=remedy,
+        )
+        return many
+
     def attempt(self, path: str, function: Callable[..., Any], *arguments: Any) -> Any:
         """Return what a function says of a path; None, with its errors kept, where it refuses."""
         try:
@@ -289,7 +316,11 @@ class _Reader:
         """Return a section with flat, dotted keys."""
         given = self.plain.get(name, {})
         self.refuse_if(not isinstance(given, Mapping), name, f"{given!r} is no section")
-        return dict(flat_paths(given)) if isinstance(given, Mapping) else {}
+        pairs = list(flat_paths(given)) if isinstance(given, Mapping) else []
+        paths = [ALIASES.get(path, path) for path, _ in pairs]
+        for path in {one for one in paths if paths.count(one) > 1}:
+            self.refuse_if(True, f"{name}.{path}", "stands twice", remedy="Drop one")
+        return dict(pairs)
 
     def base(self, folder: Path, catalogue: Catalogue | None) -> Case:
         """Return the case that is changed; without it nothing else can be judged."""
@@ -343,6 +374,8 @@ class _Reader:
             choice = self.attempt(f"conditions.{name}", read_choice, path, texts, known)
             if choice is not None:
                 choices.append([(path, *pair) for pair in zip(choice.options, texts, strict=True)])
+        if self.refuse_many("conditions", "conditions", math.prod(map(len, choices))):
+            return ()
         return tuple(
             Condition(", ".join(str(text) for *_, text in row), {path: v for path, v, _ in row})
             for row in product(*choices)
@@ -377,6 +410,9 @@ class _Reader:
         self.attempt("outputs.require", check_agreement, require)
         for goal in set(maximise) & set(minimise):
             self.refuse_if(True, "outputs", f"{goal} is to be both large and small")
+        for name, goals in (("maximise", maximise), ("minimise", minimise)):
+            for goal in {one for one in goals if goals.count(one) > 1}:
+                self.refuse_if(True, f"outputs.{name}", f"{goal} stands twice", remedy="Drop one")
         wanted = (*maximise, *minimise, *(one.goal for one in require))
         weighed = any(isinstance(one, Goal) and one.output == "mass" for one in wanted)
         self.refuse_if(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -25,6 +26,7 @@ from ..variant_bar import new_variant
 
 ROUTE = "/studies"
 WORK = "underfoot_app.work_studies"
+COMPUTED = f"{WORK}:computed"
 KINDS = {"normal": ("normal", "sd"), "lognormal": ("lognormal", "factor"), "even": ("from", "to")}
 """Keys of the two numbers of each distribution."""
 FIELDS = {
@@ -122,6 +124,14 @@ class _Study:
             with ui.element("section").classes("study-results"):
                 self.checked = ui.element("div").props('role="status"')
                 self.progress = ui.element("div")
+                with ui.element("div").classes("study-row") as self.steps:
+                    self.stop_button = ui.button(self.text("studies.stop"), on_click=self.stop)
+                    self.more = ui.number(self.text("studies.more"), min=1, step=1)
+                    self.more.props("dense outlined")
+                    self.widen_button = ui.button(self.text("studies.widen"), on_click=self.widen)
+                    for each in (self.stop_button, self.widen_button):
+                        each.props("flat no-caps")
+                    ui.label(self.text("studies.wider")).classes("soft")
                 self.plots = ui.element("div").classes("report")
                 self.plots.on("chosen", self._choose, args=["detail"])
                 with ui.element("div").classes("bar-row") as self.design:
@@ -130,8 +140,8 @@ class _Study:
                     variant.on_click(self._to_variant).props("flat no-caps")
                 self.sole = SoleView(session)
                 self.rest = ui.element("div").classes("report")
-        self.design.set_visibility(False)
-        self.sole.set_visibility(False)
+        for each in (self.design, self.sole, self.steps):
+            each.set_visibility(False)
         ui.timer(0, self._open, once=True)
 
     def written(self) -> str:
@@ -141,11 +151,13 @@ class _Study:
     async def _open(self) -> None:
         await self._fill()
         self.sheet = await self._check()
-        task = self.session.jobs.latest(self.name, self.text("studies.job"))
+        task = self.session.jobs.latest(self.name, COMPUTED)
         if task is not None and task.open:
             self._follow(task)
+        elif self._working:
+            self._watch(others=True)
         if self.sheet and self.sheet["ended"]:
-            await self._show()
+            await self._show(whole=not self._working)
 
     # the file
 
@@ -263,26 +275,40 @@ class _Study:
         words = "run" if not (sheet and sheet["begun"]) else "go_on" if sheet["open"] else "done"
         self.run_button.text = self.text(f"studies.{words}")
         self.run_button.set_enabled(words != "done" and sheet is not None)
+        self._working = sheet["working"] if sheet and sheet["begun"] else 0
+        budget = sheet["budget"] if sheet and sheet["begun"] else None
+        self.steps.set_visibility(bool(self._working or budget))
+        self.stop_button.set_visibility(self._working > 0)
+        for each in (self.more, self.widen_button):
+            each.set_visibility(budget is not None)
+        self.more.value = self.more.value or (budget and max(1, budget // 2))
         return sheet
 
     # the run
 
     async def run(self) -> None:
         """Compute what is not finished; what is finished stays, however the run ends."""
-        name, work = self.text("studies.job"), f"{WORK}:computed"
-        self._follow(self.session.jobs.submit(name, work, *self.at, about=self.name))
+        name = self.text("studies.job")
+        self._follow(self.session.jobs.submit(name, COMPUTED, *self.at, about=self.name))
+
+    async def stop(self) -> None:
+        """Stop whoever computes: this app, and others in the same folder."""
+        await self.session.ask(f"{WORK}:stop", *self.at)
+
+    async def widen(self) -> None:
+        """Give the study more runs, and go on."""
+        task = self.session.jobs.latest(self.name, COMPUTED)
+        if task is not None and task.open:
+            self.session.jobs.cancel(task)
+            await self.session.jobs.finished(task)
+        if self.sheet and self.sheet["budget"] and self.more.value:
+            budget = self.sheet["budget"] + int(self.more.value)
+            await self.keep("method", {"budget": budget}, part=True)
+            await self._fill()
+        await self.run()
 
     def _follow(self, task: Task) -> None:
-        self.run_button.set_enabled(False)
-        count = self.sheet["ended"] if self.sheet else 0
-
-        async def look() -> None:
-            nonlocal count
-            sheet = await self._check()
-            self.run_button.set_enabled(False)
-            if sheet and sheet["ended"] != count:
-                count = sheet["ended"]
-                await self._show(whole=False)
+        timer = self._watch()
 
         async def done(ended: Task) -> None:
             timer.deactivate()
@@ -293,7 +319,27 @@ class _Study:
 
         with self.progress:
             task_line(self.session, task, done)
+
+    def _watch(self, *, others: bool = False) -> ui.timer:
+        """Show again and again how far it is, with ``others`` as long as they work on it."""
+        self.run_button.set_enabled(False)
+        count = self.sheet["ended"] if self.sheet else 0
+
+        async def look() -> None:
+            nonlocal count
+            began = time.monotonic()
+            self.sheet = sheet = await self._check()
+            self.run_button.set_enabled(others and not self._working)
+            if others and not self._working:
+                timer.deactivate()
+                await self._show()
+            elif sheet and sheet["ended"] != count:
+                count = sheet["ended"]
+                await self._show(whole=False)
+            timer.interval = max(LOOK, SELDOM * (time.monotonic() - began))
+
         timer = ui.timer(LOOK, look)
+        return timer
 
     # what came of it
 
@@ -323,7 +369,9 @@ class _Study:
 
 
 LOOK = 5.0
-"""s between two looks at a study that runs."""
+"""s between two looks at a study that runs, at least ..."""
+SELDOM = 20
+"""... and as a multiple of what a look takes."""
 
 
 class _Rows:

@@ -29,6 +29,7 @@ async function showStudy(id, address) {
   const chosen = before?.dataset.chosen, names = axes().map((axis) => axis.value);
   place.innerHTML = await response.text();
   const root = place.querySelector(".study");
+  if (!root) return;
   if (chosen) root.dataset.chosen = chosen;
   startStudy(root);
   if (before) axes().forEach((axis, k) => { axis.value = names[k]; axis.dispatchEvent(new Event("change")); });

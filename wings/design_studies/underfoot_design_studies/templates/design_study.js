@@ -13,13 +13,13 @@ function startStudy(root) {
   // A scale of one column: names stand at even places.
   const scale = (column, low, high) => {
     const values = designs.map((d) => d.values[column]).filter((v) => v !== null);
-    const names = values.some((v) => typeof v === "string") ? [...new Set(values.map(String))] : null;
+    const names = !values.length || values.some((v) => typeof v === "string") ? [...new Set(values.map(String))] : null;
     const ends = names ? [0, Math.max(names.length - 1, 1)] : [Math.min(...values), Math.max(...values)];
     const span = ends[1] - ends[0] || 1;
     return { names, ends, place: (v) => (v === null ? null : low + (high - low) * ((names ? names.indexOf(String(v)) : v) - ends[0]) / span) };
   };
   const label = (column) => columns[column].name + (columns[column].unit ? ` (${columns[column].unit})` : "");
-  const kind = (d) => (d.front ? "front" : d.allowed ? "" : "not");
+  const kind = (d) => (d.reason ? "lost" : d.front ? "front" : d.allowed ? "" : "not");
   let chosen = null;
 
   function mark() {
@@ -61,7 +61,7 @@ function startStudy(root) {
     designs.map((d, k) => [d, k]).sort((a, b) => a[0].front - b[0].front).forEach(([d, k]) => {
       const at = [x.place(d.values[across]), y.place(d.values[up])];
       if (at.includes(null)) return;
-      const dot = element("circle", { cx: at[0], cy: at[1], r: d.front ? 6 : 4, class: kind(d), "data-design": k, tabindex: 0, role: "button", "aria-label": `Design ${d.number}` });
+      const dot = element("circle", { cx: at[0], cy: at[1], r: d.front ? 6 : 4, class: kind(d), "data-design": k, "data-number": d.number, tabindex: 0, role: "button", "aria-label": `Design ${d.number}` });
       dot.append(element("title", {}, `Design ${d.number}: ${label(across)} ${short(d.values[across])}, ${label(up)} ${short(d.values[up])}`));
       dot.addEventListener("click", () => choose(k));
       dot.addEventListener("keydown", (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); choose(k); } });
@@ -75,8 +75,9 @@ function startStudy(root) {
     const svg = find("parallel"), shapes = [], step = 540 / Math.max(columns.length - 1, 1);
     const scales = columns.map((_, k) => scale(k, 310, 50));
     designs.forEach((d, k) => {
-      if (d.values.includes(null)) return;
-      const points = d.values.map((v, c) => `${40 + c * step},${scales[c].place(v)}`).join(" ");
+      const known = d.values.findIndex((v) => v === null), values = known < 0 ? d.values : d.values.slice(0, known);
+      if (values.length < 2 || (known >= 0 && !d.reason)) return;
+      const points = values.map((v, c) => `${40 + c * step},${scales[c].place(v)}`).join(" ");
       shapes.push(element("polyline", { points, class: kind(d), "data-design": k }));
     });
     columns.forEach((column, c) => {
