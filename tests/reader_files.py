@@ -93,7 +93,9 @@ def checked_result(part, path):
             path.with_name(name).write_bytes(data)
     (path.parent / part).write_bytes(path.read_bytes())
     values = Result.load(path.parent).scalars.values()
-    assert not [one for one in values if one.value is not None and not np.isfinite(one.value)]
+    assert not [
+        one for one in values if one.value is not None and not np.isfinite(float(one.value))
+    ]
 
 
 @cache

@@ -94,9 +94,11 @@ def loaded(address: str) -> Any:
     try:
         return getattr(import_module(module), name) if name else import_module(module)
     except (Exception, SystemExit) as error:  # a package of others may raise anything
-        first = (str(error).strip().splitlines() or [""])[0]
+        reason = (str(error).strip().splitlines() or [""])[0]
+        if not isinstance(error, ImportError):  # of the package itself
+            reason = f"{type(error).__name__}: {reason}"
         raise InputError(
-            f'"{address}" can\'t be imported ({type(error).__name__}: {first:.200})',
+            f'"{address}" can\'t be imported ({reason:.200})',
             allowed="module:Name of a module on Python's path",
             remedy="Set PYTHONPATH to the folder of the module",
         ) from error

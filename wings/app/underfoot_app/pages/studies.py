@@ -103,6 +103,7 @@ class _Study:
         self.file = session.project.inside("studies", f"{name}.toml")
         self.at = (str(self.file), str(self.file.with_suffix("")))
         self.chosen = -1
+        self.sheet: dict[str, Any] | None = None
         title(name).classes("hidden-title")
         with ui.element("div").classes("bar-row"):
             back = ui.button(icon="arrow_back", on_click=lambda: session.go(ROUTE))
@@ -111,6 +112,7 @@ class _Study:
             ui.space()
             self.run_button = ui.button(icon="play_arrow", on_click=self.run)
             self.run_button.props("no-caps unelevated").classes("main-action")
+            self.run_button.disable()  # until the study is read
         with ui.element("div").classes("split"):
             with ui.element("section").classes("side"):
                 with ui.tabs().props("dense no-caps align=left") as tabs:
