@@ -223,6 +223,7 @@ def test_percent_has_no_false_digits() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_command(tmp_path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(TEXT, encoding="utf-8")

@@ -44,6 +44,7 @@ people = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(people, st.floats(0.0, 0.5), st.floats(0.0, 100.0))
 def test_energy_is_kept(person, cof, drag):

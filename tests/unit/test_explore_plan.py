@@ -199,7 +199,11 @@ def test_a_narrow_channel_refines_the_grid_of_every_design_and_says_so():
 
 
 @pytest.mark.parametrize(
-    "path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda p: p.stem
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem == "free_tread"))
+        for path in sorted((EXAMPLES / "studies").glob("*.toml"))
+    ],
 )
 def test_every_example_is_read_and_its_first_designs_can_be_built(path):
     made = load_plan(path)

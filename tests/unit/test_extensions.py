@@ -370,6 +370,7 @@ def sole_block():
     return np.array(faces)
 
 
+@pytest.mark.slow
 def test_an_outsole_file_of_another_format(tribo, tmp_path):
     path = tmp_path / "sole.npy"
     np.save(path, sole_block())
