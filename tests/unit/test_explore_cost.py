@@ -13,7 +13,7 @@ import pytest
 
 from underfoot_design_studies import check, study
 from underfoot_design_studies import plan as plan_module
-from underfoot_design_studies.cost import mean_cost
+from underfoot_design_studies.cost import mean_cost, spread_jobs, study_cost
 from underfoot_design_studies.record import Ending, Record
 from underfoot_design_studies.store import Store
 from underfoot_design_studies.study import Study
@@ -92,6 +92,22 @@ def test_ten_cases_tell_the_cost_of_a_study_within_a_fifth(made_up, tmp_path, co
         inside.append(answer.seconds[0] <= true <= answer.seconds[1])
     assert np.mean(np.abs(errors) < 0.2) >= share, errors
     assert np.mean(inside) >= 0.9
+
+
+def test_the_start_that_is_run_again_has_no_place_among_the_inputs(made_up, tmp_path):
+    made_up(fine)
+    made = plan()
+    one = Study(made, tmp_path)
+    one.compute_some(10)
+
+    class Given(list):
+        @property
+        def keys(self):
+            return [job.key for job in self]
+
+    jobs = Given(spread_jobs(made, 10))
+    start = replace(jobs[3], point=(), design=99)
+    assert study_cost(made, one.store, Given([*jobs, start])) == study_cost(made, one.store, jobs)
 
 
 def test_what_was_timed_is_part_of_the_study_and_not_computed_again(made_up, tmp_path):

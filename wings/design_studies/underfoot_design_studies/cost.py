@@ -93,6 +93,8 @@ def study_cost(plan: StudyPlan, store: Store, jobs: Jobs | None = None) -> Study
     some = _some(store.jobs() if jobs is None else jobs, records)
     if records and not some:  # timed alone
         some = list(takewhile(lambda job: job.key in records, spread_jobs(plan, MOST)))
+    # the start has no place among the inputs
+    some = [job for job in some if len(job.point) == len(plan.dimensions)]
     known = [(job, records[job.key]) for job in some if job.quick == plan.method.quick]
     failures = Counter(one.reason for _, one in known if one.ending is not Ending.COMPUTED)
     used = _steady([pair for pair in known if pair[1].cpu_seconds > 0])

@@ -6,6 +6,7 @@ may. What is drawn of many designs is chosen after a look at all of them.
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -344,8 +345,12 @@ class _Writer:
 
     def write(self) -> None:
         began = time.process_time()
-        with suppress(OSError, UnderfootError):  # a full disk, a damaged case: the run tells
+        try:
             write_live_page(self._study)
+        except (OSError, UnderfootError):
+            pass  # a full disk, a damaged case: the run tells
+        except Exception as error:  # a fault of the page must not end days of computing
+            logging.getLogger(__name__).warning("%s was not written: %r", PAGE, error)
         self._last = time.process_time() - began
         self._spent += self._last
 
