@@ -288,7 +288,8 @@ class Jobs:
 def _moved(content: Any, folder: str, to: str) -> Any:
     """Return plain data with the paths in ``folder`` as paths in ``to``."""
     if isinstance(content, str):
-        return to + content[len(folder) :] if content.startswith(folder) else content
+        inside = content == folder or content.startswith((f"{folder}/", f"{folder}{os.sep}"))
+        return to + content[len(folder) :] if inside else content
     if isinstance(content, Mapping):
         return {key: _moved(each, folder, to) for key, each in content.items()}
     if isinstance(content, list | tuple):

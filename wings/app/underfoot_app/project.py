@@ -133,8 +133,9 @@ class Project:
         return self._present(name).read_text(encoding="utf-8")
 
     def free_name(self, wanted: str) -> str:
-        """Return ``wanted``, with a number behind it where a variant has that name already."""
-        taken = {each.casefold() for each in (*self.variants(), *self._states)}
+        """Return ``wanted``, with a number behind it where a variant or a result has that name."""
+        results = (each.name for each in (self.folder / "results").iterdir())
+        taken = {each.casefold() for each in (*self.variants(), *self._states, *results)}
         cleaned = re.sub(r"[^\w .,+()'-]", " ", wanted).strip(" ._")[:50].strip() or "Variant"
         name, number = cleaned, 1
         while name.casefold() in taken:

@@ -163,7 +163,7 @@ def previewed(
     seen, start = preview(case, changes, progress=progress), _start(case)
     stored = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
     share = {
-        name: stored[name]["value"] / start[name] if start[name] else 1.0
+        name: stored[name]["value"] / start[name] if start[name] and stored[name]["value"] else 1.0
         for name in ("cof", "fluid_load")
     }
     cof, draws = seen.cof.scaled(share["cof"]), seen.cof_draws

@@ -45,11 +45,13 @@ def build(session: Session) -> None:
 
 
 def begin_run(session: Session, name: str) -> Task:
-    """Queue the full run of a variant as its file says; one that is open already is taken."""
+    """Queue the full run of a variant as its file says; one of these inputs is taken as it is."""
+    project, job = session.project, session.text("answer.job")
     task = session.jobs.latest(name, RUN)
     if task is not None and task.open:
-        return task
-    project, job = session.project, session.text("answer.job")
+        if not task.began or project.path(name).stat().st_mtime <= task.began:
+            return task
+        session.jobs.cancel(task)  # the file has changed since it began
     arguments = str(project.path(name)), str(project.result_folder(name))
     return session.jobs.submit(job, RUN, *arguments, about=name)
 
@@ -288,10 +290,7 @@ class _Answer:
     def _keep(self, folder: str, changes: Mapping[str, Any]) -> None:
         project = self.session.project
         new = project.copy(self.name, changes["name"], changes)
-        target = project.result_folder(new)
-        if target.exists():  # of a variant of that name that was removed
-            shutil.rmtree(target)
-        shutil.move(folder, target)
+        shutil.move(folder, project.result_folder(new))
         self.session.go(ROUTE, variant=new)
 
     # what would help

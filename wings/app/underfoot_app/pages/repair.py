@@ -39,11 +39,18 @@ class Reference:
         return path.is_file() and self.sha256 in (None, checksum(path))
 
 
-def references(table: Mapping[str, Any]) -> Iterator[Reference]:
-    """Yield the files that a case file names and that came into a project by the app."""
+def references(project: Project, name: str) -> list[Reference]:
+    """Return the files of the project that a variant names, whether it can be read or not."""
+    try:
+        return list(_references(toml.parsed(project.text(name))))
+    except UnderfootError:
+        return []
+
+
+def _references(table: Mapping[str, Any]) -> Iterator[Reference]:
     for key, value in table.items():
         if isinstance(value, Mapping):
-            yield from references(value)
+            yield from _references(value)
         elif isinstance(value, str) and value.split("/")[:2] in [["..", each] for each in PLACES]:
             yield Reference(value, table.get("sha256") if key == "file" else None)
 
@@ -78,11 +85,7 @@ def opened(session: Session, route: str, name: str) -> Case | None:
 def _card(session: Session, name: str, error: UnderfootError, mended: Callable[[], None]) -> None:
     """Show why a variant can't be read and, for each file it lacks, what would take its place."""
     text, project = session.text, session.project
-    try:
-        named = list(references(toml.parsed(project.text(name))))
-    except UnderfootError:
-        named = []
-    lacking = [each for each in named if not each.holds(project)]
+    lacking = [each for each in references(project, name) if not each.holds(project)]
     with ui.element("div").classes("answer-card repair").props('role="alert"'):
         ui.label(text("repair.title")).classes("strong")
         for each in lacking:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from nicegui import ui
 
 from underfoot.core import InputError
-from underfoot.core.errors import UnderfootError
 
 from ..components import SoleView, drop_zone, sentences, table
-from ..project import Project
 from ..session import Session, as_json
 from ..uploads import revision, revisions
+from .repair import references
 
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
@@ -131,11 +129,12 @@ class _Inspection:
         """Show what can be done with the file: nothing is changed until one is pressed."""
         project, text = self.session.project, self.text
         path = project.inside(self.path)
-        same = {each.name for each in revisions(path)} - {path.name}
+        same = {*revisions(path)} - {path}
         others = [
             name
             for name in project.variants()
-            if name != self.name and Path(_outsole(project, name)).name in same
+            if name != self.name
+            and any(each.path(project) in same for each in references(project, name))
         ]
 
         def use() -> None:
@@ -166,12 +165,3 @@ class _Inspection:
             raise InputError(f"there is no file {self.path}", where="sole")
         for name in names:  # what was drawn with sliders gives way to the file; undo brings it back
             project.change(name, {**dict.fromkeys(DRAWN), "shoe.outsole": outsole})
-
-
-def _outsole(project: Project, name: str) -> str:
-    """Return the file of a variant's outsole, "" where it has none or can't be read."""
-    try:
-        outsole = project.case(name).shoe.outsole
-    except UnderfootError:
-        return ""
-    return outsole.file if outsole else ""
