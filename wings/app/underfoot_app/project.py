@@ -78,6 +78,7 @@ class Project:
                 allowed="a folder that can be written",
             ) from error
         self._states: dict[str, _States] = {}
+        self._summaries: dict[str, tuple[tuple[int, int], Summary | None]] = {}
         self._replay()
 
     @property
@@ -257,6 +258,15 @@ class Project:
     def summary(self, name: str) -> Summary | None:
         """Return a result in short; None where there is none that can be read."""
         path = self.folder / "results" / name / "result.json"
+        try:
+            made, size = path.stat().st_mtime_ns, path.stat().st_size
+        except OSError:
+            return None
+        if self._summaries.get(name, (None,))[0] != (made, size):  # pages ask every second
+            self._summaries[name] = (made, size), self._summary(name, path)
+        return self._summaries[name][1]
+
+    def _summary(self, name: str, path: Path) -> Summary | None:
         try:
             stored = json.loads(path.read_text(encoding="utf-8"))
             cof, slip = stored["cof"], stored.get("slip_probability") or {}
