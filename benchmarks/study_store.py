@@ -53,16 +53,23 @@ def record(job: Job) -> Record:
     numbers = {name: value * (1 + job.point[0]) for name, value in OUTPUTS.items()}
     units, spreads = dict.fromkeys(OUTPUTS, "1"), dict.fromkeys(list(OUTPUTS)[:5], 0.01)
     return Record(
-        job.key, Ending.COMPUTED, "", numbers, spreads, units, "pair", DRAWS * (1 + job.point[0])
+        job.key,
+        Ending.COMPUTED,
+        numbers=numbers,
+        spreads=spreads,
+        units=units,
+        law="pair",
+        draws=DRAWS * (1 + job.point[0]),
     )
 
 
 def jobs(count: int) -> Iterator[Job]:
-    """Yield jobs with made-up keys."""
+    """Yield jobs of the study with made-up keys."""
+    plan = read_plan(TEXT, EXAMPLES)
     for k in range(count):
-        share = k / count
-        changes = {"motion.speed": 0.3 + 0.4 * share, "contaminant.viscosity": 0.2}
-        yield Job(f"{k * 2654435761 % 2**96:024x}", k, 0, 0, 0, (share, 0.5), changes)
+        point = (k / count,)
+        key = f"{k * 2654435761 % 2**96:024x}"
+        yield Job(key, k, 0, 0, 0, point, plan.design_changes(point))
 
 
 def counted(calls: dict[str, int]) -> Callable[[], None]:

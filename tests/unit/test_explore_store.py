@@ -431,3 +431,15 @@ def test_a_million_cases_take_few_claims_and_end_one_by_one():
     assert (np.diff(edges) <= 0).all()
     assert (edges[0], edges[-1]) == (1000, 1)
     assert len(edges) < 8500
+
+
+@pytest.mark.slow
+def test_the_benchmark_of_the_store_runs():
+    small = {"CASES": "400", "WORKERS": "4", "PROCESSES": "1"}
+    environment = os.environ | {f"UNDERFOOT_BENCH_{name}": value for name, value in small.items()}
+    command = [sys.executable, "-m", "benchmarks", "study_store"]
+    done = subprocess.run(
+        command, cwd=EXAMPLES.parent, env=environment, capture_output=True, text=True, check=True
+    )
+    assert "opened, in lines, 10 files" in done.stdout
+    assert "{'computed': 400}" in done.stdout

@@ -362,10 +362,10 @@ class StudyResult(Presentable):
     @cached_property
     def endings(self) -> Counter[str]:
         """How many cases ended in each way, open ones too."""
-        keys = set(self.keys)
+        keys = dict.fromkeys(self.keys)  # each once, in the order that they lie in memory
         if isinstance(self.records, Records):
             return Counter(self.records.endings_of(keys))
-        known = {key: self.records[key].ending for key in keys & self.records.keys()}
+        known = {key: self.records[key].ending for key in keys.keys() & self.records.keys()}
         return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 
     def ended_text(self, left: int) -> str:
