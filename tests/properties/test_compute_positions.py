@@ -90,14 +90,20 @@ def test_positions_cover_both_directions_and_the_shoe_angle_evenly(count):
     assert abs(across - count / 2) <= 1
 
 
-@given(st.integers(5, 16), st.floats(0, 6.28))
-def test_waves_of_the_position_leave_no_error(count, phase):
-    """A wave along the pattern averages out, and so does its product with the shoe angle."""
-    found = places(np.array([[1.0, 0.0]]), count)
-    wave = np.cos([2 * math.pi * place.shift[0] + phase for place in found])
-    turn = np.array([place.turn for place in found])
+@given(st.integers(7, 16), st.floats(0, 6.28), st.sampled_from([1, 2]))
+def test_waves_of_the_position_leave_no_error(count, phase, harmonic):
+    """A wave along bars averages out, and so does its product with the shoe angle."""
+    bars = places(np.array([[1.0, 0.0]]), count)
+    wave = np.cos([2 * math.pi * harmonic * place.shift[0] + phase for place in bars])
+    turn = np.array([place.turn for place in bars])
+    assert turn.any()
     assert wave.mean() == pytest.approx(0.0, abs=1e-12)
     assert (wave * turn).mean() == pytest.approx(0.0, abs=1e-12)
+
+
+def test_four_places_of_bars_have_the_angle_of_the_case():
+    """Any other would go round with a strong harmonic of the film."""
+    assert not any(place.turn for place in places(np.array([[1.0, 0.0]]), 4))
 
 
 def test_draws_take_every_position_and_its_spread_is_named():

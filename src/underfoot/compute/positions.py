@@ -196,17 +196,22 @@ def places(periods: Array, count: int) -> tuple[Place, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
 
     A lattice rule: even along the first period, in steps of a golden share along a second, and a
-    shoe angle that goes twice round its band as a sine of the same variance (once below 5 places).
-    A quantity that is smooth in the place then has a mean with next to no error of the rule.
+    shoe angle that goes some times round its band as a sine of the same variance. A quantity that
+    is smooth in the place then has a mean with next to no error of the rule.
+
+    The film under bars is a saw-tooth along the only period: an angle that goes round with one of
+    its strong harmonics, the first two, leaves an error that more places do not mend. Three times
+    round, and below 5 places no other angle, halve the error (of eight places 3.1 to 1.9 % rms of
+    the film, of four 8.3 to 4.1 %).
     """
     step = _golden_step(count)
-    rounds = 2 if count >= 5 else 1
+    rounds = (3 if count >= 5 else 2) if len(periods) == 1 else (2 if count >= 5 else 1)
     lattice = []
     for k in range(count):
         shares = np.array([k / count, k * step % count / count])[: len(periods)]
         x, y = shares @ periods
-        turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * rounds * k / count)
-        lattice.append(Place((float(x), float(y)), ANGLE_BAND * turn))
+        turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * (rounds * k % count) / count)
+        lattice.append(Place((float(x), float(y)), round(ANGLE_BAND * turn, 12)))
     return tuple(lattice)
 
 
