@@ -10,7 +10,13 @@ from underfoot.shoe import Facet, Heel, SoleSurface, Tread, WearPlane, heel_map,
 from underfoot.shoe import surface_map as tilted
 from underfoot.shoe._kernels.covering_discs import local_width
 from underfoot.shoe.files.orientation import levelled, resting_plane
-from underfoot.shoe.tread_measures import height_noise, tread_map, tread_measures
+from underfoot.shoe.tread_measures import (
+    QUIET,
+    height_noise,
+    tread_map,
+    tread_measures,
+    without_noise,
+)
 from underfoot.shoe.worn import WornPatch, worn_surface
 
 HEEL = Heel(
@@ -104,6 +110,25 @@ def test_noise_is_estimated_and_raises_the_threshold():
     assert found.level == pytest.approx(0.6e-3, rel=0.03)
     # the last channel ends at the rim and is a step there, not a channel
     assert (found.land == (height == 0))[:200].mean() > 0.999
+
+
+def test_noise_of_a_scan_is_no_shape_of_its_lugs():
+    """Points 0.75 mm apart; lugs of 6 mm on a crowned, sloping base."""
+    spacing, lag = 0.25e-3, 3
+    x, y = (spacing * each for each in np.indices((240, 240)))
+    land = np.mod(x, 10e-3) < 6e-3
+    shape = 0.02 * x + (y - 0.03) ** 2 / (2 * 0.4) + np.where(land, 0.0, 3e-3)
+    points = np.random.default_rng(5).normal(0, 80e-6, (81, 81))
+    noisy = shape + np.kron(points, np.ones((lag, lag)))[:240, :240]
+    quiet = without_noise(noisy, land, 80e-6, spacing, lag)
+    assert np.array_equal(quiet[~land], noisy[~land])
+    assert (
+        np.std((quiet - shape)[land]) < 2 * QUIET
+    )  # at a lug's edges half of the points are known
+    # planes stay to the last digit, and what is quieter than the target stays as it is
+    plane = np.where(land, 0.02 * x - 0.01 * y, 3e-3)
+    assert without_noise(plane, land, 80e-6, spacing, lag) == pytest.approx(plane, abs=1e-12)
+    assert without_noise(noisy, land, QUIET, spacing, lag) is noisy
 
 
 def test_measures_of_straight_channels_are_those_of_the_drawing():

@@ -38,6 +38,10 @@ _GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
 _FINE = 0.4e-3  # m
 _REACHED = 30e-6  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
+QUIET = 15e-6
+"""Noise of a scan's heights that stays on its land, m: less than the roughness of soles hides."""
+SMOOTHED = 5e-3
+"""Longest side of the squares of land that noise is averaged over, m."""
 WIDEST_SIPE = 1.2e-3
 """A channel narrower than this is a slit, m."""
 SHORTEST_SIPE = 3e-3
@@ -168,6 +172,40 @@ def height_noise(height: Array, lag: int = 1) -> float:
     third = d - 3 * c + 3 * b - a
     third = third[np.isfinite(third)]
     return 0.0 if third.size == 0 else float(1.4826 * np.median(np.abs(third)) / math.sqrt(20))
+
+
+def without_noise(height: Array, land: Mask, noise: float, spacing: float, lag: int = 1) -> Array:
+    """Return heights (m) whose land has the planes that fit a square of land around each cell.
+
+    The square holds as many points of a scan as leave ``QUIET`` of their noise, at most
+    ``SMOOTHED`` a side: on a lug noise is no shape, and the film would see it as one. Fitted to
+    the land alone, so that walls and channels stay; a lug too small to tell a slope gets its mean.
+    """
+    from scipy.ndimage import uniform_filter
+
+    if noise <= QUIET:
+        return height
+    side = min(lag * spacing * noise / QUIET, SMOOTHED)
+    size = 2 * max(1, round(side / 2 / spacing)) + 1
+    places = spacing * np.indices(height.shape).astype(np.float64)
+    x, y = np.asarray(places[0]), np.asarray(places[1])
+    z = np.where(land, height, 0.0)
+    own = land.astype(np.float64)
+
+    def mean(values: Array) -> Array:
+        return np.asarray(uniform_filter(own * values, size, mode="constant"))
+
+    count = np.maximum(mean(own), 1e-9)
+    mx, my, mz = (mean(each) / count for each in (x, y, z))
+    xx, yy, xy = (
+        mean(a) / count - b for a, b in ((x * x, mx * mx), (y * y, my * my), (x * y, mx * my))
+    )
+    xz, yz = mean(x * z) / count - mx * mz, mean(y * z) / count - my * mz
+    spread = xx * yy - xy**2
+    told = spread > spacing**4
+    spread = np.where(told, spread, np.inf)
+    along, across = (xz * yy - yz * xy) / spread, (yz * xx - xz * xy) / spread
+    return np.where(land, mz + along * (x - mx) + across * (y - my), height)
 
 
 SHARES = (10, 50, 90)

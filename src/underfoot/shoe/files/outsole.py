@@ -11,7 +11,14 @@ from underfoot.core.arrays import Array
 
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
-from ..tread_measures import WIDEST_CHANNEL, arch_area, height_noise, tread_map
+from ..tread_measures import (
+    QUIET,
+    WIDEST_CHANNEL,
+    arch_area,
+    height_noise,
+    tread_map,
+    without_noise,
+)
 from . import orientation
 from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
@@ -357,9 +364,11 @@ def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSu
     )
     if tread.noise > 10e-6:
         points = _POINTS_NOISE * tread.noise
+        off = "; planes through the land take it off" if tread.noise > QUIET else ""
         remarks.append(
-            f"The points of the scan carry noise of {points * 1e6:.0f} um (standard deviation)."
+            f"The scan's points carry noise of {points * 1e6:.0f} um (standard deviation){off}."
         )
+        height = without_noise(height, tread.land, tread.noise, spacing, lag)
     arch = arch_area(tread, inside, spacing)
     if arch > _ARCH * np.count_nonzero(inside) * spacing**2:
         remarks.append(
