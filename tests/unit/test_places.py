@@ -372,8 +372,7 @@ def test_a_larger_worn_region_carries_more_load_on_its_film():
     ]
     told = chosen(place_of(table), quick=False)
     films = [row[-1] for row in told.cofs]
-    assert films == sorted(films)
-    assert films[2] > films[0]
+    assert films[2] > 1.2 * max(films[:2])  # 10 mm is less than a lug
     assert all(each.replaced for each in told.shoes)
 
 

@@ -26,10 +26,14 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.special import expit
 
+from underfoot.case import Case
 from underfoot.compute.contact_friction import odds_changes, place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
+from underfoot.compute.positions import place_numbers, places, treaded
+from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
-from underfoot.compute.sole import sole_map
+from underfoot.compute.sole import file_periods, sole_map
+from underfoot.compute.solve import solved_at
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent, probability_text
@@ -58,6 +62,8 @@ ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
 """The floor that a change of floors is computed with: clay quarry tile of the catalogue."""
 WASHED = "detergent"
 """What an oily floor is wet with after it was washed."""
+POSITIONS = 2
+"""Places of a tread, half a period apart, whose film counts."""
 BINS = 10
 """Readings, equally likely, of which it is counted how many change the choice."""
 LEAST, MOST_RATIO = 0.01, 100.0
@@ -330,6 +336,7 @@ class _Solver:
         # a thick film is where continuation begins from best
         order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
         march = Continuation(cases[order[0]], quick=self.quick)
+        moved = film_odds_over_positions(cases[order[0]])
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
@@ -343,7 +350,9 @@ class _Solver:
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values
             pair = _law(self.place.case(shoe, floor, fluid, worn)).pair
-            found[floor.name, fluid] = self._cell(case, values, solved.spreads, shoe, floor, pair)
+            found[floor.name, fluid] = self._cell(
+                case, values, solved.spreads, shoe, floor, pair, moved
+            )
         return found
 
     def _cell(
@@ -354,6 +363,7 @@ class _Solver:
         shoe: PlaceShoe,
         floor: PlaceFloor,
         pair: Pair,
+        moved: Array,
     ) -> Cell:
         context = resolved(case)
         law = case.friction.build(context)
@@ -378,7 +388,8 @@ class _Solver:
         }
         share = np.zeros(joint.count)
         if film > 0:
-            odds = math.log(film / (1 - film)) + errors["film_error"]
+            odds = math.log(film / (1 - film)) + errors["film_error"] + moved.mean()
+            odds = odds + moved.std() * joint.normal(f"position of the tread of {shoe_name(shoe)}")
             for name, (less, more) in spreads.items():
                 normal = joint.normal(f"{name} of the rough contact on {floor.name}")
                 odds = odds + odds_changes(less, more, normal)
@@ -387,6 +398,24 @@ class _Solver:
         if film > 0:
             acof = acof + viscous * share / film
         return Cell(np.clip(acof, 0.0, law.highest), solved, film)
+
+
+def film_odds_over_positions(case: Case) -> Array:
+    """Return ln of the odds of the film's share of the load, less that at the tread's own place.
+
+    (places,), the first 0: places half a period of the tread apart, on the quick grid. Of a sole
+    without tread or film 0 alone.
+    """
+    if not treaded(case) or case.contaminant is None:
+        return np.zeros(1)
+    tread = case.shoe.tread and case.shoe.tread.build()
+    spacing = case.numerics.quick_grid_spacing
+    parts, odds = prepared(case, spacing), []
+    for place in places(tread.periods if tread else file_periods(case), POSITIONS):
+        load = place_numbers(*solved_at(parts, place, spacing))["fluid_load"]
+        share = float(np.clip(load / case.motion.normal_force, 1e-6, 0.999))
+        odds.append(math.log(share / (1 - share)))
+    return np.array(odds) - odds[0]
 
 
 def shoe_name(shoe: PlaceShoe) -> str:
