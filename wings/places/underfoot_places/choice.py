@@ -546,10 +546,13 @@ def chosen(
     levers.append(Lever("floors of clay quarry tile (Rq 9 um)", _left(rougher, new)))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     measurements = _measurements(place, joint, floor_rq, new_cases, matrix * per_year)
-    mean = {key: float(value.mean()) for key, value in shares[present.name].items()}
-    total = sum(mean.values())
+    # the mean share, as what a change leaves is a share: a mean of slips is of few, slippery draws
+    mean = {
+        key: float((value / np.maximum(today, 1e-300)).mean())
+        for key, value in shares[present.name].items()
+    }
     sources = tuple(
-        (f"{floor}, {fluid}", value / total)
+        (f"{floor}, {fluid}", value)
         for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
     )
     return Choice(

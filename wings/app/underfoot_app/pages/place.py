@@ -91,7 +91,8 @@ class _Place:
                 printed.on_click(lambda: ui.run_javascript("window.print()"))
                 printed.props("flat no-caps dense")
                 self.compute_button(name, "place.again")
-            ui.image(shown["picture"]).classes("wide").props(f'alt="{shown["heading"]}"')
+            picture = ui.image(shown["picture"]).style("max-width: 44rem")
+            picture.props(f'alt="{shown["heading"]}"')
             for each in shown["tables"]:
                 table(each)
             for heading, lines in shown["remarks"].items():
