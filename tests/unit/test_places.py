@@ -300,6 +300,7 @@ def test_the_treaded_heel_is_the_better_one_in_a_thick_fluid(choice):
     assert all(each.slips[2] <= 0.1 * 100 * choice.place.steps * 1.0001 for each in choice.shoes)
 
 
+@pytest.mark.slow
 def test_a_cell_is_the_whole_run_of_its_case(choice):
     """The draws that every shoe shares spread as those of a run do, about the same COF."""
     case = choice.place.case(choice.place.shoes[0], choice.place.floors[0], "glycerol_90pct")
@@ -390,6 +391,7 @@ def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_none():
     assert any("washed off with detergent" in name for name in left)
 
 
+@pytest.mark.slow
 def test_the_same_shoe_twice_shares_its_chance():
     table = small_place()
     table["shoe"] = [{**table["shoe"][1], "name": name} for name in ("one", "two")]
@@ -494,6 +496,12 @@ def changed(**changes):
 def test_bad_places_are_refused(changes, words):
     with pytest.raises((InputError, RangeError), match=words):
         place_of(changed(**changes))
+
+
+def test_a_machine_outside_its_standard_calibrates_nothing():
+    case = read_case(ptv_96=36)
+    with pytest.raises(InputError, match=r"--fluid.*does not read oil.*water, dry"):
+        calibrated_floor(case, "pendulum-96", 24.0, fluid="oil")
 
 
 def test_readings_that_contradict_each_other_are_refused():

@@ -29,7 +29,7 @@ from underfoot.friction import (
 from underfoot.friction.pair_contact import Pair
 
 from .joint import JointDraws, floor_name, interval
-from .machines import ANY_FLOOR_RQ, Fluid, Machine, machine, machine_fluid
+from .machines import ANY_FLOOR_RQ, Fluid, Machine, machine
 
 PendulumValue = Annotated[float, Quantity("1", 0.0, 150.0)]
 RampAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45.0))]
@@ -137,7 +137,7 @@ def calibrated_floor(
             hardly any draw agrees with.
     """
     device = machine(named, "--machine")
-    liquid = machine_fluid(fluid or device.fluids[0], "--fluid")
+    liquid = device.fluid_of_standard(fluid, "--fluid")
     value = device.checked(reading, "--reading")
     law = case.friction.build(resolved(case))
     if not isinstance(law, PairContactLaw):
@@ -162,7 +162,7 @@ def class_bounds(device: Machine, name: str, where: str) -> tuple[FloorReading, 
     labels = [label for _, label in device.classes]
     if name not in labels:
         raise unknown_name("class", name, labels, where=where)
-    at, fluid = labels.index(name), machine_fluid(device.fluids[0])
+    at, fluid = labels.index(name), device.fluid_of_standard()
     ends = [("lower", device.classes[at][0])]
     if at + 1 < len(labels):
         ends.append(("upper", device.classes[at + 1][0]))
@@ -197,7 +197,7 @@ class PairReadOption(PairOption):
                 device = machine(named)
                 value = float(np.degrees(given)) if device.scale.unit == "deg" else float(given)
                 value = device.checked(value, f"{where}.{field}")
-                found.append(FloorReading(device, machine_fluid(device.fluids[0]), value))
+                found.append(FloorReading(device, device.fluid_of_standard(), value))
         for field, named in CLASSES.items():
             if (given := getattr(self, field)) is not None:
                 found += class_bounds(machine(named), given, f"{where}.{field}")

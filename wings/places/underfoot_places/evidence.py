@@ -16,7 +16,7 @@ from underfoot.core.presentation import Presentable, Table
 
 from .calibration import FloorReading, class_bounds
 from .joint import JointDraws, interval
-from .machines import RZ_SPREAD, machine, machine_fluid, machines
+from .machines import RZ_SPREAD, machine, machines
 
 WANTED = 20
 """Floors from which on a score says something (median error, rank correlation, coverage)."""
@@ -111,7 +111,7 @@ def _entries() -> tuple[Mapping[str, Any], ...]:
 def _scored(entry: Mapping[str, Any], seed: int) -> ScoredReading:
     device, source = machine(entry["machine"]), entry["source"]
     low, high = (to_si(end, "m", where=source) for end in entry["rz"])
-    fluid = machine_fluid(device.fluids[0])
+    fluid = device.fluid_of_standard()
     bounds = (
         class_bounds(device, entry["class"], source)
         if "class" in entry

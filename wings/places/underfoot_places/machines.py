@@ -198,6 +198,22 @@ class Machine:
                 name = label
         return name
 
+    def fluid_of_standard(self, name: str = "", where: str = "fluid") -> Fluid:
+        """Return a fluid of the machine's standard, by default the first.
+
+        Raises:
+            InputError: No such fluid, or one that the standard does not read.
+        """
+        fluid = machine_fluid(name or self.fluids[0], where)
+        if fluid.name not in self.fluids:
+            raise InputError(
+                f"a {self.title.lower()} does not read {fluid.name}",
+                where=where,
+                allowed=", ".join(self.fluids),
+                remedy=f"Outside {self.standard} the model of the machine is not held to anything",
+            )
+        return fluid
+
     def checked(self, reading: float, where: str) -> float:
         """Return a reading that the machine's scale holds.
 

@@ -15,7 +15,7 @@ from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
 from .joint import Reading
-from .machines import RZ_OVER_RQ, RZ_SPREAD, machine, machine_fluid
+from .machines import RZ_OVER_RQ, RZ_SPREAD, machine
 
 STEEPEST_SLOPE = math.radians(15.0)
 """Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
@@ -327,14 +327,7 @@ def _floor(
 def _floor_reading(entry: Any, where: str) -> FloorReading:
     _check_keys(entry, "floor.reading", where)
     device = machine(str(entry.get("machine", "")), f"{where}.machine")
-    fluid = machine_fluid(str(entry.get("fluid", device.fluids[0])), f"{where}.fluid")
-    if fluid.name not in device.fluids:
-        raise InputError(
-            f"a {device.title.lower()} does not read {fluid.name}",
-            where=f"{where}.fluid",
-            allowed=", ".join(device.fluids),
-            remedy=f"Outside {device.standard} the model of the machine is not held to anything",
-        )
+    fluid = device.fluid_of_standard(str(entry.get("fluid", "")), f"{where}.fluid")
     value = device.checked(entry.get("value", 0), f"{where}.value")
     kind = str(entry.get("kind", "value"))
     sd = entry.get("sd")

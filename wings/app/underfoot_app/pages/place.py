@@ -65,12 +65,11 @@ class _Place:
             task_line(self.session, task, partial(self.ended, name))
 
     async def ended(self, name: str, task: Task) -> None:
-        """Show what came of a task."""
+        """Show what came of a task, and what there was before it where nothing did."""
+        self.show(name)
         if task.problem:
             with self.answer:
                 ui.label(task.problem).classes("caution")
-        elif task.state == "done":
-            self.show(name)
 
     def show(self, name: str) -> None:
         """Show the stored answer of a place, or that there is none."""
