@@ -572,16 +572,16 @@ def _cleaning(
     new: Mapping[tuple[str, str], Cell],
     shares: Mapping[tuple[str, str], Array],
 ) -> list[Lever]:
-    """Return what cleaning leaves: each fluid wiped up at once; oil washed off, the floor wet.
+    """Return what cleaning leaves: each fluid on half the steps; oil washed off, the floor wet.
 
     Water alone changes nothing of an oily floor: an oil film is left under it.
     """
     joint, levers = solver.joint, []
     today = _sum(shares)
     for fluid in place.fluids():
-        rest = {key: value for key, value in shares.items() if key[1] != fluid}
-        left = _sum(rest) if rest else np.zeros(joint.count)
-        levers.append(Lever(f"{fluid} wiped up before anyone steps in it", _left(left, today)))
+        halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
+        name = f"{fluid} on half the steps, wiped up sooner"
+        levers.append(Lever(name, _left(_sum(halved), today)))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
         floors = [replace(floor, fluids={WASHED: 1.0}) for floor in place.floors]
