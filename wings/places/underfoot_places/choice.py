@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -323,6 +323,8 @@ class _Solver:
     quick: bool
     read: Mapping[str, PlaceFloor]
     """Floors with the roughness that their readings leave, by name: what is solved."""
+    moved: dict[tuple[str, bool], Array] = field(default_factory=dict)
+    """``film_odds_over_positions`` of soles, new and worn."""
 
     def cells(
         self, shoe: PlaceShoe, floors: Sequence[PlaceFloor], worn: bool
@@ -336,7 +338,10 @@ class _Solver:
         # a thick film is where continuation begins from best
         order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
         march = Continuation(cases[order[0]], quick=self.quick)
-        moved = film_odds_over_positions(cases[order[0]])
+        sole = shoe.name, worn
+        if sole not in self.moved:
+            self.moved[sole] = film_odds_over_positions(cases[order[0]])
+        moved = self.moved[sole]
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
@@ -584,8 +589,11 @@ def _cleaning(
         levers.append(Lever(name, _left(_sum(halved), today)))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
-        floors = [replace(floor, fluids={WASHED: 1.0}) for floor in place.floors]
-        washed = dict(solver.cells(shoe, floors, False))
+        washed = {key: cell for key, cell in new.items() if key[1] == WASHED}
+        rest = [floor for floor in place.floors if (floor.name, WASHED) not in washed]
+        if rest:
+            floors = [replace(floor, fluids={WASHED: 1.0}) for floor in rest]
+            washed |= solver.cells(shoe, floors, False)
         cells = {
             (floor, fluid): washed[floor, WASHED] if fluid in oily else cell
             for (floor, fluid), cell in new.items()
