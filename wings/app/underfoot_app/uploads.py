@@ -16,7 +16,7 @@ from .project import Project
 
 MOST_BYTES = 300_000_000
 """Of one file: a scan of a sole has some 100 MB."""
-PLACES = ("soles", "measured", "trials", "studies")
+PLACES = ("soles", "measured", "trials", "studies", "places")
 """Folders of a project that take files."""
 _PART = re.compile(r"(?![\s.])[^/\\:*?\"<>|\x00-\x1f]{1,120}(?<![\s.])")
 _DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)

@@ -1,32 +1,75 @@
-"""The law of the pair calibrated to what a machine read of the floor of a case."""
+"""The law of the pair narrowed by what machines read of the floor of a case."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from underfoot.case import Case
+from underfoot.case.context import Context
+from underfoot.case.friction import PairOption
+from underfoot.case.quantity import Quantity, optional
+from underfoot.case.section import CaseView
+from underfoot.case.tables import meant_file
 from underfoot.compute.resolve import resolved
-from underfoot.core import InputError
+from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
-from underfoot.friction import PairContactLaw, PairDraws
+from underfoot.friction import (
+    FrictionLaw,
+    PairContactLaw,
+    PairDraws,
+    packaged_pair_draws,
+    read_pair_draws,
+)
+from underfoot.friction.pair_contact import Pair
 
 from .joint import JointDraws, floor_name, interval
-from .machines import Machine, machine, machine_fluid
+from .machines import ANY_FLOOR_RQ, Fluid, Machine, machine
 
+PendulumValue = Annotated[float, Quantity("1", 0.0, 150.0)]
+RampAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45.0))]
+Slipmeter = Annotated[float, Quantity("1", 0.0, 1.2)]
 KEPT = 1000
+FLOOR = "floor"
+
+
+@dataclass(frozen=True, slots=True)
+class FloorReading:
+    """What a machine read on a floor, in its unit."""
+
+    machine: Machine
+    fluid: Fluid
+    value: float
+    kind: str = "value"
+    sd: float | None = None
+
+    def __str__(self) -> str:
+        bound = {"value": "", "lower": "at least ", "upper": "at most "}[self.kind]
+        return f"{self.machine.title}: {bound}{self.value:g} {self.machine.scale.unit}"
+
+
+def learn_floor(
+    joint: JointDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
+) -> None:
+    """Teach draws what a machine read on a floor; the anchors of the machine go before."""
+    log = reading.machine.log_likelihood(
+        joint, floor, floor_rq, reading.fluid, reading.value, kind=reading.kind, sd=reading.sd
+    )
+    joint.learn(log, str(reading))
 
 
 @dataclass(frozen=True, slots=True)
 class FloorCalibration(Presentable):
-    """Draws of the law, and the roughness of the floor (m) before and after the reading."""
+    """Draws of the law, and the roughness of the floor (m) before and after the readings."""
 
     kind: ClassVar[str] = "floor_calibration"
 
-    machine: Machine
-    reading: float
+    readings: tuple[FloorReading, ...]
     draws: PairDraws
     before: tuple[float, float, float]
     after: tuple[float, float, float]
@@ -34,10 +77,10 @@ class FloorCalibration(Presentable):
 
     def heading(self) -> str:
         """Return the title."""
-        return f"Floor by {self.machine.title}: {self.reading:g} {self.machine.scale.unit}"
+        return f"Floor by {'; '.join(map(str, self.readings))}"
 
     def headline(self) -> tuple[str, ...]:
-        """Return what the reading says of the floor."""
+        """Return what the readings say of the floor."""
         texts = [
             "{1:.2g} um (95 %: {0:.2g} to {2:.2g})".format(*(1e6 * x for x in each))
             for each in (self.before, self.after)
@@ -52,6 +95,38 @@ class FloorCalibration(Presentable):
         return Table("Draws", ("quantity", "value"), rows)
 
 
+def floor_calibration(
+    pair: Pair, draws: PairDraws, readings: tuple[FloorReading, ...], seed: int
+) -> FloorCalibration:
+    """Return the draws of the law of a pair that readings of its floor leave.
+
+    Errors that readings of a shoe determined before are kept, by the rows that agree.
+
+    Raises:
+        InputError: Readings that hardly any draw agrees with.
+    """
+    joint, roughness = JointDraws(seed=seed, start=draws), f"roughness of floor {FLOOR}"
+    share = floor_name(pair)
+    if share in draws.errors:
+        joint.begin(roughness, joint.errors()[share])
+    before = interval(joint.between(roughness, pair.floor_rq))
+    for device in {one.machine.offset: one.machine for one in readings}.values():
+        device.learn_anchors(joint)
+    for one in readings:
+        learn_floor(joint, FLOOR, pair.floor_rq, one)
+    rows = np.arange(KEPT)  # in random order already
+    known = {**joint.errors(), share: joint.share(roughness)}
+    kept = replace(
+        joint.constants.rows(rows),
+        errors={name: values[rows] for name, values in known.items()},
+        source=f"{draws.source}; floor read: {'; '.join(map(str, readings))}",
+        basis="of a floor that was read",
+        notes=draws.notes,
+    )
+    after = interval(joint.between(roughness, pair.floor_rq))
+    return FloorCalibration(readings, kept, before, after, joint.fewest)
+
+
 def calibrated_floor(
     case: Case, named: str, reading: float, *, kind: str = "value", fluid: str = "", seed: int = 0
 ) -> FloorCalibration:
@@ -62,27 +137,96 @@ def calibrated_floor(
             hardly any draw agrees with.
     """
     device = machine(named, "--machine")
-    liquid = machine_fluid(fluid or device.fluids[0], "--fluid")
+    liquid = device.fluid_of_standard(fluid, "--fluid")
     value = device.checked(reading, "--reading")
     law = case.friction.build(resolved(case))
-    if not isinstance(law, PairContactLaw) or law.draws.errors:
-        raise InputError(
-            f'the law is "{law.name}"' if not isinstance(law, PairContactLaw) else "has draws",
-            where="friction",
-            allowed='model = "pair" without draws_file',
-        )
-    joint, pair = JointDraws(seed=case.numerics.seed + seed), law.pair
-    roughness = "roughness of floor floor"
-    before = interval(joint.between(roughness, pair.floor_rq))
-    device.learn_anchors(joint)
-    log = device.log_likelihood(joint, "floor", pair.floor_rq, liquid, value, kind=kind)
-    joint.learn(log, device.name)
-    rows = np.arange(KEPT)  # in random order already
-    kept = replace(
-        joint.constants.rows(rows),
-        errors={floor_name(pair): joint.share(roughness)[rows]},
-        source=f"{joint.constants.source}; floor read by {device.title}: {value:g} "
-        f"{device.scale.unit}",
-    )
-    after = interval(joint.between(roughness, pair.floor_rq))
-    return FloorCalibration(device, value, kept, before, after, joint.fewest)
+    if not isinstance(law, PairContactLaw):
+        raise InputError(f'the law is "{law.name}"', where="friction", allowed='model = "pair"')
+    read = FloorReading(device, liquid, value, kind)
+    return floor_calibration(law.pair, law.draws, (read,), case.numerics.seed + seed)
+
+
+FIELDS = {
+    "ptv_96": "pendulum-96",
+    "ptv_55": "pendulum-55",
+    "ramp_angle": "ramp-oil",
+    "barefoot_angle": "ramp-barefoot",
+    "dcof": "bot-3000e",
+    "slip_index": "english-xl",
+}
+CLASSES = {"ramp_class": "ramp-oil", "barefoot_class": "ramp-barefoot"}
+
+
+def class_bounds(device: Machine, name: str, where: str) -> tuple[FloorReading, ...]:
+    """Return the bounds of a machine's reading that a class of its standard stands for."""
+    labels = [label for _, label in device.classes]
+    if name not in labels:
+        raise unknown_name("class", name, labels, where=where)
+    at, fluid = labels.index(name), device.fluid_of_standard()
+    ends = [("lower", device.classes[at][0])]
+    if at + 1 < len(labels):
+        ends.append(("upper", device.classes[at + 1][0]))
+    return tuple(FloorReading(device, fluid, end, kind) for kind, end in ends if end > 0)
+
+
+class PairReadOption(PairOption):
+    """The law of the pair, narrowed by what machines read of the floor: every shoe on it is.
+
+    Readings go in through the machine's model and are no COF of the shoe. A slip class of the shoe
+    and draws of ``underfoot calibrate pair`` go with them.
+    """
+
+    name: ClassVar[str] = "pair_read"
+    source: ClassVar[str] = "calibrated on published measurements and on readings of the floor"
+
+    ptv_96: PendulumValue | None = optional("pendulum, slider 96, water: PTV")
+    ptv_55: PendulumValue | None = optional("pendulum, slider 55, water: PTV")
+    ramp_angle: RampAngle | None = optional("ramp with boots and oil")
+    ramp_class: str | None = optional("class of the same: R9 to R13")
+    barefoot_angle: RampAngle | None = optional("ramp, barefoot")
+    barefoot_class: str | None = optional("class of the same: A, B or C")
+    dcof: Slipmeter | None = optional("BOT-3000E, wet dynamic COF")
+    slip_index: Slipmeter | None = optional("English XL, water")
+
+    def floor_readings(self, where: str = "friction") -> tuple[FloorReading, ...]:
+        """Return the readings that are given, each checked by its machine."""
+        found: list[FloorReading] = []
+        for field, named in FIELDS.items():
+            given = getattr(self, field)
+            if given is not None:
+                device = machine(named)
+                value = float(np.degrees(given)) if device.scale.unit == "deg" else float(given)
+                value = device.checked(value, f"{where}.{field}")
+                found.append(FloorReading(device, device.fluid_of_standard(), value))
+        for field, named in CLASSES.items():
+            if (given := getattr(self, field)) is not None:
+                found += class_bounds(machine(named), given, f"{where}.{field}")
+        return tuple(found)
+
+    def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        """Yield what the machines cannot have read, and that nothing was."""
+        yield from super().problems(case, where)
+        try:
+            if not self.floor_readings(where):
+                fields = ", ".join((*FIELDS, *CLASSES))
+                yield InputError("no reading of the floor", where=where, allowed=fields)
+        except InputError as error:
+            yield error
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law, narrowed."""
+        law: Any = super().build(context)
+        pair = law.pair if law.pair.measured[1] else replace(law.pair, floor_rq=ANY_FLOOR_RQ)
+        told = _narrowed(pair, self.floor_readings(), self.draws_file, self.sha256)
+        return PairContactLaw(pair, law.viscosity, told.draws)
+
+
+@lru_cache(maxsize=32)
+def _narrowed(
+    pair: Pair, readings: tuple[FloorReading, ...], draws_file: str | None, sha256: str | None
+) -> FloorCalibration:
+    draws = packaged_pair_draws()
+    if draws_file:
+        with meant_file(draws_file, sha256, "friction.draws_file") as path:
+            draws = read_pair_draws(path)
+    return floor_calibration(pair, draws, readings, 0)

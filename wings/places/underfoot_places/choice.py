@@ -20,24 +20,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import expit
 
+from underfoot.case import Case
 from underfoot.compute.contact_friction import odds_changes, place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
+from underfoot.compute.positions import place_numbers, places, treaded
+from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
-from underfoot.compute.sole import sole_map
+from underfoot.compute.sole import file_periods, sole_map
+from underfoot.compute.solve import solved_at
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent, probability_text
 from underfoot.friction import PairContactLaw
-from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms
+from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, Pair
 from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
 from underfoot.friction.tread_error import tread_error
 
+from .calibration import learn_floor
 from .joint import JointDraws, Reading, interval
 from .machines import FLUIDS, Machine, machines
 from .place import Place, PlaceFloor, PlaceShoe, same_shoe
@@ -55,6 +60,10 @@ TWICE = 2.0
 """Slips of the worn shoe over those of the new one from which it is to be replaced."""
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
 """The floor that a change of floors is computed with: clay quarry tile of the catalogue."""
+WASHED = "detergent"
+"""What an oily floor is wet with after it was washed."""
+POSITIONS = 2
+"""Places of a tread, half a period apart, whose film counts."""
 BINS = 10
 """Readings, equally likely, of which it is counted how many change the choice."""
 LEAST, MOST_RATIO = 0.01, 100.0
@@ -312,28 +321,43 @@ class _Solver:
     place: Place
     joint: JointDraws
     quick: bool
+    read: Mapping[str, PlaceFloor]
+    """Floors with the roughness that their readings leave, by name: what is solved."""
+    moved: dict[tuple[str, bool], Array] = field(default_factory=dict)
+    """``film_odds_over_positions`` of soles, new and worn."""
 
     def cells(
         self, shoe: PlaceShoe, floors: Sequence[PlaceFloor], worn: bool
     ) -> dict[tuple[str, str], Cell]:
         """Return the cell of each floor and fluid, by their names."""
         wanted = [(floor, fluid) for floor in floors for fluid in floor.fluids if fluid != "dry"]
-        cases = [self.place.case(shoe, floor, fluid, worn) for floor, fluid in wanted]
+        solved_floors = {floor.name: self.read.get(floor.name, floor) for floor in floors}
+        cases = [
+            self.place.case(shoe, solved_floors[floor.name], fluid, worn) for floor, fluid in wanted
+        ]
         # a thick film is where continuation begins from best
         order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
         march = Continuation(cases[order[0]], quick=self.quick)
+        sole = shoe.name, worn
+        if sole not in self.moved:
+            self.moved[sole] = film_odds_over_positions(cases[order[0]])
+        moved = self.moved[sole]
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
             solved, values = march, march.values
             if number != order[0]:
                 try:
-                    changes = {"floor": dict(floor.section), "contaminant": fluid}
+                    section = dict(solved_floors[floor.name].section)
+                    changes = {"floor": section, "contaminant": fluid}
                     values = march.continued(changes).values
                 except (InputError, ConvergenceError):
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values
-            found[floor.name, fluid] = self._cell(case, values, solved.spreads, shoe, floor)
+            pair = _law(self.place.case(shoe, floor, fluid, worn)).pair
+            found[floor.name, fluid] = self._cell(
+                case, values, solved.spreads, shoe, floor, pair, moved
+            )
         return found
 
     def _cell(
@@ -343,6 +367,8 @@ class _Solver:
         spreads: Mapping[str, tuple[float, float]],
         shoe: PlaceShoe,
         floor: PlaceFloor,
+        pair: Pair,
+        moved: Array,
     ) -> Cell:
         context = resolved(case)
         law = case.friction.build(context)
@@ -358,7 +384,7 @@ class _Solver:
         solved = max(values["cof"], 1e-4)
         factor = max(solved - viscous, 1e-4) / (1 - film) / reference
         mu = joint.contact_cof(
-            law.pair, laboratory="the place", floor=floor.name, sole=shoe_name(shoe),
+            pair, laboratory="the place", floor=floor.name, sole=shoe_name(shoe),
             pressure=CONTACT_PRESSURE, drag=drag,
         )  # fmt: skip
         place = place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
@@ -367,7 +393,8 @@ class _Solver:
         }
         share = np.zeros(joint.count)
         if film > 0:
-            odds = math.log(film / (1 - film)) + errors["film_error"]
+            odds = math.log(film / (1 - film)) + errors["film_error"] + moved.mean()
+            odds = odds + moved.std() * joint.normal(f"position of the tread of {shoe_name(shoe)}")
             for name, (less, more) in spreads.items():
                 normal = joint.normal(f"{name} of the rough contact on {floor.name}")
                 odds = odds + odds_changes(less, more, normal)
@@ -376,6 +403,24 @@ class _Solver:
         if film > 0:
             acof = acof + viscous * share / film
         return Cell(np.clip(acof, 0.0, law.highest), solved, film)
+
+
+def film_odds_over_positions(case: Case) -> Array:
+    """Return ln of the odds of the film's share of the load, less that at the tread's own place.
+
+    (places,), the first 0: places half a period of the tread apart, on the quick grid. Of a sole
+    without tread or film 0 alone.
+    """
+    if not treaded(case) or case.contaminant is None:
+        return np.zeros(1)
+    tread = case.shoe.tread and case.shoe.tread.build()
+    spacing = case.numerics.quick_grid_spacing
+    parts, odds = prepared(case, spacing), []
+    for place in places(tread.periods if tread else file_periods(case), POSITIONS):
+        load = place_numbers(*solved_at(parts, place, spacing))["fluid_load"]
+        share = float(np.clip(load / case.motion.normal_force, 1e-6, 0.999))
+        odds.append(math.log(share / (1 - share)))
+    return np.array(odds) - odds[0]
 
 
 def shoe_name(shoe: PlaceShoe) -> str:
@@ -430,7 +475,6 @@ def chosen(
         InputError: A case that cannot be; readings that contradict each other.
     """
     joint = JointDraws(seed=seed)
-    solver = _Solver(place, joint, quick)
     new_cases = {shoe.name: place.case(shoe, place.floors[0], "water") for shoe in place.shoes}
     floor_rq = {
         floor.name: _law(place.case(place.shoes[0], floor, "water")).pair.floor_rq
@@ -439,11 +483,12 @@ def chosen(
     before = {name: interval(joint.between(f"roughness of floor {name}", rq))
               for name, rq in floor_rq.items()}  # fmt: skip
     _learn(place, joint, floor_rq, new_cases)
+    solver = _Solver(place, joint, quick, _read_floors(place, joint, floor_rq))
     shares: dict[str, dict[tuple[str, str], Array]] = {}
     worn_rate: dict[str, Array] = {}
     cofs = []
     present = next((shoe for shoe in place.shoes if shoe.present), place.shoes[0])
-    count = 1 + sum(1 + (shoe.wear_depth > 0) for shoe in place.shoes)
+    count = 1 + sum(1 + _wears(shoe) for shoe in place.shoes)
     done = 0
 
     def step(what: str) -> None:
@@ -454,20 +499,22 @@ def chosen(
     states: dict[str, dict[bool, dict[tuple[str, str], Cell]]] = {}
     for shoe in place.shoes:
         states[shoe.name] = {}
-        for worn in (False, True) if shoe.wear_depth > 0 else (False,):
+        for worn in (False, True) if _wears(shoe) else (False,):
             step(f"{shoe.name}{', worn' if worn else ''}")
             states[shoe.name][worn] = solver.cells(shoe, place.floors, worn)
         new = states[shoe.name][False]
         shares[shoe.name] = _slips(place, joint, new)
-        for (floor_named, fluid), cell in new.items():
+        for (floor_named, fluid), cell in states[shoe.name][shoe.worn_region is not None].items():
             ends = interval(cell.acof)
             cofs.append((shoe.name, floor_named, fluid, *ends, cell.film_share))
         if True in states[shoe.name]:
             worn_slips = _slips(place, joint, states[shoe.name][True])
             worn_rate[shoe.name] = _sum(worn_slips)
-            shares[shoe.name] = {
-                key: 0.5 * (value + worn_slips[key]) for key, value in shares[shoe.name].items()
-            }
+            shares[shoe.name] = (
+                worn_slips  # a ruler tells of the shoe of today
+                if shoe.worn_region
+                else {key: 0.5 * (x + worn_slips[key]) for key, x in shares[shoe.name].items()}
+            )
     rates = {name: _sum(each) for name, each in shares.items()}
     per_year = PER * place.steps
     matrix = np.array([rates[shoe.name] for shoe in place.shoes])
@@ -502,17 +549,65 @@ def chosen(
     }
     rougher = _sum(_slips(place, joint, tiled))
     levers.append(Lever("floors of clay quarry tile (Rq 9 um)", _left(rougher, new)))
+    levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     measurements = _measurements(place, joint, floor_rq, new_cases, matrix * per_year)
-    mean = {key: float(value.mean()) for key, value in shares[present.name].items()}
-    total = sum(mean.values())
+    # the mean share, as what a change leaves is a share: a mean of slips is of few, slippery draws
+    mean = {
+        key: float((value / np.maximum(today, 1e-300)).mean())
+        for key, value in shares[present.name].items()
+    }
     sources = tuple(
-        (f"{floor}, {fluid}", value / total)
+        (f"{floor}, {fluid}", value)
         for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
     )
     return Choice(
         place, answers, tuple(levers), measurements, sources, tuple(cofs), present.name,
         joint.fewest, _floors(place, joint, floor_rq, before),
     )  # fmt: skip
+
+
+def _wears(shoe: PlaceShoe) -> bool:
+    return shoe.wear_depth > 0 or shoe.worn_region is not None
+
+
+def _cleaning(
+    place: Place,
+    solver: _Solver,
+    shoe: PlaceShoe,
+    new: Mapping[tuple[str, str], Cell],
+    shares: Mapping[tuple[str, str], Array],
+) -> list[Lever]:
+    """Return what cleaning leaves: each fluid on half the steps; oil washed off, the floor wet.
+
+    Water alone changes nothing of an oily floor: an oil film is left under it.
+    """
+    joint, levers = solver.joint, []
+    today = _sum(shares)
+    for fluid in place.fluids():
+        halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
+        name = f"{fluid} on half the steps, wiped up sooner"
+        levers.append(Lever(name, _left(_sum(halved), today)))
+    oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
+    if oily:
+        washed = {key: cell for key, cell in new.items() if key[1] == WASHED}
+        rest = [floor for floor in place.floors if (floor.name, WASHED) not in washed]
+        if rest:
+            floors = [replace(floor, fluids={WASHED: 1.0}) for floor in rest]
+            washed |= solver.cells(shoe, floors, False)
+        cells = {
+            (floor, fluid): washed[floor, WASHED] if fluid in oily else cell
+            for (floor, fluid), cell in new.items()
+        }
+        name = f"{', '.join(oily)} washed off with {WASHED}, the floor left wet"
+        after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
+        levers.append(Lever(name, _left(after, before)))
+        same = (1.0, 1.0, 1.0)
+        levers.append(Lever(f"{', '.join(oily)} rinsed with water alone: oil stays", same))
+    return levers
+
+
+def _is_oil(place: Place, shoe: PlaceShoe, fluid: str) -> bool:
+    return _law(place.case(shoe, place.floors[0], fluid)).pair.family == "oil"
 
 
 def _law(case: Any) -> PairContactLaw:
@@ -533,11 +628,7 @@ def _learn(
         used[name].learn_anchors(joint)
     for floor in sorted(place.floors, key=lambda each: each.name):
         for one in floor.readings:
-            log = one.machine.log_likelihood(
-                joint, floor.name, floor_rq[floor.name], one.fluid, one.value,
-                kind=one.kind, sd=one.sd,
-            )  # fmt: skip
-            joint.learn(log, f"floor {floor.name}")
+            learn_floor(joint, floor.name, floor_rq[floor.name], one)
     learned = []
     for shoe in sorted(place.shoes, key=lambda each: each.name):
         if any(same_shoe(shoe, other) for other in learned):
@@ -556,6 +647,23 @@ def _learn(
                 passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
+
+
+def _read_floors(
+    place: Place, joint: JointDraws, floor_rq: Mapping[str, tuple[float, float]]
+) -> dict[str, PlaceFloor]:
+    """Return the floors that were read, with the roughness that the readings leave."""
+    found = {}
+    for floor in place.floors:
+        low, high = floor_rq[floor.name]
+        if not floor.readings or low == high:
+            continue
+        low, middle, high = interval(joint.between(f"roughness of floor {floor.name}", (low, high)))
+        deviation = middle * math.log(high / low) / (2 * 1.96)
+        rq = {"value": f"{1e6 * middle:.4g} um", "uncertainty": f"{1e6 * deviation:.4g} um"}
+        section = {**floor.section, "roughness": {**floor.section.get("roughness", {}), "rq": rq}}
+        found[floor.name] = replace(floor, section=section)
+    return found
 
 
 def _slips(
@@ -608,11 +716,16 @@ def _replaced(
 ) -> str:
     """Return when the shoe slips twice as often as new, ln of slips even in time between.
 
-    "" where no wear is given.
+    Of a shoe whose worn region was measured, whether it does so today; "" where no wear is given.
     """
-    if worn is None or shoe.months is None:
+    if worn is None:
         return ""
     new = _sum(_slips(place, joint, states[False]))
+    if shoe.worn_region is not None:
+        left = _left(worn, new)
+        return f"{'now' if left[1] > TWICE else 'not yet'}: {_share(left)} times the slips of new"
+    if shoe.months is None:
+        return ""
     growth = np.log(np.maximum(worn, 1e-300) / np.maximum(new, 1e-300))
     with np.errstate(divide="ignore"):
         months = np.where(growth > 0, shoe.months * math.log(TWICE) / growth, np.inf)

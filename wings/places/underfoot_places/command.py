@@ -1,4 +1,4 @@
-"""``underfoot choose``, ``underfoot machine`` and ``underfoot calibrate machine``."""
+"""``underfoot choose``, ``machine``, ``machines`` and ``calibrate machine``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def choose(
 @sharing(without=("quick", "set_", "processes", "catalogue"))
 def machine(
     shared: Shared,
-    name: Annotated[str, typer.Argument(help="pendulum-96, pendulum-55, ramp-oil or bot-3000e.")],
+    name: Annotated[str, typer.Argument(help="Name of the machine (underfoot machines).")],
     rz: Annotated[str | None, optional('Roughness of the floor, as "20 um".')] = None,
     rq: Annotated[str | None, optional('The same as Rq, as "3 um".')] = None,
     scan: Annotated[Path | None, optional("The same from a scan of the floor.")] = None,
@@ -58,6 +58,14 @@ def machine(
     shared.answer(name, lambda _: predicted_reading(name, span, fluid=fluid))
 
 
+@sharing(without=("quick", "set_", "processes", "catalogue"))
+def machines(shared: Shared) -> None:
+    """List the machines, and published readings beside predictions without their source."""
+    from .evidence import machine_scores
+
+    shared.answer("machines", lambda _: machine_scores())
+
+
 @sharing(without=("quick", "set_", "processes", "catalogue", "out"))
 def calibrate_machine(
     shared: Shared,
@@ -71,7 +79,8 @@ def calibrate_machine(
     """Narrow the law of the pair by a machine's reading of the floor: PTV, ramp angle, DCOF.
 
     Every case on this floor, whatever its shoe, takes the file with friction.draws_file = "FILE";
-    risk, test and compare then know the reading.
+    risk, test and compare then know the reading. A case takes readings itself with
+    friction.model = "pair_read".
     """
     from underfoot.cli.options import loaded
     from underfoot.core import InputError

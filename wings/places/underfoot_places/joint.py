@@ -60,10 +60,19 @@ class JointDraws:
     def __init__(self, count: int = DRAWS, seed: int = 0, start: PairDraws | None = None) -> None:
         begin = packaged_pair_draws() if start is None else start
         self.count, self.seed = count, seed
-        self.constants = begin.rows(np.arange(count) % begin.count)
+        rows = np.arange(count) % begin.count
+        self.constants = begin.rows(rows)
         self.fewest = float(count)
         self._shares: dict[str, Array] = {}
-        self._errors: dict[str, Array] = {}
+        self._errors = {name: values[rows] for name, values in begin.errors.items()}
+
+    def begin(self, name: str, share: Array) -> None:
+        """Set the draws of ``share`` under a name: what readings before determined."""
+        self._shares[name] = share
+
+    def errors(self) -> dict[str, Array]:
+        """Return the errors that are known, by name."""
+        return dict(self._errors)
 
     def share(self, name: str) -> Array:
         """Return draws between 0 and 1; the same name gives the same."""

@@ -1,12 +1,18 @@
 """Machines that read floors, as devices of the law of the pair: pendulum, ramp, tribometer.
 
-A specimen of known rubber is pressed on the floor and slides; its contact friction is that of any
-sole (``underfoot.friction.pair_contact``) at the machine's pressure and speed, off by the error of
-the machine as by that of a laboratory. The scale turns it into the machine's own number:
+A specimen of known rubber is pressed on the floor and slides. Its contact friction mu_c is that of
+any sole (``underfoot.friction.pair_contact``) at the machine's pressure and speed, off by the error
+of the machine as by that of a laboratory. The edge of a slider is a bearing as well (``Edge``):
+where a film carries the share phi of its load, the machine reads
 
-    pendulum  PTV = 330 mu / (3 + mu)
-    ramp      angle = atan(mu)
-    DCOF      mu
+    mu = (1 - phi) mu_c + eta V / (h p)
+
+The scale turns mu into the machine's own number. A walker on the ramp needs the friction r of a
+half step beside that of the slope:
+
+    pendulum     PTV = 330 mu / (3 + mu)
+    ramp         angle = atan(mu) - atan(r)
+    tribometers  mu
 """
 
 from __future__ import annotations
@@ -25,15 +31,27 @@ from underfoot.case.surfaces import FLOOR_RQ
 from underfoot.core import InputError, RangeError, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent
+from underfoot.film import wedge_load_factor
 from underfoot.friction.pair_contact import Pair
+from underfoot.material import youngs_modulus_gent
+from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
 
 from .joint import JointDraws, Reading, interval
 
 RZ_OVER_RQ = 6.0
 """Rz over Rq of a profile, about (steel of EN ISO 13287 in the catalogue); 4 to 8 are drawn."""
 RZ_SPREAD = (4.0, 8.0)
+ANY_FLOOR_RQ = (0.2e-6, 15e-6)
+"""Rq (m), polished to safety floors, over which a floor is drawn that was read and not measured
+(assumed): the reading tells which it is."""
 ANCHOR_SD = 0.15
 """Standard deviation of ln of an anchor: an indicative band, no reading (assumed)."""
+TAPER = (0.1, 2.0)
+"""(h1 - h0) / h0 of the wedge under a worn edge (assumed; the film is thickest at 1.19)."""
+SMALLEST = 1e-3
+"""COF below which no machine reads."""
+MIDDLE_RQ = 2e-6
+"""Rq (m) of a floor at which the error over roughness of a machine is 0: between its anchors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +112,54 @@ SCALES = {
 
 
 @dataclass(frozen=True, slots=True)
+class Edge:
+    """Worn edge of a slider: load (N), its width across the motion and its length along it (m)."""
+
+    load: float
+    width: float
+    length: tuple[float, float]
+
+    def film(
+        self, pressure: Array, drag: Array, rq: Array, modulus: float, taper: Array
+    ) -> tuple[Array, Array]:
+        """Return the share of the load on the film, 0 to 1, and the gap (m), each (count,).
+
+        The film of a wide wedge and the rough contact carry the load at one mean gap:
+
+            p = 6 eta V l K(m) / h^2 + 0.375 E / (1 - nu^2) exp(-h / (0.5 Rq))
+
+        Parameters:
+            pressure: p, of the edge, Pa.
+            drag: eta V, viscosity times speed, N/m.
+            rq: Of both surfaces together, m.
+            modulus: E of the slider, Pa; nu = 0.5.
+            taper: m = (h1 - h0) / h0 of the wedge.
+
+        Source: Reynolds 1886 (``underfoot.film.wedge_load_factor``); Persson 2007
+        (``underfoot.rough_contact.ExponentialLaw``). The leakage at the sides, below 5 % where the
+        edge is 25 times as wide as long, is left out.
+        """
+        along = self.load / (self.width * pressure)
+        factors = np.array([wedge_load_factor(float(m)) for m in taper])
+        wedge = 6 * drag * along * factors
+        stiff = INTERCEPT_OVER_MODULUS * modulus / 0.75
+        gap, step = np.full_like(pressure, 1e-6), math.log(1e3)
+        for _ in range(50):  # both parts fall with the gap: halve the steps of its logarithm
+            carried = wedge / gap**2 + stiff * np.exp(-gap / (DECAY_OVER_RQ * rq))
+            gap = gap * np.exp(np.where(carried > pressure, step, -step))
+            step /= 2
+        return np.minimum(wedge / gap**2 / pressure, 1.0), gap
+
+
+@dataclass(frozen=True, slots=True)
 class Machine:
     """A machine: specimen, motion, fluids of its standard, scale and classes; SI.
 
     ``anchors`` are (Rz, reading, source) that its offset is learned from, wet with water.
+    ``walker`` is the range of the friction that a walker needs beside that of the slope.
+    ``deviation`` is the standard deviation of ln COF where the law has no reading, as of skin or
+    at 2.8 m/s; ``roughness_deviation`` that of the exponent of Rq there.
+    ``reproducibility`` says how far laboratories differ, with its source.
     """
 
     name: str
@@ -115,6 +177,11 @@ class Machine:
     source: str
     memory: tuple[str, ...]
     note: str
+    reproducibility: str
+    walker: tuple[float, float] = (0.0, 0.0)
+    deviation: float = 0.0
+    roughness_deviation: float = 0.0
+    edge: Edge | None = None
     anchors: tuple[tuple[float, float, str], ...] = ()
     anchored_by: str = ""
 
@@ -130,6 +197,22 @@ class Machine:
             if reading > limit or (reading == limit and (number <= 1 or not self.above)):
                 name = label
         return name
+
+    def fluid_of_standard(self, name: str = "", where: str = "fluid") -> Fluid:
+        """Return a fluid of the machine's standard, by default the first.
+
+        Raises:
+            InputError: No such fluid, or one that the standard does not read.
+        """
+        fluid = machine_fluid(name or self.fluids[0], where)
+        if fluid.name not in self.fluids:
+            raise InputError(
+                f"a {self.title.lower()} does not read {fluid.name}",
+                where=where,
+                allowed=", ".join(self.fluids),
+                remedy=f"Outside {self.standard} the model of the machine is not held to anything",
+            )
+        return fluid
 
     def checked(self, reading: float, where: str) -> float:
         """Return a reading that the machine's scale holds.
@@ -154,19 +237,38 @@ class Machine:
     ) -> Array:
         """Return draws (count,) of the COF that the machine reads on a floor of Rq (m)."""
         pair = Pair(self.shore_a, self.sole_rq, floor_rq, fluid.family)
+        pressure = self._pressure(joint)
         drag = None
         if fluid.viscosity is not None:
             drag = joint.between(f"speed of {self.name}", self.speed) * joint.between(
                 f"viscosity of {fluid.name}", fluid.viscosity
             )
-        return joint.contact_cof(
-            pair,
-            laboratory=self.offset,
-            floor=floor,
-            sole=f"specimen of {self.name}",
-            pressure=joint.between(f"pressure of {self.name}", self.pressure),
-            drag=drag,
+        sole = f"specimen of {self.name}"
+        cof = joint.contact_cof(
+            pair, laboratory=self.offset, floor=floor, sole=sole, pressure=pressure, drag=drag
         )
+        cof = cof * np.exp(self.deviation * joint.normal(f"{self.offset}, untested"))
+        rq = joint.between(f"roughness of floor {floor}", floor_rq)
+        if drag is not None:
+            tilt = self.roughness_deviation * joint.normal(f"{self.offset}, over roughness")
+            cof = cof * (rq / MIDDLE_RQ) ** tilt
+        if self.edge is not None and drag is not None:
+            rough = np.hypot(joint.between(f"roughness of sole {sole}", self.sole_rq), rq)
+            modulus = float(youngs_modulus_gent(self.shore_a))
+            taper = joint.between(f"wedge of {self.name}", TAPER)
+            film, gap = self.edge.film(pressure, drag, rough, modulus, taper)
+            cof = (1 - film) * cof + film * drag / (gap * pressure)
+        if self.walker[1]:
+            low, high = self.walker
+            needed = low + (high - low) * joint.share(f"walker of {self.name}")
+            cof = np.tan(np.arctan(cof) - np.arctan(needed))
+        return np.maximum(cof, SMALLEST)
+
+    def _pressure(self, joint: JointDraws) -> Array:
+        if self.edge is None:
+            return joint.between(f"pressure of {self.name}", self.pressure)
+        length = joint.between(f"edge of {self.name}", self.edge.length)
+        return self.edge.load / (self.edge.width * length)
 
     def learn_anchors(self, joint: JointDraws) -> None:
         """Teach draws the offset of the machine, as far as its anchors tell it."""
@@ -208,6 +310,21 @@ def machines() -> Mapping[str, Machine]:
         low, high = (to_si(end, unit, where=key) for end in entry[key])
         return low, high
 
+    def edge(entry: Mapping[str, Any]) -> Edge | None:
+        if "edge" not in entry:
+            return None
+        table = entry["edge"]
+        load = to_si(table["load"], "N", where="edge.load")
+        width = to_si(table["width"], "m", where="edge.width")
+        return Edge(load, width, span(table, "length", "m"))
+
+    def pressure(entry: Mapping[str, Any]) -> tuple[float, float]:
+        bears = edge(entry)
+        if bears is None:
+            return span(entry, "pressure", "Pa")
+        low, high = (bears.load / (bears.width * end) for end in reversed(bears.length))
+        return low, high
+
     return {
         name: Machine(
             name,
@@ -216,7 +333,7 @@ def machines() -> Mapping[str, Machine]:
             SCALES[entry["scale"]],
             float(entry["shore_a"]),
             span(entry, "sole_rq", "m"),
-            span(entry, "pressure", "Pa"),
+            pressure(entry),
             span(entry, "speed", "m/s"),
             tuple(entry["fluids"]),
             tuple((float(limit), label) for limit, label in entry["classes"]),
@@ -225,6 +342,11 @@ def machines() -> Mapping[str, Machine]:
             entry["source"],
             tuple(entry["memory"]),
             entry.get("note", ""),
+            entry["reproducibility"],
+            tuple(entry.get("walker", (0.0, 0.0))),
+            entry.get("deviation", 0.0),
+            entry.get("roughness_deviation", 0.0),
+            edge(entry),
             tuple(
                 (to_si(one["rz"], "m", where=name), one["reading"], one["source"])
                 for one in entry.get("anchor", ())
@@ -318,6 +440,13 @@ class MachinePrediction(Presentable):
             ("Rq of the specimen, um", _span(m.sole_rq, 1e6), ""),
             ("pressure, kPa", _span(m.pressure, 1e-3), ""),
             ("speed, m/s", _span(m.speed, 1.0), m.note),
+            *([("worn edge, mm", _span(m.edge.length, 1e3), "")] if m.edge else []),
+            *(
+                [("friction of a half step", _span(m.walker, 1.0), "assumed")]
+                if m.walker[1]
+                else []
+            ),
+            ("between laboratories", m.reproducibility, ""),
             *anchors,
             ("from memory, not verified", "; ".join(m.memory), ""),
         ]

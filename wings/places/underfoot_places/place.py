@@ -13,11 +13,16 @@ from underfoot.case import text as toml
 from underfoot.core import InputError, RangeError, to_si, unknown_name
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
+from .calibration import FloorReading
 from .joint import Reading
-from .machines import RZ_OVER_RQ, RZ_SPREAD, Fluid, Machine, machine, machine_fluid
+from .machines import RZ_OVER_RQ, RZ_SPREAD, machine
 
 STEEPEST_SLOPE = math.radians(15.0)
 """Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
+ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
+"""``ANY_FLOOR_RQ`` as a case writes it."""
+LEAST_REGION, MOST_REGION = 2e-3, 90e-3
+"""Sides (m) of a worn region: below, no tread is gone; above, it is larger than a heel."""
 MOTION = "whole_shoe_g6"
 """The setting of the slip tester whose friction the slip model was fitted to."""
 KEYS = {
@@ -27,22 +32,12 @@ KEYS = {
     "floor": ("name", "from", "area", "slope", "rz", "roughness", "fluids", "reading"),
     "floor.reading": ("machine", "value", "kind", "sd", "fluid"),
     "shoe": (
-        "name", "from", "class", "present", "price", "months", "wear_per_month", "reading",
-        "material", "roughness", "heel", "tread", "sole", "outsole", "wear",
+        "name", "from", "class", "present", "price", "months", "wear_per_month",
+        "worn_region", "reading", "material", "roughness", "heel", "tread", "sole", "outsole",
+        "wear",
     ),
     "shoe.reading": ("test", "cof", "kind", "sd"),
 }  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class FloorReading:
-    """What a machine read on a floor."""
-
-    machine: Machine
-    fluid: Fluid
-    value: float
-    kind: str
-    sd: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +63,10 @@ class PlaceFloor:
 
 @dataclass(frozen=True, slots=True)
 class PlaceShoe:
-    """A shoe; ``wear_depth`` (m) is worn off when it is replaced after ``months``."""
+    """A shoe; ``wear_depth`` (m) is worn off when it is replaced after ``months``.
+
+    ``worn_region`` is length and width (m) of the heel without tread that a ruler finds today.
+    """
 
     name: str
     section: Mapping[str, Any]
@@ -76,6 +74,7 @@ class PlaceShoe:
     price: float | None
     months: float | None
     wear_depth: float
+    worn_region: tuple[float, float] | None
     known_class: ShoeClass | None
     readings: tuple[ShoeReading, ...]
 
@@ -112,7 +111,18 @@ class Place:
     def case(self, shoe: PlaceShoe, floor: PlaceFloor, fluid: str, worn: bool = False) -> Case:
         """Return the case of a shoe on a floor under a fluid, as the slip tester slides it."""
         section = dict(shoe.section)
-        if worn:
+        if worn and shoe.worn_region is not None:
+            depth = self.case(shoe, floor, fluid).value("shoe.tread.depth")
+            if not depth:
+                raise InputError(
+                    "a sole without tread has no worn region",
+                    where=f"shoe {shoe.name}.worn_region",
+                    remedy="Name the sole with the tread that it had when new",
+                )
+            along, across = (f"{1e3 * side:.6g} mm" for side in shoe.worn_region)
+            size = {"patch_length": along, "patch_width": across}
+            section["wear"] = {"mode": "patch", "depth": f"{1e3 * depth:.6g} mm", **size}
+        elif worn:
             section["wear"] = {"depth": f"{1e3 * shoe.wear_depth:.6g} mm", "angle": "7 deg"}
         return Case.from_mapping(
             {
@@ -175,7 +185,7 @@ def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
     tasks = tuple(_task(each) for each in people.get("task", [])) or (Task("walking", 1.0, mean),)
     _adds_to_one([task.share for task in tasks], "people.task")
-    return Place(
+    place = Place(
         str(table.get("name", name)),
         floors,
         shoes,
@@ -187,6 +197,27 @@ def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
         if "reported_slips" in people
         else None,
     )
+    _check_cases(place)
+    return place
+
+
+def _check_cases(place: Place) -> None:
+    """Refuse what no case can hold, at the shoe or floor of the place that it stands in."""
+    first, fluid = place.shoes[0], place.fluids()[0]
+    wanted = [(first, floor, each) for floor in place.floors for each in floor.fluids]
+    wanted += [(shoe, place.floors[0], fluid) for shoe in place.shoes[1:]]
+    for shoe, floor, each in wanted:
+        if each == "dry":
+            continue
+        try:
+            place.case(shoe, floor, each, shoe.worn_region is not None)
+        except InputError as error:
+            section, _, rest = (error.where or "").partition(".")
+            rest = f".{rest}" if rest else ""
+            owner = {"floor": f"floor {floor.name}{rest}", "shoe": f"shoe {shoe.name}{rest}"}
+            owner["contaminant"] = f"floor {floor.name}.fluids"
+            parts = {**error.parts, "where": owner.get(section, error.where)}
+            raise InputError(error.what, **parts) from error
 
 
 def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
@@ -289,21 +320,14 @@ def _floor(
     share = _number(entry, "area", where, 1.0, (1e-9, 1e9))
     known = bool(section or readings)
     if not section:
-        section["roughness"] = {}
+        section["roughness"] = ANY_ROUGHNESS if readings else {}
     return PlaceFloor(name, section, share, slope, known, fluids, readings)
 
 
 def _floor_reading(entry: Any, where: str) -> FloorReading:
     _check_keys(entry, "floor.reading", where)
     device = machine(str(entry.get("machine", "")), f"{where}.machine")
-    fluid = machine_fluid(str(entry.get("fluid", device.fluids[0])), f"{where}.fluid")
-    if fluid.name not in device.fluids:
-        raise InputError(
-            f"a {device.title.lower()} does not read {fluid.name}",
-            where=f"{where}.fluid",
-            allowed=", ".join(device.fluids),
-            remedy=f"Outside {device.standard} the model of the machine is not held to anything",
-        )
+    fluid = device.fluid_of_standard(str(entry.get("fluid", "")), f"{where}.fluid")
     value = device.checked(entry.get("value", 0), f"{where}.value")
     kind = str(entry.get("kind", "value"))
     sd = entry.get("sd")
@@ -315,7 +339,9 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
 def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
     name = entry["name"]
     where = f"shoe {name}"
-    own = {"name", "class", "present", "price", "months", "wear_per_month", "reading"}
+    own = {
+        "name", "class", "present", "price", "months", "wear_per_month", "worn_region", "reading",
+    }  # fmt: skip
     section = {key: value for key, value in entry.items() if key not in own}
     months = _number(entry, "months", where, 0.0, (0.1, 240)) if "months" in entry else None
     rate = 0.0
@@ -331,6 +357,7 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
                 where=f"{where}.wear_per_month",
                 allowed="above 0, below 20 mm in all its months",
             )
+    region = _worn_region(entry, where) if "worn_region" in entry else None
     readings = []
     for number, each in enumerate(entry.get("reading", []), start=1):
         at = f"{where}.reading {number}"
@@ -350,12 +377,29 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
         _number(entry, "price", where, 0.0, (0.0, 1e5)) if "price" in entry else None,
         months,
         rate * (months or 0.0),
+        region,
         known,
         tuple(readings),
     )
 
 
+def _worn_region(entry: Mapping[str, Any], where: str) -> tuple[float, float]:
+    at, given = f"{where}.worn_region", entry["worn_region"]
+    if not isinstance(given, list) or len(given) != 2:
+        allowed = 'length along and width across the shoe, as ["30 mm", "25 mm"]'
+        raise InputError(f"{given!r}", where=at, allowed=allowed)
+    if "wear_per_month" in entry:
+        remedy = "Give the one that you measured"
+        raise InputError("stands beside wear_per_month", where=at, remedy=remedy)
+    length, width = (to_si(side, "m", where=at) for side in given)
+    for side in (length, width):
+        if not LEAST_REGION <= side <= MOST_REGION:
+            ends = f"{1e3 * LEAST_REGION:g} mm to {1e3 * MOST_REGION:g} mm"
+            raise RangeError(f"{1e3 * side:g} mm", where=at, allowed=ends)
+    return length, width
+
+
 def same_shoe(first: PlaceShoe, second: PlaceShoe) -> bool:
     """Return whether two shoes differ in name and price alone."""
-    parts = ("section", "wear_depth", "known_class", "readings")
+    parts = ("section", "wear_depth", "worn_region", "known_class", "readings")
     return all(getattr(first, part) == getattr(second, part) for part in parts)

@@ -34,7 +34,7 @@ write the module and its line in ``PAGES``; nothing else names it.
 from __future__ import annotations
 
 from ..session import Page
-from . import answer, compare, design, start, studies, trials
+from . import answer, compare, design, place, start, studies, trials
 
 DESIGN, SAFETY, SCIENCE = "design", "safety", "science"
 """The doors: who comes in. Their words are ``doors.NAME`` in the text files."""
@@ -45,5 +45,6 @@ PAGES = (
     Page(DESIGN, "/answer", "answer.title", "query_stats", answer.build),
     Page(DESIGN, "/compare", "compare.title", "compare", compare.build),
     Page(SAFETY, trials.ROUTE, "trials.title", "directions_walk", trials.build, trials.example),
+    Page(SAFETY, place.ROUTE, "place.title", "storefront", place.build),
     Page(SCIENCE, "/studies", "studies.title", "scatter_plot", studies.build, studies.example),
 )
