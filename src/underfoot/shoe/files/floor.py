@@ -73,7 +73,13 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
         return mesh, None, [f"Assumed: a {what} is part of the sole. If it is a floor or a table, "
                             "cut it with --cut-floor (in a case: cut_floor = true)."]  # fmt: skip
     beside = _within(mesh.triangles.mean(axis=1), seen, ~rest if solid else beyond)
-    cut = beside & in_plane if solid else beside
+    level_with = np.minimum(np.abs(seen.lowest - level), np.abs(seen.highest - level))[rest] <= half
+    if not solid:
+        cut = beside
+    elif np.count_nonzero(level_with) > _SPIKES * level_with.size:
+        cut = beside & in_plane  # land or top of the body lie in the plane
+    else:
+        cut = in_plane
     lost, down = "", None
     apart = _whole_pieces(mesh, in_plane, seen, ~rest)
     if apart.any():
