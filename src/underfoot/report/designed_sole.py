@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 FINEST = 0.4e-3
 """m: side of a fine cell, at most."""
+_ROUNDS = 6
+_NOTHING = 1e-6  # of the largest load: what carries less is left as it is
 _KEPT = 5
 """Cells of the solver across, over which a load is kept where it is."""
 
@@ -76,7 +78,7 @@ class DesignedSole:
         places = [(to - at[0]) / cells.spacing for to, at in
                   ((whole.x, cells.x), (whole.y, cells.y))]  # fmt: skip
         grid = np.meshgrid(*places, indexing="ij")
-        fine = map_coordinates(moved[tuple(nearest)], grid, order=1, mode="nearest")
+        fine = map_coordinates(moved[*np.asarray(nearest)], grid, order=1, mode="nearest")
         return np.where(whole.inside, np.maximum(whole.clearance + fine, 0.0), np.nan)
 
     def field(self, name: str) -> Floats:
@@ -97,13 +99,14 @@ class DesignedSole:
         rows, columns = (np.clip(np.rint(p), 0, n - 1).astype(int) for p, n in
                          zip(self._places(), load.shape, strict=True))  # fmt: skip
         cell = rows[:, None] * load.shape[1] + columns
-        carried = np.bincount(cell.ravel(), np.nan_to_num(pressure).ravel() * area, load.size)
-        wanted, has = (uniform_filter(each, _KEPT, mode="constant")
-                       for each in (load, carried.reshape(load.shape)))  # fmt: skip
-        ratio = np.where(has > 0, wanted / np.where(has > 0, has, 1.0), 1.0)
-        scaled = pressure * ratio.ravel()[cell]
-        total = float(np.nansum(scaled)) * area
-        return scaled * (float(load.sum()) / total) if total > 0 else scaled
+        wanted = uniform_filter(load, _KEPT, mode="constant")
+        for _ in range(_ROUNDS):
+            carried = np.bincount(cell.ravel(), np.nan_to_num(pressure).ravel() * area, load.size)
+            has = uniform_filter(carried.reshape(load.shape), _KEPT, mode="constant")
+            ratio = np.where(has > _NOTHING * has.max(), wanted / np.maximum(has, 1e-300), 1.0)
+            pressure = pressure * uniform_filter(ratio, _KEPT, mode="nearest").ravel()[cell]
+        total = float(np.nansum(pressure)) * area
+        return pressure * (float(load.sum()) / total) if total > 0 else pressure
 
     def _places(self) -> tuple[Floats, Floats]:
         """Return where the fine cells lie among those of the solver, in cells from its first."""
@@ -124,7 +127,7 @@ class DesignedSole:
         i, j = np.floor(rows).astype(int), np.floor(columns).astype(int)
         for a, b in ((0, 0), (0, 1), (1, 0), (1, 1)):
             m, n = i + a, j + b
-            share = np.outer(1 - np.abs(rows - m), 1 - np.abs(columns - n))
+            share = np.outer(*(np.maximum(1 - np.abs(d), 0.0) for d in (rows - m, columns - n)))
             share *= np.outer((m >= 0) & (m < land.shape[0]), (n >= 0) & (n < land.shape[1]))
             at = np.ix_(np.clip(m, 0, land.shape[0] - 1), np.clip(n, 0, land.shape[1] - 1))
             share *= weight[at]

@@ -103,7 +103,7 @@ def _spanned(mask: Mask) -> Mask:
     return mask
 
 
-def _within(points: Array, seen: View, region: Mask) -> Mask:
+def _within(points: NDArray[np.floating], seen: View, region: Mask) -> Mask:
     """Return which points (..., 3) of the file lie over the region."""
     places = np.nan_to_num((points @ seen.axes[:2].T - seen.first) / seen.spacing)
     rows, columns = (
