@@ -20,6 +20,7 @@ _BINS = 400  # over the height: where a plane's area stands out
 _LEVELS = 4  # planes that are looked at, the widest first
 _BEYOND = 0.08, 0.02  # of the plan form of a surface, of a body: what is less is no floor
 _SPIKES = 0.01  # of a plane's faces
+_LEVEL_WITH = 0.2  # of a body's plan form: its land or its top lies in the plane
 _LAND = 0.25  # of the plan form of all else: a plane seen there is land, not what lies behind
 _SPREADS = 4.0  # standard deviations of a plane's noise that are cut
 _LEAST = 1e-4  # of the length
@@ -76,10 +77,10 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     level_with = np.minimum(np.abs(seen.lowest - level), np.abs(seen.highest - level))[rest] <= half
     if not solid:
         cut = beside
-    elif np.count_nonzero(level_with) > _SPIKES * level_with.size:
+    elif np.count_nonzero(level_with) > _LEVEL_WITH * level_with.size:
         cut = beside & in_plane  # land or top of the body lie in the plane
     else:
-        cut = in_plane
+        cut = in_plane | _within(mesh.triangles.mean(axis=1), seen, ~grown(rest, 1))
     lost, down = "", None
     apart = _whole_pieces(mesh, in_plane, seen, ~rest)
     if apart.any():
