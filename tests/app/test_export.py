@@ -4,21 +4,28 @@ import dataclasses
 import json
 import math
 import struct
+from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
 import trimesh
+from scipy.ndimage import binary_dilation
+from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
+from underfoot.case import Case
 from underfoot.cli.app import app
 from underfoot.compute.run import run
+from underfoot.compute.sole import sole_map
 from underfoot.core import DataError, InputError
 from underfoot.core.fields import Fields, from_xarray
+from underfoot.report.designed_sole import FINEST, DesignedSole
 from underfoot.report.drawn_sole import drawn_sole
 from underfoot.report.export import export_result
 from underfoot.report.sole_mesh import sole_mesh
 from underfoot.shoe import Facet, Heel, Tread, WearPlane, heel_surface
+from underfoot.shoe.files import outsole_from_file
 from underfoot.shoe.worn import WornMap, WornPatch
 
 
@@ -31,27 +38,131 @@ def underfoot(*arguments):
     return CliRunner().invoke(app, list(map(str, arguments)))
 
 
-def test_glb_stands_upright_in_metres_with_values_and_colours(worn_shoe_result, tmp_path):
+def exported_loads(path):
+    """Contact and fluid load (N): of each face, or corner, the pressure times the area, summed."""
+    if path.suffix == ".vtu":
+        read = meshio.read(path)
+        table = {name: values[0] for name, values in read.cell_data.items()}
+        names = ("contact_pressure (Pa)", "fluid_pressure (Pa)", "area (m^2)")
+        # the areas are those of the faces seen from below
+        points, quads = read.points, read.cells[0].data
+        seen = np.cross(points[quads[:, 2]] - points[quads[:, 0]],
+                        points[quads[:, 3]] - points[quads[:, 1]])[:, 2] / 2  # fmt: skip
+        known = np.isfinite(table["area (m^2)"])
+        np.testing.assert_allclose(-seen[known], table["area (m^2)"][known], rtol=1e-6)
+    elif path.suffix == ".csv":
+        lines = path.read_text().splitlines()
+        table = dict(zip(lines[0].split(","), np.loadtxt(lines[1:], delimiter=",").T, strict=True))
+        names = ("contact_pressure (Pa)", "fluid_pressure (Pa)", "area (m^2)")
+    elif path.suffix == ".glb":
+        (surface,) = trimesh.load(path, process=False).geometry.values()
+        table = {name: values.ravel() for name, values in surface.vertex_attributes.items()}
+        names = ("_CONTACT_PRESSURE", "_FLUID_PRESSURE", "_AREA")
+        pressure = table["_CONTACT_PRESSURE"][surface.faces[:, 0]]
+        load = pressure @ (surface.area_faces * -surface.face_normals[:, 1])
+        assert load == pytest.approx(pressure_load(table, names[0], names[2]), rel=1e-4)
+    else:
+        raw = trimesh.load(path, process=False).metadata["_ply_raw"]["vertex"]["data"]
+        table = {name: np.asarray(raw[name], float) for name in raw.dtype.names}
+        names = ("contact_pressure", "fluid_pressure", "area")
+    return [pressure_load(table, name, names[2]) for name in names[:2]]
+
+
+def pressure_load(table, pressure, area):
+    return float(np.nansum(np.asarray(table[pressure], float) * np.asarray(table[area], float)))
+
+
+def solved_loads(result):
+    fields = result.fields
+    side = float(np.median(np.diff(fields.x.values)))
+    pairs = (("contact_pressure", "cell_area"), ("fluid_pressure", "cell_film_area"))
+    return [
+        float(np.nansum(fields[one].values * fields[share].values)) * side**2
+        for one, share in pairs
+    ]
+
+
+@pytest.mark.parametrize("kind", ["glb", "ply", "vtu", "csv"])
+def test_pressures_of_an_export_integrate_to_the_load(worn_shoe_result, kind, tmp_path):
+    export_result(worn_shoe_result, tmp_path / f"sole.{kind}")
+    found = exported_loads(tmp_path / f"sole.{kind}")
+    assert found == pytest.approx(solved_loads(worn_shoe_result), rel=1e-4)
+    assert sum(found) == pytest.approx(500.0, rel=5e-3)
+
+
+def scan_of(path, place):
+    """Write a sole's file as a scan: points every 0.5 mm with noise of 30 um, one sheet."""
+    sole = outsole_from_file(path).surface
+    x, y = (np.arange(each[0], each[-1], 0.5e-3) for each in (sole.x, sole.y))
+    nearest = (np.rint((each - of[0]) / sole.spacing).astype(int) for each, of in
+               ((x, sole.x), (y, sole.y)))  # fmt: skip
+    z = sole.height[np.ix_(*nearest)]
+    z = z + np.random.default_rng(4).normal(0, 30e-6, z.shape)
+    points = 1e3 * np.stack([*np.meshgrid(x, y, indexing="ij"), z], axis=-1)
+    a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+    faces = np.concatenate([np.stack([a, c, b], -2), np.stack([a, d, c], -2)]).reshape(-1, 3, 3)
+    faces = faces[np.isfinite(faces).all(axis=(1, 2))]
+    trimesh.Trimesh(faces.reshape(-1, 3), np.arange(len(faces) * 3).reshape(-1, 3)).export(place)
+    return place
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sole", ["parametric", "file", "scan"])
+def test_pressures_of_treads_integrate_to_the_load_and_lugs_end_as_drawn(sole, tmp_path):
+    place = EXAMPLES / "measured" / "heel.stl"
+    if sole == "scan":
+        place = scan_of(place, tmp_path / "scan.stl")
+    case = Case.load(EXAMPLES / "outsoles" / "heel_hexagons_glycerol.toml")
+    if sole != "parametric":
+        shoe = {"from": "work_shoe_half_tread", "outsole": {"file": str(place)}}
+        case = Case.from_mapping(
+            {"shoe": shoe, "floor": "vinyl_g4", "contaminant": "glycerol_90pct",
+             "motion": {"from": "slip_tester_g4"}}
+        )  # fmt: skip
+    result = run(case, quick=True)
+    loads = solved_loads(result)
+    for kind in ("glb", "ply", "vtu", "csv"):
+        export_result(result, tmp_path / f"sole.{kind}")
+        assert exported_loads(tmp_path / f"sole.{kind}") == pytest.approx(loads, rel=5e-3)
+    # ends of lugs: against the same sole on cells of 0.1 mm
+    drawn, truth = DesignedSole.of_case(result.data, case).drawn, sole_map(case, 0.1e-3)
+    assert drawn.spacing <= FINEST
+    edges = [binary_dilation(land) & ~land & known for land, known in
+             ((drawn.land, np.isfinite(drawn.height)), (truth.land, truth.inside))]  # fmt: skip
+    ends = [
+        np.stack([each.x[i], each.y[j]], axis=1)
+        for each, (i, j) in zip((drawn, truth), map(np.nonzero, edges), strict=True)
+    ]
+    away, _ = cKDTree(ends[1]).query(ends[0])
+    assert np.quantile(away, 0.99) < 0.3e-3 + 0.1e-3 / 2
+
+
+def test_a_sole_whose_file_is_gone_is_exported_from_the_cells(worn_shoe_result, tmp_path):
+    text = worn_shoe_result.case_text + '\n[shoe.outsole]\nfile = "/nowhere/sole.stl"\n'
+    gone = dataclasses.replace(worn_shoe_result, case_text=text)
+    written = export_result(gone, tmp_path / "sole.vtu")
+    assert "drawn from the solver's cells" in written.sentence()
+    assert exported_loads(tmp_path / "sole.vtu") == pytest.approx(solved_loads(gone), rel=1e-4)
+
+
+def test_glb_stands_upright_in_metres_with_colours(worn_shoe_result, tmp_path):
     written = export_result(worn_shoe_result, tmp_path / "sole.glb", field="fluid_pressure")
     assert written.length_unit == "m"
     assert written.fields["_FLUID_PRESSURE"] == "Pa"
     (surface,) = trimesh.load(tmp_path / "sole.glb", process=False).geometry.values()
     fields = worn_shoe_result.fields
     inside = fields.inside.values
-    side = float(np.diff(fields.x.values[:2])[0])
     x, y = fields.x.values[inside.any(axis=1)], fields.y.values[inside.any(axis=0)]
     across, up, forward = surface.extents
-    assert forward == pytest.approx(np.ptp(x) + side, rel=1e-6)
-    assert across == pytest.approx(np.ptp(y) + side, rel=1e-6)
+    assert forward == pytest.approx(np.ptp(x) + 2e-3, abs=1.5e-3)
+    assert across == pytest.approx(np.ptp(y) + 2e-3, abs=1.5e-3)
     assert up < min(across, forward)
     assert surface.bounds[0][1] == pytest.approx(0.0, abs=1e-4), "it does not stand on the floor"
     pressure = surface.vertex_attributes["_FLUID_PRESSURE"].ravel()
-    assert pressure.max() == pytest.approx(float(fields.fluid_pressure.max()), rel=1e-6)
-    # the pressure times the area seen from below is the load
-    faces = surface.faces
-    area = surface.area_faces * -surface.face_normals[:, 1]
-    load = float((area * pressure[faces[:, 0]]).sum())
-    assert load == pytest.approx(float(fields.position_fluid_load[0]), rel=2e-3)
+    assert pressure.max() == pytest.approx(float(fields.fluid_pressure.max()), rel=0.05)
     colours = surface.visual.vertex_colors
     rubber = colours[pressure == 0]
     assert (np.ptp(rubber[:, :3].astype(int), axis=1) < 10).all()
@@ -73,21 +184,20 @@ def test_glb_is_a_valid_container(worn_shoe_result, tmp_path):
     assert len(count) == 1
 
 
-def test_vtu_holds_the_fields_cell_by_cell(worn_shoe_result, tmp_path):
+def test_vtu_holds_the_fields_between_those_of_the_cells(worn_shoe_result, tmp_path):
     export_result(worn_shoe_result, tmp_path / "sole.vtu")
     read = meshio.read(tmp_path / "sole.vtu")
+    (area,) = read.cell_data["area (m^2)"]
+    (film,) = read.cell_data["film_thickness (m)"]
+    assert np.isnan(film[~np.isfinite(area)]).all(), "walls carry no field"
     fields = worn_shoe_result.fields
-    inside = fields.inside.values
-    for name, unit in (("contact_pressure", "Pa"), ("film_thickness", "m")):
-        (values,) = read.cell_data[f"{name} ({unit})"]
-        np.testing.assert_array_equal(values[: inside.sum()], fields[name].values[inside])
-        assert np.isnan(values[inside.sum() :]).all(), "walls carry no field"
-    (quads,) = (block.data for block in read.cells if block.type == "quad")
-    middles = read.points[quads[: inside.sum()]].mean(axis=1)
-    x, y = np.meshgrid(fields.x.values, fields.y.values, indexing="ij")
-    np.testing.assert_allclose(middles[:, :2], np.stack([x[inside], y[inside]], axis=1), atol=1e-12)
+    known = fields.film_thickness.values[fields.inside.values]
+    assert np.nanmin(film) >= known.min() * (1 - 1e-6)
+    assert np.nanmax(film) <= known.max() * (1 + 1e-6)
+    assert np.nanmean(film) == pytest.approx(known.mean(), rel=0.02)
 
 
+@pytest.mark.slow
 def test_ply_and_obj_are_in_millimetres_and_say_so(worn_shoe_result, tmp_path):
     for kind in ("ply", "obj"):
         path = tmp_path / f"sole.{kind}"
@@ -100,20 +210,6 @@ def test_ply_and_obj_are_in_millimetres_and_say_so(worn_shoe_result, tmp_path):
         assert b"mm" in path.read_bytes()[:400]
         colours = surface.visual.vertex_colors[:, :3].astype(int)
         assert len(np.unique(colours, axis=0)) > 20
-
-
-def test_csv_has_a_row_a_cell_in_si(worn_shoe_result, tmp_path):
-    export_result(worn_shoe_result, tmp_path / "sole.csv")
-    lines = (tmp_path / "sole.csv").read_text().splitlines()
-    names = lines[0].split(",")
-    inside = worn_shoe_result.fields.inside.values
-    assert len(lines) == 1 + inside.sum()
-    table = np.loadtxt(lines[1:], delimiter=",")
-    pressure = table[:, names.index("fluid_pressure (Pa)")]
-    fields = worn_shoe_result.fields
-    side, area = float(np.diff(fields.x.values[:2])[0]), fields.cell_film_area.values[inside]
-    load = pressure @ area * side**2
-    assert load == pytest.approx(float(fields.position_fluid_load[0]), rel=1e-5)
 
 
 def test_the_pressed_sole_lies_flat_where_it_touches(worn_shoe_case):

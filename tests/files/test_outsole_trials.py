@@ -10,6 +10,7 @@ import trimesh
 import trial_soles as made
 from outsole_bodies import heel_body, sole_body, triangles
 from underfoot.core import DataError, InputError
+from underfoot.shoe._kernels.covering_discs import channel_width
 from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file, outsole_from_mesh
 from underfoot.shoe.files.cad import stated_unit
 from underfoot.shoe.files.read import read_mesh
@@ -154,13 +155,10 @@ def test_print_supports_are_named_and_carry_nothing():
     assert found.surface.land_ratio == pytest.approx(land, abs=0.005)
 
 
-def test_plane_that_is_hardly_larger_is_hinted_at_and_cut_when_asked():
+def test_plane_that_is_hardly_larger_is_cut():
     sole = triangles(sole_body(step=2e-3))
     plane = trimesh.creation.box((292, 100, 0.001)).triangles + np.array([140, 0, -0.5])
-    both = np.concatenate([sole, plane])
-    hinted = read(both, FileSettings(spacing=5e-4, down="-z"))
-    assert "cut it with --cut-floor" in said(hinted)
-    found = read(both, FileSettings(spacing=5e-4, cut_floor=True))
+    found = read(np.concatenate([sole, plane]), FileSettings(spacing=5e-4, cut_floor=True))
     assert "was cut as floor" in said(found)
     whole = read(sole, HALF).surface
     assert found.surface.land_ratio == pytest.approx(whole.land_ratio, abs=0.01)
@@ -322,3 +320,135 @@ def test_outsole_of_a_file_keeps_its_options_in_the_case(tmp_path):
     assert 'solid = "a"' in text
     assert "cut_floor = true" in text
     assert "side" not in text
+
+
+PLAN = made.outline()
+
+
+def plain_sole(plan=PLAN, lugs=made.hexagons):
+    """Triangles (mm) of a slab of 6 mm with lugs of 4 mm, toe at +x, ground at -z."""
+    return made.treaded(plan, lugs(plan), 4.0)[0]
+
+
+@pytest.mark.parametrize("length", [85, 110, 137, 150, 165])
+def test_forepart_is_no_heel_turned_round(length):
+    piece = PLAN.intersection(made.shapely.box(298.5 - length, -200, 400, 200))
+    found = read(plain_sole(piece))
+    assert found.forward == "+x"
+    assert "Assumed: a forepart, cut at its rear" in said(found)
+    assert "--forward flip" in said(found)
+    assert found.foot in ("", "right")
+
+
+@pytest.mark.parametrize("length", [60, 95])
+def test_heel_piece_is_assumed_and_can_be_swapped(length):
+    piece = plain_sole(PLAN.intersection(made.shapely.box(-10, -200, length, 200)))
+    found = read(piece)
+    assert found.forward == "+x"
+    assert "Assumed: a heel piece, cut at its front" in said(found)
+    assert read(piece, FileSettings(spacing=1e-3, forward="flip")).forward == "-x"
+
+
+@pytest.mark.parametrize("height", [10.0, 0.0], ids=("behind the sole", "level with its land"))
+@pytest.mark.parametrize("margin", [40, 5, 0, -5])
+def test_table_plane_at_any_margin_is_cut(margin, height):
+    x0, y0, x1, y1 = PLAN.bounds
+    size = x1 - x0 + 2 * margin, y1 - y0 + 2 * margin, 0.001
+    middle = (x0 + x1) / 2, (y0 + y1) / 2, height
+    plane = trimesh.creation.box(size).triangles + np.array(middle)
+    sole = plain_sole()
+    found, alone = read(np.concatenate([sole, plane])), read(sole)
+    assert "was taken as floor and cut (12 faces)" in said(found)
+    assert (found.down, found.forward, found.foot) == ("-z", "+x", "right")
+    assert found.surface.land_ratio == pytest.approx(alone.surface.land_ratio, abs=1e-3)
+
+
+def scan_on_table(margin, table, tilt=0.0, step=0.8, noise=0.05):
+    """Triangles (mm) of one sheet: the tread up, a table beside it at the height ``table``."""
+    land = made.shapely.union_all(made.hexagons(PLAN)).intersection(PLAN)
+    x0, y0, x1, y1 = PLAN.bounds
+    places = (
+        np.arange(low - margin, high + margin + step, step) for low, high in ((x0, x1), (y0, y1))
+    )
+    x, y = np.meshgrid(*places, indexing="ij")
+    inside, raised = (made.shapely.contains_xy(plan, x, y) for plan in (PLAN, land))
+    z = np.where(raised, 0.0, np.where(inside, -4.0, table))
+    z += np.random.default_rng(1).normal(0, noise, z.shape) + np.tan(np.radians(tilt)) * x
+    p = np.stack([x, y, z], axis=-1)
+    a, b, c, d = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
+    return np.concatenate([np.stack([a, b, c], -2), np.stack([a, c, d], -2)]).reshape(-1, 3, 3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("margin", "tilt"), [(40, 0.0), (10, 0.0), (0, 0.0), (10, 1.5)])
+def test_table_that_a_scan_hangs_together_with_is_cut(margin, tilt):
+    found = read(scan_on_table(margin, -25.0, tilt), HALF)
+    assert "was taken as floor and cut" in said(found)
+    assert found.surface.length == pytest.approx(0.2985, abs=2e-3)
+    alone = read(scan_on_table(0, np.nan), HALF)
+    assert found.surface.land_ratio == pytest.approx(alone.surface.land_ratio, abs=0.02)
+    assert found.foot == alone.foot == "left"
+
+
+def test_table_level_with_the_land_of_a_scan_is_told_and_cut_when_asked():
+    scan = scan_on_table(5, 0.0)
+    told = said(read(scan, HALF))
+    assert "Assumed: a level plane" in told
+    assert "cut_floor = true" in told
+    found = read(scan, FileSettings(spacing=5e-4, cut_floor=True))
+    assert found.surface.length == pytest.approx(0.2985, abs=3e-3)
+
+
+@pytest.mark.parametrize("height", [-1.0, 11.0])
+def test_build_plate_under_a_sole_is_left_out(height):
+    x0, y0, x1, y1 = PLAN.bounds
+    plate = trimesh.creation.box((310, 110, 2)).triangles
+    plate = plate + np.array([(x0 + x1) / 2, (y0 + y1) / 2, height])
+    found = read(np.concatenate([plain_sole(), plate]))
+    assert "is a plate under the sole and was left out" in said(found)
+    assert found.thickness == pytest.approx(10e-3, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [trimesh.creation.box(size).triangles for size in ((300, 100, 100), (280, 100, 30))]
+    + [made.slab(PLAN, 0, 22.0)],
+    ids=("block", "flat block", "midsole"),
+)
+def test_block_or_midsole_is_no_outsole_unless_its_ground_side_is_stated(body):
+    with pytest.raises(DataError, match=r"no tread and is .* mm thick.*--down"):
+        read(body)
+    if np.ptp(body[..., 2]) < 50:
+        found = read(body, FileSettings(spacing=1e-3, down="-z"))
+        assert found.surface.land_ratio == 1.0
+
+
+def test_file_of_a_midsole_alone_is_refused_by_its_name():
+    mesh = {"body": np.zeros(len(plain_sole()), int), "bodies": ("Midsole EVA",)}
+    with pytest.raises(
+        DataError, match=r'no body of the file is an outsole: "Midsole EVA".*--solid'
+    ):
+        read(plain_sole(), **mesh)
+    chosen = FileSettings(spacing=1e-3, solid="midsole")
+    assert read(plain_sole(), chosen, **mesh).surface.length == pytest.approx(0.2985, abs=1e-3)
+
+
+@pytest.mark.parametrize("spacing", [0.25e-3, 0.5e-3])
+@pytest.mark.parametrize("channel", [2.0, 3.0, 4.0])
+def test_channel_is_as_wide_as_drawn_on_every_grid(channel, spacing):
+    piece = PLAN.intersection(made.shapely.box(-10, -200, 60, 200))
+    sole = plain_sole(piece, lambda plan: made.bars(plan, 6.0, channel))
+    found = read(sole, FileSettings(spacing=spacing, down="-z", forward="+x"))
+    assert tread_measures(found.surface).channel_width[1] * 1e3 == pytest.approx(channel, abs=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [0, 15, 30, 45])
+def test_width_of_an_oblique_channel_has_no_bias(degrees):
+    spacing, width = 0.25e-3, 3e-3
+    x, y = np.meshgrid(*(np.arange(160) * spacing,) * 2, indexing="ij")
+    across = x * np.cos(np.radians(degrees)) + y * np.sin(np.radians(degrees))
+    found = []
+    for offset in np.linspace(15e-3, 16e-3, 13)[:-1]:
+        band = np.abs(across - offset) < width / 2
+        found.append(np.median(channel_width(band, spacing)[band]))
+    assert np.mean(found) == pytest.approx(width, abs=spacing / 3)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import DataError, InputError, unknown_name
-from underfoot.core.fields import Fields
+from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.optional import optional_module
 
+from .designed_sole import DesignedSole
 from .drawn_sole import DrawnSole, drawn_sole
-from .quantities import Quantity, drawn, quantities, raw, scale
+from .quantities import AREAS, Quantity, quantities, raw, scale, shown
 from .sole_mesh import SoleMesh, sole_mesh
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 RUBBER = (148, 152, 156, 255)
 """Colour of what carries none of the field, as on the pages."""
+AREA = "area"
+"""The area of a face seen from below: a pressure times it, summed, is the load."""
 WORK = "Writing a sole for other programs"
 
 
@@ -35,12 +37,15 @@ class Exported:
     axes: str
     coloured_by: str
     fields: dict[str, str]
+    remark: str = ""
 
     def sentence(self) -> str:
         """Return what was written in one sentence."""
         fields = ", ".join(f"{name} ({unit})" for name, unit in self.fields.items())
         colours = f"; colours: {self.coloured_by}" if self.coloured_by else ""
-        return f"{self.path}: lengths in {self.length_unit}, {self.axes}; fields: {fields}{colours}"
+        told = f"; {self.remark}" if self.remark else ""
+        lengths = f"lengths in {self.length_unit}, {self.axes}"
+        return f"{self.path}: {lengths}; fields: {fields}{colours}{told}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,7 @@ class _Scene:
     units: dict[str, str]
     colours: NDArray[np.uint8]
     title: str
+    remark: str
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""
@@ -61,8 +67,12 @@ class _Scene:
         return values[self.mesh.cell]
 
     def of_points(self, name: str) -> NDArray[np.float32]:
-        """Return a field (SI) on the corners of the faces; 0 on walls and where there is none."""
-        return np.repeat(np.nan_to_num(self.of_faces(name)), 4).astype(np.float32)
+        """Return a field (SI) on the corners of the faces; 0 on walls and where there is none.
+
+        A corner has a quarter of its face's area.
+        """
+        share = 0.25 if name == AREA else 1.0
+        return np.repeat(share * np.nan_to_num(self.of_faces(name)), 4).astype(np.float32)
 
 
 def export_result(
@@ -100,13 +110,15 @@ def export_result(
     chosen = next((each for each in fields if each.name == field), fields[0])
     if field is not None and chosen.name != field:
         raise unknown_name("field", field, [each.name for each in fields], where="--field")
-    return write(_scene(result, fields, chosen, pressed), path)
+    made = _scene(result, fields, chosen, pressed)
+    return replace(write(made, path), remark=made.remark)
 
 
 def _scene(
     result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
 ) -> _Scene:
-    dataset, sole = result.data, drawn_sole(result.data)
+    dataset = result.data
+    sole, values, remark = _fields(result, [each.name for each in quantities])
     if pressed and sole.pressed is None:
         raise DataError(
             "the result does not hold the shape of the pressed sole",
@@ -114,26 +126,49 @@ def _scene(
             remedy="It was made by an older version: run the case again",
         )
     mesh = sole_mesh(sole, pressed=pressed)
+    units = {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities}
     return _Scene(
         result.name,
         sole,
         mesh,
-        {each.name: sole.placed(raw(dataset, each.name)) for each in quantities},
-        {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities},
-        _colours(dataset, sole, mesh, chosen),
+        values | {AREA: np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)},
+        units | {AREA: "m^2"},
+        _colours(shown(values[chosen.name], chosen), mesh, chosen),
         f"{chosen.title}, {chosen.unit}",
+        remark,
     )
 
 
-def _colours(
-    dataset: Fields, sole: DrawnSole, mesh: SoleMesh, quantity: Quantity
-) -> NDArray[np.uint8]:
+def _fields(
+    result: Result, names: list[str]
+) -> tuple[DrawnSole, dict[str, NDArray[np.float64]], str]:
+    """Return the sole, its fields (SI) and what there is to tell.
+
+    The sole as designed; where its file is gone the solver's cells, on which a pressure is the load
+    over the area of a whole cell.
+    """
+    from underfoot.case import Case
+
+    dataset = result.data
+    try:
+        designed = DesignedSole.of_case(dataset, Case.from_text(result.case_text))
+    except UnderfootError as error:
+        sole = drawn_sole(dataset)
+        kept = {name: raw(dataset, name) for name in names}
+        for name in {*AREAS} & {*names}:
+            if AREAS[name] in dataset:
+                kept[name] = kept[name] * raw(dataset, AREAS[name])
+        remark = f"drawn from the solver's cells, as the sole can't be made: {error}"
+        return sole, {name: sole.placed(field) for name, field in kept.items()}, remark
+    return designed.drawn, {name: designed.field(name) for name in names}, ""
+
+
+def _colours(values: NDArray[np.float64], mesh: SoleMesh, quantity: Quantity) -> NDArray[np.uint8]:
     """Return the colour (RGBA) of every corner, as the page shows the quantity."""
     import matplotlib
 
-    values = drawn(dataset, quantity)
-    limits = scale([values], quantity)
-    shown = np.append(sole.placed(values).ravel(), np.nan)[mesh.cell]
+    limits = scale([values.ravel()], quantity)
+    shown = np.append(values.ravel(), np.nan)[mesh.cell]
     if quantity.logarithmic:
         share = np.log(shown / limits.low) / np.log(limits.high / limits.low)
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -26,9 +27,13 @@ from underfoot.shoe.tread_measures import (
     tread_measures,
 )
 
-from .dispatch import FigureMakers, figures, files
-from .html import new_figure
+from .dispatch import FigureMakers, figures, files, sections
+from .drawn_sole import DrawnSole
+from .html import embedded, new_figure
 from .maps import frame_sole
+from .page import Picture, Section, remark_sections, table_sections
+from .quantities import Quantity
+from .viewer import listed_quantity, pane, scene, scene_section, viewer_script
 from .writing import Writer, data_writers
 
 if TYPE_CHECKING:
@@ -36,6 +41,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _PATCH, _CLOSED = "#e3c16f", "#9a86b8"
+_MOST_CELLS = 120_000  # of the sole in three dimensions
+_DEPTH = Quantity("channel_depth", "Depth of the channels", 1e-3, "mm", "YlGnBu_r")
+_HEIGHT = Quantity("height", "Height above the sole plane", 1e-3, "mm", "cividis")
 PLAN = (1e-4, "cm^2")
 """Unit of a plan form's area."""
 _UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
@@ -173,6 +181,42 @@ def _figures(inspection: OutsoleInspection) -> FigureMakers:
     return {"outsole": partial(outsole_figure, inspection.outsole.surface, inspection.measures)}
 
 
+@sections.register(OutsoleInspection)
+def _sections(
+    inspection: OutsoleInspection, pictures: dict[str, bytes]
+) -> tuple[Sequence[Section], str]:
+    drawn = [Picture(name, embedded(data), True) for name, data in pictures.items()]
+    return [
+        Section("The sole in three dimensions", html=scene_section(outsole_scene(inspection))),
+        Section("Tread, seen from below", pictures=drawn),
+        *table_sections(inspection),
+        *remark_sections(inspection),
+    ], viewer_script()
+
+
+def outsole_scene(inspection: OutsoleInspection) -> dict[str, Any]:
+    """Return the data of the viewer: the sole as it was read, coloured by height and depth."""
+    surface = inspection.outsole.surface
+    every = math.ceil(math.sqrt(surface.height.size / _MOST_CELLS))
+    thinned = (slice(None, None, every), slice(None, None, every))
+    height, land = surface.height[thinned], surface.land[thinned]
+    everywhere = (slice(0, height.shape[0]), slice(0, height.shape[1]))
+    sole = DrawnSole(
+        surface.x[::every], surface.y[::every], every * surface.spacing, height, None, land,
+        everywhere, everywhere,
+    )  # fmt: skip
+    depth = np.where(land, np.nan, channel_depth(surface)[thinned])
+    coloured = {_DEPTH: depth / 1e-3, _HEIGHT: height / 1e-3}
+    shown = pane(
+        surface.name,
+        sole,
+        {quantity.name: values for quantity, values in coloured.items()},
+        outline=[[float(f"{v:.5g}") for v in point] for point in surface.outline],
+        histories={},
+    )
+    return scene([shown], [listed_quantity(q, [values]) for q, values in coloured.items()])
+
+
 @files.register(OutsoleInspection)
 def _files(inspection: OutsoleInspection) -> dict[str, Writer]:
     return data_writers(inspection) | {"heights.csv.gz": inspection.write_heights}
@@ -265,9 +309,10 @@ sha256 = "{sha256}"
 
 [shoe.sole]
 outsole_thickness = {thickness}
-# [shoe.sole.midsole]
-# modulus = "2 MPa"
-# thickness = "15 mm"
+
+[shoe.sole.midsole]             # assumed, a file of an outsole holds none: foam; set your own
+modulus = "2 MPa"
+thickness = "15 mm"
 
 # [shoe.wear]                   # how far it is worn: ground off at one angle
 # depth = "1 mm"
@@ -316,5 +361,5 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
         settings="\n".join(lines),
         thickness='"15 mm"  # not in the file: set your own'
         if thickness is None
-        else f'"{thickness * 1e3:.3g} mm"  # as in the file',
+        else f'"{thickness * 1e3:.3g} mm"  # with the lugs, as in the file',
     )

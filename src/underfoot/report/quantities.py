@@ -32,7 +32,8 @@ _LOADS = {
     "fluid_pressure": "the load per area that the fluid carries",
 }
 """Pressures whose integral over the sole is a load, and what they say to a designer."""
-_AREAS = {"contact_pressure": "cell_area", "fluid_pressure": "cell_film_area"}
+AREAS = {"contact_pressure": "cell_area", "fluid_pressure": "cell_film_area"}
+"""What a cell stands for of each pressure, in cells."""
 _UNLOADED = 1e-3
 """Stress below this share of its peak is drawn as none."""
 _PEAK_RATIO = 1.5
@@ -87,8 +88,12 @@ def drawn(dataset: Fields, quantity: Quantity) -> NDArray[np.float64]:
 
     A stress below 1e-3 of its peak counts as none.
     """
-    values = np.where(inside(dataset), raw(dataset, quantity.name), np.nan) / quantity.factor
-    values[~np.isfinite(values)] = np.nan
+    return shown(np.where(inside(dataset), raw(dataset, quantity.name), np.nan), quantity)
+
+
+def shown(field: NDArray[np.float64], quantity: Quantity) -> NDArray[np.float64]:
+    """Return values (SI) in the shown unit, nan where a stress is below 1e-3 of its peak."""
+    values = np.where(np.isfinite(field), field, np.nan) / quantity.factor
     if quantity.stress and np.nanmin(values, initial=0.0) >= 0.0:
         values[values <= _UNLOADED * np.nanmax(values, initial=0.0)] = np.nan
     return values
@@ -104,7 +109,7 @@ def carried_load(dataset: Fields, quantity: Quantity) -> float | None:
     if quantity.name not in _LOADS:
         return None
     pressure = np.where(inside(dataset), raw(dataset, quantity.name), 0.0)
-    area = _AREAS[quantity.name]
+    area = AREAS[quantity.name]
     cells = raw(dataset, area) if area in dataset else 1.0  # older results count whole cells
     return float((pressure * cells).sum()) * spacing(dataset) ** 2
 

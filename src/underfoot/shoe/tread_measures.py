@@ -7,7 +7,7 @@ import numpy as np
 
 from underfoot.core.arrays import Array, Mask
 
-from ._kernels.covering_discs import covering_value, local_width
+from ._kernels.covering_discs import channel_width, covering_value, local_width
 from ._kernels.regions import (
     Labels,
     carried_on,
@@ -35,7 +35,6 @@ WIDEST_CHANNEL = 50e-3
 _ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
 _SLOPE_REACH = 0.5e-3  # m
 _GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
-_FINE = 0.4e-3  # m
 _REACHED = 30e-6  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
 QUIET = 15e-6
@@ -258,10 +257,7 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     depth = width = drained = None
     sipe_count, sipe_length = 0, 0.0
     if channel.any():
-        # a coarse map is halved: in cells across, widths come in steps of one
-        finer = 2 if spacing > _FINE else 1
-        cells = np.repeat(np.repeat(channel, finer, axis=0), finer, axis=1)
-        widths = local_width(cells, spacing / finer)[::finer, ::finer]
+        widths = channel_width(channel, spacing)
         counted = channel & (widths <= WIDEST_CHANNEL)
         counted = counted if counted.any() else channel
         floor = floor_depth(channel_depth(surface), channel)

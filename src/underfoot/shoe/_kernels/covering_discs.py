@@ -22,6 +22,17 @@ def local_width(region: Mask, spacing: float) -> Array:
     return np.where(region, np.maximum(2 * radius - 0.5, 1.0) * spacing, 0.0)
 
 
+def channel_width(region: Mask, spacing: float) -> Array:
+    """Return ``local_width`` from halved cells, which has no bias: w(c) = max { 2 d(m) }.
+
+    Halved, a channel is an even number of cells across, so that its middle lies half a (halved)
+    cell from a cell's, as far as d reaches beyond its edge. Along the cells exact for whole cells,
+    at other angles within a third of a cell of ``spacing``.
+    """
+    halved = np.repeat(np.repeat(region, 2, axis=0), 2, axis=1)
+    return local_width(halved, spacing / 2)[::2, ::2] + np.where(region, spacing / 4, 0.0)
+
+
 def covering_value(region: Mask, values: Array) -> Array:
     """Return, per cell of ``region``, the value at the middle of the largest disc in it over it."""
     _, middle = _covering_discs(np.pad(distance_within(region), 1))

@@ -33,6 +33,7 @@ _PARTED = 0.3  # of two bodies' heights that don't overlap: less is bodies that 
 _SHEET = 1e-3  # of the length: a body thinner than it is a surface
 _CLEAR, _CLEARER = 0.03, 1.5  # share of channels that tells the ground's side, and its ratio
 _COARSE = 300  # cells along a body
+_BOX, _PLATE = 1e-3, 0.2  # of a box's surface; height of a plate over its width
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +95,9 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     keep, told = _named(bodies, settings, where)
     remarks += told
     others = ~keep
-    keep, told = _without_supports(bodies, keep)
-    remarks += told
+    for without in (_without_supports, _without_plates):
+        keep, told = without(bodies, keep)
+        remarks += told
     down = None
     if settings.solid is None:
         pair = _pair(bodies, keep)
@@ -163,6 +165,21 @@ def _refuse_unknown(mesh: Mesh, settings: FileSettings, where: str) -> None:
     names = [name or "body 1" for name in mesh.bodies[:1]]
     if settings.solid is not None and not _matching(tuple(names), settings.solid).any():
         raise unknown_name("body", settings.solid, names, where=where)
+    if settings.solid is None and names and _other(names[0]):
+        raise _no_outsole(names, where)
+
+
+def _other(name: str) -> bool:
+    """Return whether a name tells another part of a shoe."""
+    return bool(OTHER_NAMES.search(name)) and not _PLAINLY.search(name)
+
+
+def _no_outsole(names: list[str], where: str) -> DataError:
+    return DataError(
+        f"by its name no body of the file is an outsole: {_listed(names)}",
+        where=where,
+        remedy=f'Export the outsole; or choose a body by its name, --solid "{names[0]}"',
+    )
 
 
 def _matching(names: tuple[str, ...], wanted: str) -> Mask:
@@ -181,14 +198,15 @@ def _named(bodies: _Bodies, settings: FileSettings, where: str) -> tuple[Mask, l
             named = {name for name, is_there in zip(bodies.names, sized, strict=True) if is_there}
             raise unknown_name("body", settings.solid, named, where=where)
         return keep, [_taken(bodies, keep, sized, "as chosen")]
-    plainly = np.array([bool(_PLAINLY.search(name)) for name in bodies.names])
-    other = np.array([bool(OTHER_NAMES.search(name)) for name in bodies.names]) & ~plainly
+    other = np.array([_other(name) for name in bodies.names])
     by_name = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
     if (by_name & sized).any():
         if (sized & ~by_name).any():
             return by_name & sized, [_taken(bodies, by_name & sized, sized, "by name")]
         return sized, []
-    if (other & sized).any() and (sized & ~other).any():
+    if sized.any() and not (sized & ~other).any():
+        raise _no_outsole([n for n, t in zip(bodies.names, sized, strict=True) if t], where)
+    if (other & sized).any():
         return sized & ~other, [_taken(bodies, sized & ~other, sized, "by the others' names")]
     return sized, []
 
@@ -228,6 +246,22 @@ def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
         f"{size[slender, :2].max():.3g} thick, {'the first ' if count > 1 else ''}at ({place}) in "
         "the file, left out."
     ]
+
+
+def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+    """Return the bodies without flat boxes as large as the rest: a build plate, a table."""
+    length, width, height = bodies.size.T
+    box = 2 * (length * width + (length + width) * height)
+    plates = keep & (np.abs(bodies.area - box) < _BOX * box) & (height < _PLATE * width)
+    # loose lugs are no sole without the plate that they stand on
+    others = bodies.size[keep & ~plates, :2].max(axis=0, initial=0.0)
+    plates &= (others > _BIG[1] * bodies.size[:, :2]).all(axis=1)
+    plates &= (bodies.size[:, :2] > _BIG[1] * others).all(axis=1)
+    if not plates.any():
+        return keep, []
+    rest = keep & ~plates
+    return rest, [f"Assumed: {_listed([n for n, p in zip(bodies.names, plates, strict=True) if p])}"
+                  " is a plate under the sole and was left out."]  # fmt: skip
 
 
 def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:

@@ -22,6 +22,8 @@ STANDING = 0.35
 """Share of the plan form that is level with the floor under a shoe with its upper."""
 TOUCHING = 0.08
 """The same under anything."""
+THICK = 12e-3
+"""An outsole without tread is no thicker where both its sides look alike, m."""
 MOST_OPEN = 0.15
 """Share of holes in the plan form."""
 ROUGHEST = 0.5e-3
@@ -71,6 +73,23 @@ def check_surface(sound: Soundness, where: str) -> None:
     if sound.open_edges == 3 * (sound.faces - sound.degenerate - sound.not_finite):
         several = "no two of its faces share an edge, they make no surface"
         raise _no_sole(several if sound.faces > 1 else "it is one triangle", where)
+
+
+def check_tread(shape: Shape, has_tread: bool, where: str) -> None:
+    """Refuse a thick body without tread of which nothing tells the ground side.
+
+    Raises:
+        DataError: A block or a midsole, with the remedy for an outsole without tread.
+    """
+    if not has_tread and shape.thickness > THICK:
+        raise DataError(
+            f"it has no tread and is {shape.thickness * 1e3:.3g} mm thick, as a midsole or a block "
+            "is, and both its sides look alike",
+            where=where,
+            allowed=f"a tread, or at most {THICK * 1e3:g} mm",
+            remedy='If it is an outsole without tread, state its ground side: --down "-z" (in a '
+            'case: down = "-z")',
+        )
 
 
 def _no_sole(reason: str, where: str) -> DataError:

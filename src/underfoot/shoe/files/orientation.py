@@ -12,7 +12,7 @@ from .._kernels.covering_discs import local_width
 from .._kernels.regions import shrunk, without_specks
 from .._kernels.rolling import rolled_base
 from ..tread_measures import ROLLING_RADIUS, STEEPEST_RIM, WIDEST_CHANNEL, tread_map
-from .settings import DIRECTIONS, FileSettings
+from .settings import DIRECTIONS, HEEL, FileSettings
 from .view import View, extents, view
 
 _COARSE = 300  # cells along a body that is looked at from four sides
@@ -25,6 +25,9 @@ _RIM_RISE = 0.5e-3  # m by which a ground side's rim must turn up more than the 
 _SHEET = 0.05e-3  # m between both sides: a scan of one side
 OFF_CENTRE = 0.005
 """Of the length: a centroid less off the middle decides nothing."""
+_WHOLE = 2.2  # lengths over width: a longer plan form has both ends of a sole
+_WIDEST_HEEL = 0.085  # m
+_CUT_PLACES, _CUT = (4e-3, 16e-3), 0.8  # m from an end; width there over that farther in
 _BEND = 0.006  # of the length
 _BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
 _NEAR_FLOOR = 2e-3  # m
@@ -216,23 +219,55 @@ def _rim_rise(height: Array) -> float:
     return float(np.percentile(height[ring], 20) - np.percentile(height[core], 20))
 
 
-def toe_end(plan: Mask, settings: FileSettings) -> Choice:
+def toe_end(plan: Mask, spacing: float, settings: FileSettings) -> Choice:
     """Return whether the toe is at the far end of axis 0 (1) or at the near one (-1).
 
-    The toe side is the heavier one: the area's centroid lies beyond the middle, both on a whole
-    sole (the forepart is broader) and on a heel piece (its rear is rounded).
+    The toe side of a whole sole is the heavier one: the forepart is broader, so the area's centroid
+    lies beyond the middle. A piece with one end cut straight is a heel or a forepart, which its
+    form doesn't tell: wider than 85 mm or longer than 110 mm it is assumed to be a forepart.
+
+    Parameters:
+        plan: The plan form on cells of ``spacing`` (m).
     """
     if settings.forward in DIRECTIONS:
         return Choice(1, "")
-    offset = off_centre(plan, 0)
+    choice = _toe_end(plan, spacing)
     if settings.forward == "flip":
-        return Choice(-1 if offset > 0 else 1, "Heel end: swapped by the option forward = flip.")
-    if abs(offset) < OFF_CENTRE:
-        return Choice(1, "Assumed: which end is the heel; both look alike.")
+        return Choice(-choice.sign, "Heel end: swapped by the option forward = flip.")
+    return choice
+
+
+def _toe_end(plan: Mask, spacing: float) -> Choice:
+    remedy = '; forward = "flip" (--forward flip) swaps heel and toe.'
+    length, width = (np.ptp(np.nonzero(plan)[n]) * spacing for n in (0, 1))
+    cut = cut_ends(plan, 0, spacing)
+    offset = off_centre(plan, 0)
+    if cut[0] != cut[1] and length < _WHOLE * width:
+        forepart = width > _WIDEST_HEEL or length > HEEL[1]
+        kind = "forepart, cut at its rear" if forepart else "heel piece, cut at its front"
+        size = f"{length * 1e3:.0f} x {width * 1e3:.0f} mm"
+        return Choice(
+            1 if cut[0] == forepart else -1, f"Assumed: a {kind}, by its size of {size}{remedy}"
+        )
+    if abs(offset) < OFF_CENTRE or all(cut):
+        return Choice(
+            1 if offset >= 0 else -1, f"Assumed: which end is the heel; both look alike{remedy}"
+        )
     return Choice(
         1 if offset > 0 else -1,
         "Heel end: determined from the plan form, which is rounder or narrower there.",
     )
+
+
+def cut_ends(plan: Mask, axis: int, spacing: float) -> tuple[bool, bool]:
+    """Return whether the near and the far end along ``axis`` are cut straight, not rounded.
+
+    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it.
+    """
+    widths = np.trim_zeros(plan.sum(axis=1 - axis))
+    near, far = (min(round(place / spacing), widths.size - 1) for place in _CUT_PLACES)
+    low, high = (bool(each[near] > _CUT * each[far]) for each in (widths, widths[::-1]))
+    return low, high
 
 
 def off_centre(plan: Mask, axis: int) -> float:

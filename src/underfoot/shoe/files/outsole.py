@@ -24,7 +24,7 @@ from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
 from .mesh import Mesh
-from .no_sole import TALL, Shape, check_sole, check_surface
+from .no_sole import TALL, Shape, check_sole, check_surface, check_tread
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
@@ -165,22 +165,23 @@ def _outsole(
         remarks.append("Mirrored: the other shoe of the pair.")
     lag = _lag(mesh, unit, chosen.spacing)
     low, high = extents(mesh.triangles, axes)
-    check_sole(
-        Shape(
-            height=height,
-            spacing=seen.spacing,
-            thickness=float(np.median(thickness[np.isfinite(height)])),
-            tallness=float(high[2] - low[2]),
-            standing=orientation.standing_share(height, seen.spacing),
-            noise=height_noise(height),
-        ),
-        where,
+    shape = Shape(
+        height=height,
+        spacing=seen.spacing,
+        thickness=float(np.median(thickness[np.isfinite(height)])),
+        tallness=float(high[2] - low[2]),
+        standing=orientation.standing_share(height, seen.spacing),
+        noise=height_noise(height),
     )
+    check_sole(shape, where)
     height, part, region_remarks = _region(height, seen.spacing, chosen, where)
     thickness = thickness[part]
     remarks += region_remarks
     surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
+    alike = any(each.startswith("Assumed: the ground side") for each in side_remarks)
+    if alike and whole_length > HEEL[1]:
+        check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
     body = float(np.median(thickness[surface.land]))
     return FileOutsole(
         surface=replace(surface, remarks=tuple(remarks)),
@@ -229,9 +230,12 @@ def _sides(
     square = max(size) < _NEARLY_SQUARE * min(size)
     free = chosen.forward not in DIRECTIONS and square
     offsets = [abs(orientation.off_centre(plan, axis)) for axis in (0, 1)]
-    if free and offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE):
+    # one straight end is the cut of a piece
+    cut = [len(set(orientation.cut_ends(plan, axis, coarse))) == 2 for axis in (0, 1)]
+    plainly = offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE)
+    if free and (cut[1] if cut[0] != cut[1] else plainly):
         along, across, plan = across, -along, plan.T[:, ::-1]
-    toe = orientation.toe_end(plan, chosen)
+    toe = orientation.toe_end(plan, coarse, chosen)
     if toe.sign < 0:
         along, across = -along, -across
     turned = np.stack([along, across, thin])

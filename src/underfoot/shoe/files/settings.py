@@ -31,7 +31,7 @@ class FileSettings:
         spacing: Of the height map, m.
         solid: Name of the body that is the outsole; None to find it.
         side: Which shoe of a pair in one file, "left" or "right"; "auto" refuses a pair.
-        cut_floor: Cut a plane of floor that reaches hardly beyond the sole.
+        cut_floor: Cut a plane that reaches beyond the sole even where it may be its land.
     """
 
     unit: str = "auto"
@@ -129,7 +129,7 @@ def length_unit(
             where=where,
             allowed="110 to 350 mm for a sole or forepart, 40 to 110 mm for a heel piece",
             remedy="State the unit if the length is right, or check that the file holds one "
-            "outsole alone",
+            "outsole alone; --cut-floor cuts a table",
         )
     name = likely[0]
     metres = length * UNITS[name]
@@ -152,12 +152,13 @@ def length_unit(
 
 def _likely(length: float, width: float) -> list[str]:
     ranges = (SOLE, PIECE, HEEL) if length > SLENDER * width else (HEEL, PIECE, SOLE)
-    return [
+    likely = [
         name
         for low, high in ranges
         for name in ("mm", "m", "inch", "cm")
         if low <= length * UNITS[name] <= high
     ]
+    return list(dict.fromkeys(likely))
 
 
 def likely_unit(length: float, width: float) -> float:
