@@ -42,6 +42,8 @@ from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
 
 DRAWS_KEPT = 2000
 """Of a posterior."""
+ROUNDS = 12
+"""Most rounds of the sampler before its last."""
 FREEDOM = 5.0
 """Degrees of freedom of the sampler's proposals."""
 DRAWS = 8
@@ -390,10 +392,13 @@ def fitted(
     def log_posterior(points: Array) -> Array:
         theta, ln_spread = np.split(points, [count], axis=1)
         value = -0.5 * (((theta - prior[:, 0]) / prior[:, 1]) ** 2).sum(axis=1)
-        spread = np.exp(ln_spread)
+        outside = (np.abs(ln_spread + 1.5) > 2.5).any(axis=1)
+        outside |= (np.abs(theta - prior[:, 0]) > 6 * prior[:, 1]).any(axis=1)
+        # the mode is looked for out there too
+        spread = np.exp(np.clip(ln_spread, -4.0, 1.0))
+        theta = np.clip(theta, *(prior[:, 0] + end * prior[:, 1] for end in (-6, 6)))
         value -= 0.5 * ((ln_spread[:, 0] - _L(SD_SOURCE)) / 0.35) ** 2
         value += (ln_spread[:, 1:] - 0.5 * (spread[:, 1:] / SPREAD_PRIOR[1:]) ** 2).sum(axis=1)
-        outside = (ln_spread < -4).any(axis=1)
         mean, variance = rows.predicted(law, theta)
         weight = np.zeros_like(mean)
         if law.dry is not None:
@@ -429,7 +434,8 @@ def _sampled(
     """Return points (size, dimensions) of a density and their weights, which add up to 1.
 
     From the mode, which lies near ``first`` on the scale ``width``, a Student t of five degrees
-    of freedom takes mean and covariance of the weighted points, round after round.
+    of freedom takes mean and covariance of the weighted points, round after round, until they are
+    worth a twentieth of their number.
     """
     step = 1e-3 * width
 
@@ -441,7 +447,10 @@ def _sampled(
     best = minimize(slope, first / width, jac=True, method="BFGS", options={"gtol": 0.05})
     mean, covariance = best.x, 1.3 * np.atleast_2d(best.hess_inv)
     points, weight = np.empty(0), np.empty(0)
-    for count in (size // 4, size // 4, size // 4, size):
+    count = size // 4
+    for number in range(ROUNDS + 1):
+        settled = number == ROUNDS or (weight.size > 0 and 1 / (weight**2).sum() > count / 20)
+        count = size if settled else count
         lower = np.linalg.cholesky(covariance + 1e-6 * np.eye(mean.size))
         normal = generator.normal(size=(count, mean.size))
         tails = np.sqrt(FREEDOM / generator.chisquare(FREEDOM, size=(count, 1)))
@@ -457,6 +466,8 @@ def _sampled(
         tempered /= tempered.sum()
         mean = tempered @ points
         covariance = (points - mean).T @ (tempered[:, None] * (points - mean))
+        if settled:
+            break
     return points * width, weight
 
 
