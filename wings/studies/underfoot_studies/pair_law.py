@@ -466,6 +466,7 @@ def _sampled(
 
     best = minimize(slope, first / width, jac=True, method="BFGS", options={"gtol": 0.05})
     mean, covariance = best.x, 1.3 * np.atleast_2d(best.hess_inv)
+    points, weight = np.empty(0), np.empty(0)
     settled = False
     for number in range(ROUNDS):
         count = size if settled else size // 4
