@@ -35,8 +35,9 @@ def test_every_packaged_source_has_its_reference_and_computable_conditions():
     assert len(sources) >= 20
     assert len({source.reference for source in sources}) == len(sources)
     conditions = [condition for source in sources for condition in source.conditions]
-    assert len(conditions) >= 90
-    assert len({condition.laboratory for condition in conditions}) >= 18
+    assert len(conditions) >= 190
+    assert len({condition.laboratory for condition in conditions}) >= 30
+    assert sum(not c.members and c.fluid == "dry" for c in conditions) >= 50
     for condition in conditions:
         for member in condition.members or (condition,):
             assert {"shore_a", "sole_rq", "floor_rq", "speed"} <= set(member.numbers), condition.id
@@ -81,6 +82,13 @@ def test_a_fit_over_speed_becomes_readings_at_its_speeds():
     assert water == pytest.approx([0.6737, 0.5979, 0.4280], abs=2e-4)
 
 
+def test_a_pendulum_value_is_read_as_test_houses_convert_it(tmp_path):
+    for ptv, cof in ((31, 0.31), (36, 0.37), (50, 0.54), (82, 1.00)):
+        text = GOOD.replace("cof = 0.2, sd = 0.02", f'cof = "{ptv} PTV"')
+        reading = read_source(written(tmp_path, text)).conditions[0].reading
+        assert reading.low == reading.high == pytest.approx(cof, abs=0.01)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -93,6 +101,8 @@ def test_a_fit_over_speed_becomes_readings_at_its_speeds():
         ('"aqueous"', '"glycerin"', 'unknown fluid "glycerin"'),
         ('kind = "value"', 'kind = "vale"', 'Did you mean "value"'),
         ("cof = 0.2, ", "", "cof missing"),
+        ("cof = 0.2", 'cof = "36"', "is no friction"),
+        ("cof = 0.2", 'cof = "330 PTV"', "150 PTV"),
         ('["2 um", "8 um"]', '["8 um", "2 um"]', "does not ascend"),
         ("measured =", "measurd =", "nothing was measured"),
         ('id = "first"\n', "", "has no id"),

@@ -7,6 +7,7 @@ far as the readings go; other pairs of the same laboratory profit too, other tre
 are alike. A reading has an error of its own, as fitted between the sources, which teaches nothing.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -63,6 +64,10 @@ class PairReading:
     sd: float | None = None
     kind: str = "value"
 
+    def __str__(self) -> str:
+        """Return "0.24" or "at least 0.31"."""
+        return {"lower": "at least ", "upper": "at most "}.get(self.kind, "") + f"{self.cof:.3g}"
+
     def log_weight(self, cof: Array, error: Array) -> Array:
         """Return the logarithm of the likelihood of the reading at predicted COF (draws,).
 
@@ -108,7 +113,19 @@ class PairCalibration(Presentable):
             "It was taken from "
             + ", ".join(f"{name} ({then:.2f} to {now:.2f})" for name, then, now in self._taken())
             + " (standard deviations of logarithms). Another tread keeps its own error.",
+            *self._missed(),
         )
+
+    def _missed(self) -> list[str]:
+        """Return each reading that lies outside what all readings together leave."""
+        return [
+            f"{reading} of {reading.case.name} lies outside what all readings together leave "
+            f"({low:.3f} to {high:.3f}): it contradicts the others or the law, and one of smaller "
+            "scatter weighs more. Check it before you use the file."
+            for reading, (low, _, high) in zip(self.readings, self.after, strict=True)
+            if (reading.kind != "upper" and reading.cof > high)
+            or (reading.kind != "lower" and reading.cof < low)
+        ]
 
     def _taken(self) -> list[tuple[str, float, float]]:
         """Return the errors that the readings made smaller, the most first."""
@@ -127,8 +144,7 @@ class PairCalibration(Presentable):
         rows = [
             (
                 reading.case.name,
-                {"lower": "at least ", "upper": "at most "}.get(reading.kind, "")
-                + f"{reading.cof:.3g}",
+                str(reading),
                 *("{1:.3f} ({0:.3f} to {2:.3f})".format(*row) for row in (before, after)),
             )
             for reading, before, after in zip(self.readings, self.before, self.after, strict=True)
@@ -200,9 +216,18 @@ def calibrated_pair(
         seed: Of the draws.
 
     Raises:
-        InputError: A case that is dry or has another law of friction; readings so far from the law
-            that fewer than 50 effective draws are left.
+        InputError: A case that is dry or has another law of friction; bounds of one case that
+            exclude each other; readings so far from the law that fewer than 50 effective draws are
+            left.
     """
+    for low, high in itertools.permutations(readings, 2):
+        bounds = (low.kind, high.kind) == ("lower", "upper") and low.cof > high.cof
+        if bounds and low.case.hash == high.case.hash:
+            raise InputError(
+                f"{low} and {high} of {low.case.name} exclude each other",
+                where="READINGS",
+                remedy="Take out the bound that is wrong, or give each the case it was read in",
+            )
     start = packaged_pair_draws() if draws is None else draws
     wide = start.rows(np.tile(np.arange(start.count), REPEATS))
     laws: list[PairContactLaw] = []

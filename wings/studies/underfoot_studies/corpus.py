@@ -52,6 +52,8 @@ STEPS, QUICK_STEPS = 400, 150
 """A fifth of the sampler's points."""
 LAW, PRIORS, REPORT = "pair", "pair, priors alone", "report"
 """REPORT is the laboratory of the report's own studies; everybody else is scored beside all."""
+OWN_FORMS = (LAW, PRIORS, "pair, dry area to a power")
+"""Not rivals of the law: itself, and a form of it that cases do not use."""
 QUICK_LAWS = ("one constant", *FEATURE_RIVALS, PRIORS, LAW)
 QUICK_SOURCES = ("khaday_2021", "li_2006", "mohamed_2011", "report_g6", "strobel_2012")
 """Whose effects and whole shoes the quick form computes."""
@@ -114,7 +116,7 @@ def compute(options: Options) -> Computed:
     keys = [content_hash(asdict(split), content) for split in splits]
     results: dict[tuple[str, str], LaboratoryScore] = {}
     fits = part(options.progress, 0.0, 0.5)
-    work = cached_arrays("corpus-3", draws_of, splits, keys, processes=options.processes)
+    work = cached_arrays("corpus-4", draws_of, splits, keys, processes=options.processes)
     for number, (split, arrays) in enumerate(work, start=1):
         fits("leaving one laboratory out", number / len(splits))
         own = tuple(c for c in conditions if c.laboratory == split.laboratory)
@@ -130,9 +132,10 @@ def compute(options: Options) -> Computed:
     posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
     own = [results[LAW, one] for one in laboratories]
     (best, whole_best) = scores[LAW]
-    rivals = [pair[0] for name, pair in scores.items() if name not in (LAW, PRIORS)]
+    rivals = [pair[0] for name, pair in scores.items() if name not in OWN_FORMS]
     sources, highest_prior = _sources(own, [results[PRIORS, one] for one in laboratories])
     after, known = _after(own)
+    width, inside_known = _where_known(own)
     sides, shoes = _compared(options)
     effects, shares = _effects(sides)
     whole, inside = _whole(shoes)
@@ -149,7 +152,8 @@ def compute(options: Options) -> Computed:
                 f"others.{name}": Quantity.of(getattr(best, name))
                 for name in ("r2", "inside_50", "inside_95")
             },
-            "pair.width": Quantity.of(_width_where_known(own)),
+            "pair.width": Quantity.of(width),
+            "pair.inside_known": Quantity.of(inside_known),
             "others.above_rivals": Quantity.of(best.r2 - strongest.r2),
             "others.gain": Quantity.of(best.log_density - max(one.log_density for one in rivals)),
             "priors.r2": Quantity.of(highest_prior),
@@ -384,16 +388,22 @@ def _scores(scores: Mapping[str, tuple[CorpusScore, CorpusScore]]) -> Table:
     )
 
 
-def _width_where_known(left_out: list[LaboratoryScore]) -> float:
-    """Return the 95 % interval, a factor, of wet readings with roughness of both sides printed."""
-    widths = [
-        width
+def _where_known(left_out: list[LaboratoryScore]) -> tuple[float, float]:
+    """Return the 95 % interval, a factor, of wet readings with roughness of both sides printed.
+
+    And the share of these readings that lies inside it.
+    """
+    known = [
+        (width, inside)
         for one in left_out
-        for c, width in zip(one.conditions, one.score.width, strict=True)
+        for c, width, inside in zip(
+            one.conditions, one.score.width, one.score.inside_95, strict=True
+        )
         if not c.members and c.fluid != "dry"
         if not (c.numbers["sole_rq"].is_open or c.numbers["floor_rq"].is_open)
     ]
-    return float(np.exp(np.mean(widths)))
+    width, inside = np.mean(known, axis=0)
+    return float(np.exp(width)), float(inside)
 
 
 def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> tuple[Table, float]:

@@ -34,6 +34,7 @@ from underfoot.friction.pair_contact import (
     PairConstants,
     PairDraws,
     contact_terms,
+    relative_area,
 )
 from underfoot.friction.tread_error import PRIOR as TREAD_PRIOR
 from underfoot.friction.tread_error import fluid_class, learned_deviation, tread_pairs
@@ -42,6 +43,8 @@ from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
 
 DRAWS_KEPT = 2000
 """Of a posterior."""
+ROUNDS = 12
+"""Most rounds of the sampler; the last three have all of its points."""
 FREEDOM = 5.0
 """Degrees of freedom of the sampler's proposals."""
 DRAWS = 8
@@ -94,6 +97,15 @@ def _pair(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
     return np.log(terms.adhesion(numbers["pressure"], drag) + terms.hysteresis)
 
 
+def _dry_power(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
+    if fluid != "dry":
+        return _pair(theta[:, :-1], numbers, fluid)
+    columns = theta.T[..., None]
+    terms = contact_terms(_constants(columns[:-1]), numbers, family="dry")
+    area = relative_area(numbers["pressure"], terms.full_contact)
+    return np.log(terms.rest * area ** columns[-1] + terms.hysteresis)
+
+
 def _without_roughness(theta: Array, numbers: dict[str, Array], fluid: str) -> Array:
     zero = np.zeros((theta.shape[0], 2))
     return _pair(np.hstack([theta, zero]), numbers, fluid)
@@ -134,6 +146,9 @@ _ROUGHNESS = (0.0, 1.5)
 """None, to the cube of the gap that a film leaves by (Reynolds); its sign is left to readings."""
 _HARDNESS = (0.0, 0.5)
 """None, to that of a real contact area that falls as 1 / E; its sign is left to readings."""
+_SHAPE = (_ROUGHNESS, _HARDNESS)
+_AREA = (0.5, 0.5)
+"""From none, friction that knows the load alone, to that of adhesion by the real area."""
 LAWS = (
     PairLaw("one constant", ("ln COF",), (_LEVEL,), _constant),
     PairLaw(
@@ -151,9 +166,16 @@ LAWS = (
     ),
     PairLaw("pair, without roughness and hardness", *_CONTACT, _without_roughness, dry=2),
     PairLaw(
+        "pair, dry area to a power",
+        (*_CONTACT[0], "roughness exponent", "hardness exponent", "dry area exponent"),
+        (*_CONTACT[1], *_SHAPE, _AREA),
+        _dry_power,
+        dry=2,
+    ),
+    PairLaw(
         "pair",
         (*_CONTACT[0], "roughness exponent", "hardness exponent"),
-        (*_CONTACT[1], _ROUGHNESS, _HARDNESS),
+        (*_CONTACT[1], *_SHAPE),
         _pair,
         dry=2,
     ),
@@ -390,10 +412,13 @@ def fitted(
     def log_posterior(points: Array) -> Array:
         theta, ln_spread = np.split(points, [count], axis=1)
         value = -0.5 * (((theta - prior[:, 0]) / prior[:, 1]) ** 2).sum(axis=1)
-        spread = np.exp(ln_spread)
+        outside = (np.abs(ln_spread + 1.5) > 2.5).any(axis=1)
+        outside |= (np.abs(theta - prior[:, 0]) > 6 * prior[:, 1]).any(axis=1)
+        # the mode is looked for out there too
+        spread = np.exp(np.clip(ln_spread, -4.0, 1.0))
+        theta = np.clip(theta, *(prior[:, 0] + end * prior[:, 1] for end in (-6, 6)))
         value -= 0.5 * ((ln_spread[:, 0] - _L(SD_SOURCE)) / 0.35) ** 2
         value += (ln_spread[:, 1:] - 0.5 * (spread[:, 1:] / SPREAD_PRIOR[1:]) ** 2).sum(axis=1)
-        outside = (ln_spread < -4).any(axis=1)
         mean, variance = rows.predicted(law, theta)
         weight = np.zeros_like(mean)
         if law.dry is not None:
@@ -429,7 +454,8 @@ def _sampled(
     """Return points (size, dimensions) of a density and their weights, which add up to 1.
 
     From the mode, which lies near ``first`` on the scale ``width``, a Student t of five degrees
-    of freedom takes mean and covariance of the weighted points, round after round.
+    of freedom takes mean and covariance of the weighted points, round after round, until they are
+    worth a twentieth of their number.
     """
     step = 1e-3 * width
 
@@ -441,7 +467,9 @@ def _sampled(
     best = minimize(slope, first / width, jac=True, method="BFGS", options={"gtol": 0.05})
     mean, covariance = best.x, 1.3 * np.atleast_2d(best.hess_inv)
     points, weight = np.empty(0), np.empty(0)
-    for count in (size // 4, size // 4, size // 4, size):
+    settled = False
+    for number in range(ROUNDS):
+        count = size if settled else size // 4
         lower = np.linalg.cholesky(covariance + 1e-6 * np.eye(mean.size))
         normal = generator.normal(size=(count, mean.size))
         tails = np.sqrt(FREEDOM / generator.chisquare(FREEDOM, size=(count, 1)))
@@ -457,6 +485,10 @@ def _sampled(
         tempered /= tempered.sum()
         mean = tempered @ points
         covariance = (points - mean).T @ (tempered[:, None] * (points - mean))
+        worth = 1 / (weight**2).sum() > count / 20
+        if settled and worth:
+            break
+        settled = settled or worth or number == ROUNDS - 4
     return points * width, weight
 
 

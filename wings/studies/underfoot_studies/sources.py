@@ -265,14 +265,30 @@ def _readings(measured: dict[str, Any], where: str) -> Iterator[tuple[str | None
             cof = end + (level - end) * math.exp(-speed / tau)
             yield text, Reading("value", cof, cof, float(measured["sd_ln"]), derived)
     elif kind == "range":
-        low, high = float(measured["low"]), float(measured["high"])
+        low, high = (_cof(measured[end], where) for end in ("low", "high"))
         yield None, Reading(kind, low, high, float(measured.get("sd_ln", 0.1)), derived)
     else:
-        cof = float(measured["cof"])
+        cof = _cof(measured["cof"], where)
         spread = float(measured.get("sd_ln", measured.get("sd", 0.08 * cof) / cof))
         low = 0.0 if kind == "upper" else cof
         high = math.inf if kind == "lower" else cof
         yield None, Reading(kind, low, high, spread, derived)
+
+
+def _cof(item: Any, where: str) -> float:
+    """Return COF, of a pendulum's test value ("36 PTV") 3 PTV / (330 - PTV).
+
+    It gives the pairs that a test house prints, 31 and 0.31, 36 and 0.37, 50 and 0.54, 82 and 1.00
+    (safetydirectamerica.com, COF vs. Pendulum Test Value), to 0.01.
+    """
+    if not isinstance(item, str):
+        return float(item)
+    number, _, unit = item.partition(" ")
+    if unit != "PTV" or not number.isdigit() or not 0 < int(number) <= 150:
+        raise DataError(
+            f'"{item}" is no friction', where=where, allowed='a COF or "1 PTV" to "150 PTV"'
+        )
+    return 3 * int(number) / (330 - int(number))
 
 
 def _span(item: Any, key: str, where: str) -> Span:
