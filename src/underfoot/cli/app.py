@@ -10,7 +10,6 @@ import typer
 from . import cases, tools
 from .calibrate import calibrate_app
 from .contact import contact
-from .export import export
 from .groups import Command, Group
 from .guard import guarded
 from .outsole import outsole_app
@@ -37,7 +36,6 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     cases.sensitivity,
     cases.risk,
     cases.wear,
-    export,
     stribeck,
     surface,
     contact,

@@ -45,6 +45,7 @@ WINGS = {
     },
     ("simulators", "simulate"): "underfoot-simulator",
     ("trial_formats", "readers"): "underfoot-readers",
+    ("commands", "export"): "underfoot-readers",
 }
 """Package of this project that offers a name."""
 

@@ -14,7 +14,6 @@ from underfoot.core.pool import available_processors
 from underfoot.core.presentation import percent, value_text
 from underfoot.questions.comparison import chance_higher, compare
 from underfoot.report.dispatch import figures, sections
-from underfoot.report.export import export_result
 from underfoot.report.html import png
 from underfoot.report.page import Section, page_part
 from underfoot.report.viewer import scene_section, viewer_scene
@@ -24,6 +23,7 @@ from underfoot_design_studies.live import live_sections, live_study, with_live_p
 from underfoot_design_studies.report import design_sole, shown, write_study_report
 from underfoot_design_studies.status import study_status
 from underfoot_design_studies.study_file import flat_paths
+from underfoot_readers.sole_export import export_result
 
 from .work import Drawn, presented
 

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
-
-from .drawn_sole import DrawnSole, drawn_sole
-from .quantities import AREAS, inside, raw, spacing
+from underfoot.report.drawn_sole import DrawnSole, drawn_sole
+from underfoot.report.quantities import AREAS, inside, raw, spacing
 
 if TYPE_CHECKING:
     from underfoot.case import Case

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Overwrite
+from underfoot.cli.options import Overwrite
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -55,7 +55,8 @@ def export(
     from underfoot.case import Case
     from underfoot.compute.result import Result
     from underfoot.core import InputError
-    from underfoot.report.export import export_result
+
+    from .sole_export import export_result
 
     folder = run if run.is_dir() else run.parent
     path = out or folder / f"{'sole' if run.is_dir() else run.stem}.{to}"
