@@ -213,7 +213,7 @@ def overload_words(overload: Sequence[Breach]) -> str:
     """Return what to say where the load rests on what rubber cannot bear, else nothing."""
     return "".join(
         f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
-        "cannot bear: so does this COF"
+        "cannot bear, and so does this COF"
         for one in overload
     )
 

@@ -140,6 +140,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
     result = Result.load(folder)
     cof, slip = result.scalars["cof"], result.scalars.get("slip_probability")
     numbers = {
+        "verdict": result.verdict()[0],
         "cof": cof.value,
         "interval": cof.interval,
         "slip": None if slip is None else slip.value,

@@ -14,7 +14,7 @@ from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
 from underfoot.core.presentation import is_wide, percent
 
-from ..components import SoleView, sentences, table, task_line, title
+from ..components import SoleView, scale, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
@@ -134,17 +134,18 @@ class _Answer:
         with side:
             if not current:
                 ui.label(self.text("answer.changed")).classes("caution")
+            self.verdict = ui.element("div").classes("verdict-place").props('aria-live="polite"')
             self.summary = ui.element("div").props('aria-live="polite"')
             beside = self.session.query.get("beside", "")
             if beside in self.session.project.variants():
                 label = self.text("answer.beside", name=beside)
                 pair = address("/compare", variants=f"{beside}|{self.name}")
                 ui.link(label, pair).classes("strong")
+            self.help = ui.element("div")
             if current:
                 self._live()
-            self.help = ui.element("div")
         if not current:  # what was computed is of other inputs than the file's
-            for part in (self.summary, self.view, self.tables):
+            for part in (self.verdict, self.summary, self.view, self.tables):
                 part.classes("stale")
         with self.place:
             ui.timer(0, partial(self._answer, current), once=True)
@@ -156,8 +157,7 @@ class _Answer:
     async def _answer(self, current: bool) -> None:
         answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
-        with self.summary:
-            self._headline(answer)
+        self._headline(answer)
         with self.tables:
             self._tables(answer)
         if current:  # the march from which previews go on
@@ -165,20 +165,56 @@ class _Answer:
             await self.session.ask("underfoot_app.work:previewed", path, str(self.folder), {})
 
     def _headline(self, answer: dict[str, Any]) -> None:
-        with ui.element("div").classes("answer-card"):
-            if answer["usable"]:
+        """Show the verdict, then number and interval, then a shoe that one knows, then why."""
+        if not answer["usable"]:
+            with self.summary, ui.element("div").classes("answer-card"):
+                sentences(answer["headline"], "strong")
+            return
+        with self.verdict:
+            if answer["slip"] is not None:
+                word = answer["verdict"]
+                with ui.element("p").classes(f"verdict {word}"):
+                    ui.html(f"<b>{self.text(f'answer.{word}')}</b>", sanitize=False, tag="span")
+                    ui.label(self._risk(answer)).classes("strong")
+        with self.summary:
+            with ui.element("div").classes("answer-card"):
                 ui.label(self.text("answer.cof")).classes("soft")
                 ui.label(f"{answer['cof']:.3f}").classes("big")
                 if answer["interval"]:
                     low, high = (f"{end:.3f}" for end in answer["interval"])
                     ui.label(self.text("answer.interval", low=low, high=high))
-                if answer["slip"] is not None:
-                    ui.label(self._risk(answer)).classes("strong")
+                self.beside = ui.element("div")
+                self._beside(answer)
                 ui.label(answer["limit"]).classes("soft")
-            else:
-                sentences(answer["headline"], "strong")
-        for caution in answer["cautions"]:
-            ui.label(caution).classes("caution")
+            for caution in answer["cautions"]:
+                ui.label(caution).classes("caution")
+
+    def _beside(self, answer: dict[str, Any]) -> None:
+        """Show the COF on a scale with what walkers need and a shoe that the person knows."""
+        project = self.session.project
+        computed = [each.name for each in project.results() if each.cof and each.name != self.name]
+        known = project.known if project.known in computed else None
+        marks = [("here", self.text("answer.here"), answer["cof"])]
+        if (needed := self.case.value("risk.rcof_mean")) is not None:
+            marks.append(("needed", self.text("answer.needed"), needed))
+        if known and (summary := project.summary(known)) and summary.cof:
+            marks.append(("known", known, summary.cof))
+        self.beside.clear()
+        with self.beside:
+            scale(marks, answer["interval"])
+            if not computed:
+                return
+            choice = ui.select(computed, label=self.text("answer.known"), value=known)
+            choice.props("dense outlined options-dense clearable")
+
+            def chosen() -> None:
+                project.known = choice.value
+                self._beside(answer)
+
+            choice.on_value_change(chosen)
+            if known:
+                pair = address("/compare", variants=f"{known}|{self.name}")
+                ui.link(self.text("answer.how_sure"), pair)
 
     def _tables(self, answer: dict[str, Any]) -> None:
         sentences(answer["headline"])
