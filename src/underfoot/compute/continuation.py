@@ -11,9 +11,10 @@ what the second step still changes, and from the change itself.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -27,6 +28,7 @@ from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import ContactFriction, contact_friction
+from .numerical_error import LUGS
 from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
 from .solve import continued, film_spreads, solved_motion
@@ -35,6 +37,12 @@ SAFETY, SHARE = 2.0, 0.1
 """Error per unit of what the steps move, and of the change. Chosen on 21 changes of two treaded
 soles, of whose COF and film load they cover 41 of 42; of 29 changes of three other soles 55 of 58
 (the worst misses by half)."""
+SURE = 1.96
+"""Standard deviations of a numerical error in the ± beside a whole run: 95 %."""
+DRIFT = {"shoe.wear.depth": (60.0, 50.0), "motion.shoe_angle": (0.46, 0.17)}
+"""What one position on the quick grid may miss of wear (1/m) and turning (1/rad): share of the COF,
+and of the load for the film. Chosen on 50 settings of two treaded soles; ``benchmarks/previews.py``
+counts on others."""
 MOST_KEPT = 4
 """Marches that ``preview`` keeps, each some 50 MB."""
 MOST_CHANGED = 0.1
@@ -175,6 +183,35 @@ class Continuation:
             time.process_time() - began,
         )
 
+    def of_run(self, seen: Preview, whole: Mapping[str, SourcedValue]) -> Preview:
+        """Return a preview as the change of a whole run, in its COF and load on the film.
+
+        ``whole`` are the scalars of the run of the unchanged case; they change by the share that
+        the preview changes by. The errors are where 95 of 100 whole runs of changed cases lie:
+
+            e^2 = (share x e_steps)^2 + 2 (1.96 s)^2 + sum (drift x change of the geometry)^2
+
+        with the numerical error s of a whole run, of grid and positions: once of the run that was
+        made and once of the one to come.
+        """
+        case = self.case.replace(seen.changes)
+        values, errors = dict(seen.values), dict(seen.errors)
+        for number, (name, usual) in enumerate(LUGS.items()):
+            run, size = whole[name].value or 0.0, case.motion.normal_force
+            share = run / self.values[name] if run and self.values[name] else 1.0
+            values[name] = share * seen.values[name]
+            known = whole[name].numerical
+            relative = usual[True] if known is None or not run else known / run
+            size = values[name] if name == "cof" else size
+            moved = {p: (case.value(p) or 0.0) - (self.case.value(p) or 0.0) for p in DRIFT}
+            drifts = (DRIFT[path][number] * change * size for path, change in moved.items())
+            repeated = math.sqrt(2.0) * SURE * relative * values[name]
+            errors[name] = math.hypot(share * seen.errors[name], repeated, *drifts)
+        share = values["cof"] / seen.values["cof"] if seen.values["cof"] else 1.0
+        draws = None if seen.cof_draws is None else share * seen.cof_draws
+        cof = seen.cof.scaled(share)
+        return replace(seen, values=values, errors=errors, cof=cof, cof_draws=draws)
+
     @cached_property
     def _unchanged(self) -> dict[str, float]:
         parts, _, second = self._steps(self.case)
@@ -207,15 +244,25 @@ class Continuation:
 
 @threads_limited(1)
 def preview(
-    case: Case, changes: Mapping[str, Any], *, quick: bool = True, progress: Progress = silent
+    case: Case,
+    changes: Mapping[str, Any],
+    *,
+    whole: Mapping[str, SourcedValue] | None = None,
+    quick: bool = True,
+    progress: Progress = silent,
 ) -> Preview:
-    """Return the preview of a changed case; the march of the case is kept for the next call."""
+    """Return the preview of a changed case; the march of the case is kept for the next call.
+
+    With the scalars of the ``whole`` run of the case it is a change of that run
+    (``Continuation.of_run``).
+    """
     key = (case.hash, quick)
     if key not in _SOLVED:
         if len(_SOLVED) >= MOST_KEPT:
             _SOLVED.pop(next(iter(_SOLVED)))
         _SOLVED[key] = Continuation(case, quick=quick, progress=progress)
-    return _SOLVED[key].continued(changes)
+    seen = _SOLVED[key].continued(changes)
+    return seen if whole is None else _SOLVED[key].of_run(seen, whole)
 
 
 def _refuse_history(case: Case) -> None:

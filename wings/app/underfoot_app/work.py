@@ -20,7 +20,7 @@ from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
 from underfoot.compute.sole import bottom_surface
 from underfoot.compute.summary import friction_limit
-from underfoot.core import Progress
+from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.files import checksum
 from underfoot.core.presentation import Presentable, quantity_text
@@ -156,21 +156,18 @@ def previewed(
 ) -> dict[str, Any]:
     """Return what changes of a case make of its stored result, by continuation: a preview.
 
-    The continuation is of the quick grid and one position of the tread: its share of change is
-    taken of what the whole run said.
+    The numbers are those of the stored run, moved by what the continuation says of the change.
     """
     case = Case.load(path).replace(UNREAD)
     changed = case.replace(changes) if changes else case
-    seen, start = preview(case, changes, progress=progress), _start(case)
     stored = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
-    share = {
-        name: stored[name]["value"] / start[name] if start[name] and stored[name]["value"] else 1.0
+    whole = {
+        name: SourcedValue(stored[name]["value"], numerical=stored[name].get("numerical"))
         for name in ("cof", "fluid_load")
     }
-    cof, draws = seen.cof.scaled(share["cof"]), seen.cof_draws
-    draws = None if draws is None else share["cof"] * draws
+    seen = preview(case, changes, whole=whole, progress=progress)
     contact = seen.total_pressure - seen.fluid_pressure
-    slip, axes = slip_probability(changed, cof, draws)[0], ("x", "y")
+    slip, axes = slip_probability(changed, seen.cof, seen.cof_draws)[0], ("x", "y")
     fields = map_fields(seen.sole).assign(
         {
             "contact_pressure": (axes, contact, {"units": "Pa"}),
@@ -179,25 +176,14 @@ def previewed(
         }
     )
     return {
-        "cof": cof.value,
-        "error": share["cof"] * seen.errors["cof"],
-        "fluid_load": quantity_text(share["fluid_load"] * seen.values["fluid_load"], "N"),
+        "cof": seen.cof.value,
+        "error": seen.errors["cof"],
+        "fluid_load": quantity_text(seen.values["fluid_load"], "N", seen.errors["fluid_load"]),
         "slip": slip.value,
         "slip_interval": slip.interval,
         "extrapolated": bool(slip.note),
         "html": _html(Drawn(changed.name, fields)),
     }
-
-
-_STARTS: dict[str, Mapping[str, float]] = {}
-
-
-def _start(case: Case) -> Mapping[str, float]:
-    """Return the numbers of the march from which previews of a case go on."""
-    if case.hash not in _STARTS:
-        _STARTS.clear()
-        _STARTS[case.hash] = preview(case, {}).values
-    return _STARTS[case.hash]
 
 
 def presented(shown: Presentable) -> dict[str, Any]:

@@ -28,8 +28,12 @@ LIVE = (
     Input("shoe.wear.depth", "mm", 0.0, 4.0, 0.1),
     Input("shoe.material.shore_a", "", 45.0, 85.0, 1.0),
     Input("motion.normal_force", "N", 100.0, 900.0, 10.0),
+    Input("motion.shoe_angle", "deg", 0.0, 20.0, 0.5),
+    Input("shoe.tread.lug_width", "mm", 2.0, 20.0, 0.1),
+    Input("shoe.tread.channel_width", "mm", 1.0, 10.0, 0.1),
+    Input("shoe.tread.depth", "mm", 0.5, 8.0, 0.1),
 )
-"""Values that a preview can follow while they move."""
+"""Values that a preview follows while they move; of another tread the full run answers."""
 RUN, ADVICE = "underfoot_app.work:computed", "underfoot_app.work:advised"
 TRIED = ".tried"
 """Folder of results that holds full runs behind previews until they are kept as a variant."""
