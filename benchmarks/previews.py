@@ -41,6 +41,7 @@ def setting(rng: np.random.Generator) -> dict[str, str | float]:
     """Return one or two inputs at random; viscosity by decades."""
     changes: dict[str, str | float] = {}
     for path in rng.choice(list(RANGES), size=int(rng.integers(1, 3)), replace=False):
+        path = str(path)
         low, high, unit = RANGES[path]
         value = rng.uniform(low, high)
         if path == "contaminant.viscosity":

@@ -57,7 +57,7 @@ def begin_run(session: Session, name: str) -> Task:
             return task
         session.jobs.cancel(task)  # the file has changed since it began
     arguments = str(project.path(name)), str(project.result_folder(name))
-    return session.jobs.submit(job, RUN, *arguments, about=name)
+    return session.submit(job, RUN, *arguments, about=name)
 
 
 def example(session: Session) -> None:
@@ -115,7 +115,7 @@ class _Answer:
             if done.state == DONE:
                 path = str(self.session.project.path(self.name))
                 arguments = (self.text("answer.help_job"), ADVICE, path, str(self.folder))
-                self.session.jobs.submit(*arguments, about=self.name)
+                self.session.submit(*arguments, about=self.name)
                 self._reload()
 
         self.progress.clear()
@@ -296,7 +296,7 @@ class _Answer:
         folder = str(self.session.project.inside("results", TRIED, self.name))
         named = {**changes, "name": self.session.project.free_name(self.name)}
         arguments = (path, folder, named)
-        self.tried = jobs.submit(
+        self.tried = self.session.submit(
             self.text("answer.full"),
             RUN,
             *arguments,

@@ -103,7 +103,8 @@ function askLive(id, address, soleId, keep) {
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
     .map((i) => [i.name, value(i)])));
   const show = (input) => {
-    const words = `${Number(value(input).toPrecision(3))} ${input.dataset.unit}`.trim();
+    const shown = Number((value(input) / Number(input.dataset.size)).toPrecision(3));
+    const words = `${shown} ${input.dataset.unit}`.trim();
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };
