@@ -141,11 +141,12 @@ def with_film_spread(
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
         known = values[name].uncertainty or 0.0
         own = 1.96 * known / value
+        down = math.log(value / min(low, value)) if low > 0 else math.inf  # a place without film
         result[name] = replace(
             values[name],
             uncertainty=math.hypot(float(np.std(draws)), known),
             interval=(
-                value * math.exp(-math.hypot(math.log(value / min(low, value)), own)),
+                value * math.exp(-math.hypot(down, own)),
                 value * math.exp(math.hypot(math.log(max(high, value) / value), own)),
             ),
             reason="",

@@ -60,7 +60,7 @@ def variant_bar(session: Session, route: str, name: str, changed: Callable[[], N
 
     with ui.element("div").classes("variant-bar"):
         choice = ui.select(project.variants(), value=name, label=text("variant.label"))
-        choice.props("dense outlined options-dense").classes("variant")
+        choice.props('dense outlined options-dense translate="no"').classes("variant")
         choice.on_value_change(lambda event: go(event.value))
         for key, icon, action in (
             ("undo", "undo", lambda: step(project.undo)),

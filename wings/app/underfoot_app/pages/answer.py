@@ -392,7 +392,8 @@ class _Answer:
         return percent(probability)
 
     def _make(self, each: dict[str, Any]) -> None:
-        wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
+        change = self.text.get(f"changes.{each['name']}", each["name"].replace("_", " "))
+        wanted = f"{self.name}, {change}"
         new = self.session.project.copy(self.name, wanted, each["values"])
         begin_run(self.session, new)
         self.session.go(ROUTE, variant=new, beside=self.name)

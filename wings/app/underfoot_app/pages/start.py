@@ -63,7 +63,7 @@ def _recent(session: Session) -> None:
         for name in names:
             summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
-                ui.link(name, address("/design", variant=name))
+                ui.link(name, address("/design", variant=name)).props('translate="no"')
                 if summary is None or summary.cof is None:
                     ui.label(text("start.not_computed")).classes("soft")
                     continue

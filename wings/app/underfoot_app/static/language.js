@@ -7,35 +7,47 @@ const exactWords = new Map(), sentenceForms = [], translations = new Map(), writ
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const form = english.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
-  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, english.length]);
+  const fixed = english.replaceAll("{}", "").length; // what joins any two parts comes last, as the file has it
+  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, fixed < 6 ? 0 : fixed]);
 }
 sentenceForms.sort((a, b) => b[2] - a[2]);
+
+function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
 function withDecimals(text) {
   return spoken.decimal === "." ? text : text.replace(/(?<![\d.\w])(\d+)\.(\d+)(?![\w]*\.\d)/g, `$1${spoken.decimal}$2`);
 }
 
 function inLanguage(text, depth = 0) {
-  const core = text.trim();
-  if (!core || depth > 8) return text;
+  const core = text.trim(), plain = core.replaceAll("\u00a0", " ");
+  if (!core || depth > 20) return text;
   if (!translations.has(core)) {
     translations.set(core, withDecimals(core)); // what a form of itself would come back to
-    translations.set(core, formed(core, depth));
+    translations.set(core, formed(plain, depth));
   }
   return text.replace(core, () => translations.get(core));
 }
 
 function formed(core, depth) {
   if (exactWords.has(core)) return exactWords.get(core);
-  if (/[A-Za-z]{2}/.test(core)) {
-    for (const [form, other] of sentenceForms) {
-      const parts = form.exec(core);
-      if (parts) return other.replace(/\{(\d)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
-    }
-    const sentences = core.split(/(?<=[.;:!?]) (?=\S)/);
-    if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
+  const small = core[0].toLowerCase() + core.slice(1);
+  if (small !== core && exactWords.has(small)) return capital(exactWords.get(small));
+  if (!/[A-Za-z]{2}/.test(core)) return withDecimals(core);
+  const whole = asForm(core, small, depth, (fixed) => fixed > 0);
+  if (whole !== null) return whole;
+  const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
+  if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
+  return asForm(core, small, depth, (fixed) => fixed === 0) ?? withDecimals(core);
+}
+
+function asForm(core, small, depth, wanted) {
+  for (const [form, other, fixed] of sentenceForms) {
+    const as = form.test(core) ? core : small, parts = wanted(fixed) && form.exec(as);
+    if (!parts) continue;
+    const said = other.replace(/\{(\d)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
+    return as === core ? said : capital(said);
   }
-  return withDecimals(core);
+  return null;
 }
 
 function speakAll(root) {
