@@ -102,6 +102,10 @@ def test_the_sole_follows_the_sliders_and_undo_brings_it_back(app):
         until(lambda: 'lug_width = "6 mm"' in file.read_text())
         page.get_by_role("button", name="Undo").click()
         until(lambda: 'lug_width = "6 mm"' not in file.read_text())
+        page.keyboard.press("Control+Shift+Z")
+        until(lambda: 'lug_width = "6 mm"' in file.read_text())
+        page.keyboard.press("Control+Z")
+        until(lambda: 'lug_width = "6 mm"' not in file.read_text())
         assert page.complaints == []
 
 

@@ -67,7 +67,7 @@ def variant_bar(session: Session, route: str, name: str, changed: Callable[[], N
             ("redo", "redo", lambda: step(project.redo)),
         ):
             button = ui.button(icon=icon, on_click=action).props("flat round dense")
-            button.props(f'aria-label="{text(f"variant.{key}")}"')
+            button.props(f'aria-label="{text(f"variant.{key}")}" data-step={key}')
             button.tooltip(text(f"variant.{key}"))
         with ui.button(icon="more_horiz").props("flat round dense") as more:
             more.props(f'aria-label="{text("variant.more")}"')

@@ -9,7 +9,9 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 
@@ -54,6 +56,20 @@ def case_of(path: str, changes: Mapping[str, Any] | None = None) -> Case:
     """Return the case of a file with changes."""
     case = Case.load(path)
     return case.replace(changes) if changes else case
+
+
+def zipped(folder: str, *, progress: Progress) -> str:
+    """Write a project as a ZIP into a folder of its own; return the file. Trial runs stay out."""
+    project = Path(folder)
+    file = Path(mkdtemp(prefix="underfoot-")) / f"{project.name}.zip"
+    parts = [part for part in sorted(project.rglob("*")) if part.is_file()]
+    with ZipFile(file, "w", ZIP_DEFLATED) as archive:
+        for number, part in enumerate(parts, 1):
+            place = part.relative_to(project)
+            if not any(name.startswith(".") for name in place.parts) and not part.is_symlink():
+                archive.write(part, Path(project.name) / place)
+            progress("packing", number / len(parts))
+    return str(file)
 
 
 def compound(path: str, *, progress: Progress) -> str:

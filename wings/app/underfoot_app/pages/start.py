@@ -31,7 +31,9 @@ def build(session: Session) -> None:
     show()
     project = session.project
     session.follow(lambda: [(name, *project.state(name)) for name in project.variants()], show)
-    _tour(session)
+    with ui.element("div").classes("row"):
+        _tour(session)
+        _pack(session)
 
 
 def _door(session: Session, door: str) -> None:
@@ -73,6 +75,22 @@ def _recent(session: Session) -> None:
                 ui.link(words, address("/answer", variant=name))
                 if not project.is_current(name):
                     ui.label(text("start.changed")).classes("soft")
+
+
+def _pack(session: Session) -> None:
+    """Offer the project as a ZIP, beside what computes."""
+
+    async def packed() -> None:
+        button.disable()
+        folder = str(session.project.folder)
+        task = session.submit(text("start.pack"), "underfoot_app.work:zipped", folder)
+        await session.jobs.finished(task)
+        button.enable()
+        if task.answer:
+            ui.download.file(task.answer)
+
+    text = session.text
+    button = ui.button(text("start.pack"), icon="archive", on_click=packed).props("no-caps flat")
 
 
 def _tour(session: Session) -> None:

@@ -82,6 +82,14 @@ function takeFiles(id, settings, words) {
 // A page that puts what it shows into the address is built anew when one goes back.
 addEventListener("popstate", () => location.reload());
 
+// Ctrl+Z undoes, Ctrl+Shift+Z and Ctrl+Y redo, but for the text in a field.
+addEventListener("keydown", (e) => {
+  const key = e.key.toLowerCase(), typing = e.target.matches?.("textarea, input:not([type=range], [type=radio], [type=checkbox]), [contenteditable]");
+  if (!(e.ctrlKey || e.metaKey) || typing || (key !== "z" && key !== "y")) return;
+  const step = key === "y" || e.shiftKey ? "redo" : "undo", button = document.querySelector(`[data-step=${step}]`);
+  if (button) { e.preventDefault(); button.click(); }
+});
+
 // Put words into every element that waits for them by name.
 function showTexts(texts) {
   for (const [name, text] of Object.entries(texts)) {
