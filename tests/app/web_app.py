@@ -100,7 +100,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
         page.on("console", note)
         page.on("pageerror", lambda error: page.complaints.append(str(error)))
         page.on("request", asked)
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(300_000)
         page.goto(link)
         try:
             yield page

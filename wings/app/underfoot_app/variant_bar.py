@@ -92,6 +92,7 @@ def _back(session: Session, name: str, route: str) -> None:
 def _rename(session: Session, route: str, name: str) -> None:
     text = session.text
     with ui.dialog(value=True) as dialog, ui.card():
+        dialog.props(f'aria-label="{text("variant.rename")}"')
         field = ui.input(text("variant.name"), value=name).props("autofocus")
 
         def done() -> None:

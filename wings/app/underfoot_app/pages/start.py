@@ -97,6 +97,7 @@ def _tour(session: Session) -> None:
     """Offer the tour; it opens by itself where the project is new."""
     text = session.text
     with ui.dialog() as dialog, ui.card().classes("tour"), ui.stepper() as steps:
+        dialog.props(f'aria-label="{text("tour.open")}"')
         steps.props("flat animated header-nav alternative-labels")
         for number, key in enumerate(TOUR):
             with ui.step(key, title=text(f"tour.{key}")):
