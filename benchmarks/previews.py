@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from underfoot import Case, run
-from underfoot.compute.continuation import preview
 from underfoot.core import UnderfootError
+from underfoot_app.run_preview import preview_of_run
 
 EXAMPLES = (
     "athletic_shoe_full_tread_detergent",
@@ -55,12 +55,12 @@ def compared(example: str) -> Mapping[str, list[float]]:
     path = Path(__file__).resolve().parents[1] / "examples" / f"{example}.toml"
     case = Case.load(path).replace({"sensor.scans": 1})
     whole, rng = run(case).scalars, np.random.default_rng([SEED, *example.encode()])
-    preview(case, {}, whole=whole)
+    preview_of_run(case, {}, whole)
     off: dict[str, list[float]] = {name: [] for name in (*NAMES, "width", "seconds", "refused")}
     for _ in range(SETTINGS):
         changes, began = setting(rng), time.process_time()
         try:
-            seen = preview(case, changes, whole=whole)
+            seen = preview_of_run(case, changes, whole)
         except UnderfootError as error:
             off["refused"].append(time.process_time() - began)
             print(f"{changes}: no preview ({str(error)[:60]})", flush=True)

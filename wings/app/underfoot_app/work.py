@@ -16,7 +16,6 @@ from zipfile import ZIP_DEFLATED, ZipFile
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.compute.continuation import preview
 from underfoot.compute.numbers import slip_probability
 from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
@@ -35,6 +34,8 @@ from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
 from underfoot.shoe.files import FileSettings
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
+
+from .run_preview import preview_of_run
 
 FINEST_DRAWN = 20_000
 """Cells of a sole that is drawn while sliders move."""
@@ -181,7 +182,7 @@ def previewed(
         name: SourcedValue(stored[name]["value"], numerical=stored[name].get("numerical"))
         for name in ("cof", "fluid_load")
     }
-    seen = preview(case, changes, whole=whole, progress=progress)
+    seen = preview_of_run(case, changes, whole, progress=progress)
     contact = seen.total_pressure - seen.fluid_pressure
     slip, axes = slip_probability(changed, seen.cof, seen.cof_draws)[0], ("x", "y")
     fields = map_fields(seen.sole).assign(
