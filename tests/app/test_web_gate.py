@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip("nicegui")
 
 from underfoot.core import InputError
-from underfoot_app.gate import Gate
+from underfoot_app.gate import Gate, own_name
 from underfoot_app.project import Project
 from underfoot_app.uploads import received, revisions, upload_path
 
@@ -31,7 +31,7 @@ def asked(path="/", query="", method="GET", kind="http", **headers):
         "type": kind, "path": path, "method": method, "query_string": query.encode(),
         "headers": [(k.replace("_", "-").encode(), v.encode()) for k, v in headers.items()],
     }  # fmt: skip
-    asyncio.run(Gate(app, TOKEN, PORT, 300_000_000)(scope, None, send))
+    asyncio.run(Gate(app, TOKEN, PORT, 300_000_000, own_name(TOKEN))(scope, None, send))
     if kind == "websocket" and sent[0]["type"] == "websocket.close":
         return 403, {}, b""
     found = {k.decode(): v.decode() for k, v in sent[0]["headers"]}
@@ -69,6 +69,16 @@ def test_a_wrong_token_is_refused():
 )
 def test_names_of_other_sites_are_refused_even_with_the_cookie(host):
     assert asked(cookie=COOKIE, host=host)[0] == 403
+
+
+def test_the_name_of_its_own_is_let_in_and_tells_nothing_of_the_token():
+    name = own_name(TOKEN)
+    assert name.endswith(".localhost")
+    assert TOKEN[:6] not in name
+    assert own_name("u" * 40) != name
+    assert asked(cookie=COOKIE, host=f"{name}:{PORT}", origin=f"http://{name}:{PORT}")[0] == 200
+    assert asked(cookie=COOKIE, host=f"{name}:{PORT}", origin=f"http://{name}:1")[0] == 403
+    assert asked(cookie=COOKIE, host=f"underfoot-0.localhost:{PORT}")[0] == 403
 
 
 @pytest.mark.parametrize(

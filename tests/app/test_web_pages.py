@@ -102,6 +102,10 @@ def test_the_sole_follows_the_sliders_and_undo_brings_it_back(app):
         until(lambda: 'lug_width = "6 mm"' in file.read_text())
         page.get_by_role("button", name="Undo").click()
         until(lambda: 'lug_width = "6 mm"' not in file.read_text())
+        page.keyboard.press("Control+Shift+Z")
+        until(lambda: 'lug_width = "6 mm"' in file.read_text())
+        page.keyboard.press("Control+Z")
+        until(lambda: 'lug_width = "6 mm"' not in file.read_text())
         assert page.complaints == []
 
 
@@ -161,6 +165,48 @@ def test_the_answer_then_previews_then_the_full_run(app):
         page.wait_for_url(re.compile(r"glycerol.+2$"))
         page.wait_for_selector(".big")
         assert len(list((app.folder / "variants").glob("*.toml"))) == 2
+        assert page.complaints == []
+
+
+def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
+    with page_of(app.link) as page:
+        begin(page, app.base)
+        page.get_by_role("button", name="Compute friction").click()
+        page.wait_for_selector(".verdict")
+        drawn(page)
+        places = "(s) => { const b = document.querySelector(s).getBoundingClientRect(); return b; }"
+        for width, height in ((390, 844), (1366, 768), (3840, 2160)):
+            page.set_viewport_size({"width": width, "height": height})
+            page.wait_for_timeout(300)
+            verdict, sole, table = (
+                page.evaluate(places, each) for each in (".verdict", "canvas", ".whole")
+            )
+            assert verdict["bottom"] < height
+            assert sole["bottom"] < height
+            assert verdict["left"] == pytest.approx(table["left"], abs=1)
+            page.evaluate("scrollTo(0, 0)")
+        assert sole["right"] - verdict["left"] > 0.7 * 3840
+        report = next((app.folder / "results").glob("*/report.html"))
+        for width, height in ((390, 844), (1366, 768)):
+            page.set_viewport_size({"width": width, "height": height})
+            page.goto(report.as_uri())
+            drawn(page)
+            for each in (".verdict", "canvas"):
+                assert page.evaluate(places, each)["bottom"] < height
+            lefts = {round(page.evaluate(places, each)["left"]) for each in ("h1", ".wide")}
+            assert len(lefts) == 1
+
+
+def test_a_shoe_that_one_knows_stands_beside_the_answer(app):
+    with page_of(app.link) as page:
+        begin(page, app.base)
+        page.get_by_role("button", name="Compute friction").click()
+        page.get_by_role("button", name="Make this variant").first.click(timeout=480_000)
+        page.wait_for_selector(".scale", timeout=240_000)
+        page.get_by_label("Beside a shoe you know").click()
+        page.get_by_role("option", name="Work shoe on glycerol", exact=True).click()
+        page.wait_for_selector(".scale .known")
+        assert (app.folder / "known.txt").read_text() == "Work shoe on glycerol"
         assert page.complaints == []
 
 

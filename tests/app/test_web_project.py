@@ -1,6 +1,7 @@
 """A project as a folder of files: states, names, what other programs do to it."""
 
 import json
+from zipfile import ZipFile
 
 import pytest
 from hypothesis import given, settings
@@ -14,6 +15,7 @@ from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot_app.project import Project
 from underfoot_app.variant_bar import USUAL
+from underfoot_app.work import zipped
 
 TEXT = template(**USUAL, catalogue=Catalogue.load(), name="one")
 
@@ -170,3 +172,15 @@ def test_a_result_is_of_the_inputs_that_it_was_computed_from(project):
     project.remove("one")
     assert not project.is_current("one")
     assert project.state("one")[0] is None
+
+
+def test_a_project_as_a_zip_is_a_project(tmp_path):
+    project = Project(tmp_path / "mine")
+    project.add("shoe", TEXT)
+    (project.folder / "results" / ".tried").mkdir()
+    (project.folder / "results" / ".tried" / "x.txt").write_text("x")
+    file = zipped(str(project.folder), progress=lambda *_: None)
+    with ZipFile(file) as archive:
+        assert not any("tried" in name for name in archive.namelist())
+        archive.extractall(tmp_path / "elsewhere")
+    assert Project(tmp_path / "elsewhere" / "mine").case("shoe").hash == project.case("shoe").hash

@@ -79,7 +79,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
     flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     if not webgl:
         flags = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
-    own = ("http://127.0.0.1:", "data:", "blob:", "about:")
+    own = re.compile(r"http://([\w-]+\.localhost|127\.0\.0\.1):|data:|blob:|about:|file:")
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=browser(), args=flags)
         context = chromium.new_context(
@@ -94,7 +94,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
                 page.complaints.append(message.text)
 
         def asked(request):
-            if not request.url.startswith(own):
+            if not own.match(request.url):
                 page.complaints.append(request.url)
 
         page.on("console", note)

@@ -214,6 +214,10 @@ def test_content_decides_in_every_direction(tmp_path):
         path = made.by_trimesh(kind, heel)(tmp_path)
         other = path.rename(tmp_path / f"{kind}.step")
         assert read_mesh(other).format == kind.upper()
+    with zipfile.ZipFile(tmp_path / "bomb.3mf", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("3D/3dmodel.model", bytes(501_000_000))
+    with pytest.raises(DataError, match=r"holds 501 MB.*Allowed: at most 500 MB"):
+        read_mesh(tmp_path / "bomb.3mf")
     with zipfile.ZipFile(tmp_path / "zip.stl", "w") as archive:
         archive.writestr("sole.step", "x")
     with pytest.raises(DataError, match=r"ZIP archive that holds sole.step.*Unpack"):

@@ -4,7 +4,8 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, preview
-from underfoot.core import InputError, Status
+from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
+from underfoot_app.run_preview import of_run
 
 CASE = Case.load("examples/work_shoe_full_tread_glycerol.toml")
 
@@ -39,6 +40,39 @@ def test_a_change_is_within_one_percent_and_its_own_error(solved, change):
     assert abs(seen.values["cof"] - full["cof"]) < 0.1 * abs(full["cof"] - solved.values["cof"])
     # pressures at the centres of cells, of which some are cut by an outline
     assert seen.total_pressure.sum() * solved.spacing**2 == pytest.approx(500.0, rel=0.05)
+
+
+def whole(cof, load):
+    """Return scalars of a whole run, (value, numerical error) of each."""
+    return {
+        "cof": SourcedValue(cof[0], numerical=cof[1]),
+        "fluid_load": SourcedValue(load[0], "N", numerical=load[1]),
+    }
+
+
+def test_beside_a_whole_run_it_is_a_change_of_that_run(solved):
+    run = whole((0.14, 0.002), (60.0, 7.0))
+    same = of_run(solved, solved.continued({}), run)
+    assert same.values["cof"] == pytest.approx(0.14)
+    assert same.cof.value == pytest.approx(0.14)
+    assert same.values["fluid_load"] == pytest.approx(60.0)
+    # the numerical error of the run that was made, and of the one to come
+    assert same.errors["cof"] >= 1.96 * 2**0.5 * 0.002
+    assert same.errors["fluid_load"] >= 1.96 * 2**0.5 * 7.0
+    change = {"contaminant.viscosity": "150 cP"}
+    alone, beside = solved.continued(change), of_run(solved, solved.continued(change), run)
+    share = alone.values["cof"] / solved.values["cof"]
+    assert beside.values["cof"] == pytest.approx(0.14 * share)
+    worn = of_run(solved, solved.continued({"shoe.wear.depth": "0.5 mm"}), run)
+    assert worn.errors["cof"] > 60.0 * 0.5e-3 * worn.values["cof"]
+
+
+def test_the_film_never_bears_more_than_the_load(solved):
+    seen = of_run(solved, solved.continued({}), whole((0.14, 0.001), (480.0, 1.0)))
+    assert seen.values["fluid_load"] == pytest.approx(480.0)
+    thicker = solved.continued({"contaminant.viscosity": "300 cP"})
+    with pytest.raises(ConvergenceError, match="too little"):
+        of_run(solved, thicker, whole((0.14, 0.02), (480.0, 1.0)))
 
 
 def test_the_march_is_kept_for_the_next_preview():

@@ -205,6 +205,9 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
     )
     assert found.headline()[2] == "COF 0.100 new and 0.120 at the last state."
     assert any("still rises" in caution for caution in found.cautions())
+    bare = dataclasses.replace(found, untreaded=outcome(0.05))
+    assert "0.050 with the tread gone" in bare.headline()[2]
+    assert not any("rises" in caution for caution in bare.cautions())
     assert not any("rises" in caution for caution in series([0.12, 0.11, 0.10]).cautions())
     assert not any("rises" in caution for caution in series([0.100, 0.104]).cautions())
     assert "No result for state 1" in " ".join(series([0.1, None, 0.1]).cautions())

@@ -210,12 +210,19 @@ def preview(
     case: Case, changes: Mapping[str, Any], *, quick: bool = True, progress: Progress = silent
 ) -> Preview:
     """Return the preview of a changed case; the march of the case is kept for the next call."""
+    return kept_continuation(case, quick=quick, progress=progress).continued(changes)
+
+
+def kept_continuation(
+    case: Case, *, quick: bool = True, progress: Progress = silent
+) -> Continuation:
+    """Return the march of a case, kept for the next call."""
     key = (case.hash, quick)
     if key not in _SOLVED:
         if len(_SOLVED) >= MOST_KEPT:
             _SOLVED.pop(next(iter(_SOLVED)))
         _SOLVED[key] = Continuation(case, quick=quick, progress=progress)
-    return _SOLVED[key].continued(changes)
+    return _SOLVED[key]
 
 
 def _refuse_history(case: Case) -> None:

@@ -141,11 +141,12 @@ def with_film_spread(
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
         known = values[name].uncertainty or 0.0
         own = 1.96 * known / value
+        down = math.log(value / min(low, value)) if low > 0 else math.inf  # a place without film
         result[name] = replace(
             values[name],
             uncertainty=math.hypot(float(np.std(draws)), known),
             interval=(
-                value * math.exp(-math.hypot(math.log(value / min(low, value)), own)),
+                value * math.exp(-math.hypot(down, own)),
                 value * math.exp(math.hypot(math.log(max(high, value) / value), own)),
             ),
             reason="",
@@ -213,7 +214,7 @@ def overload_words(overload: Sequence[Breach]) -> str:
     """Return what to say where the load rests on what rubber cannot bear, else nothing."""
     return "".join(
         f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
-        "cannot bear: so does this COF"
+        "cannot bear, and so does this COF"
         for one in overload
     )
 

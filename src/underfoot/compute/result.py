@@ -76,6 +76,10 @@ class Result(Presentable):
     def headline(self) -> tuple[str, ...]:
         return summary.headline(self.status, self.scalars, self.labels)
 
+    def verdict(self) -> tuple[str, str]:
+        """Return "grips", "doubtful" or "slips", and what it means for steps; empty if unknown."""
+        return summary.verdict_sentence(self.scalars, self.labels) if self.usable else ("", "")
+
     def cautions(self) -> tuple[str, ...]:
         slip_model = self.provenance.closures.get("slip", "")
         inputs = (self.breaches, self.assumptions, slip_model, self.labels)

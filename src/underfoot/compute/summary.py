@@ -9,7 +9,14 @@ from typing import Literal
 
 from underfoot.core import SourcedValue, Status
 from underfoot.core.fields import Fields
-from underfoot.core.presentation import Table, interval_text, percent, quantity_text, value_text
+from underfoot.core.presentation import (
+    Table,
+    interval_text,
+    percent,
+    probability_text,
+    quantity_text,
+    value_text,
+)
 from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
@@ -39,6 +46,9 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
     "slip_probability": ("Slip probability", "walkers as described in the case"),
 }
 """Label and remark of each quantity, in the order of the summary; parts are indented."""
+GRIPS, SLIPS = 1e-3, 0.05
+"""Slip probability that every verdict "grips" lies below: the least that is printed; and that every
+verdict "slips" lies above: 1 in 20, which HSE calls more than a low slip potential (GEIS2)."""
 LUGS_SHOWN = 6
 """Most lugs in the table of their drainage."""
 LABELS = {
@@ -120,6 +130,38 @@ def friction_limit(scalars: Mapping[str, SourcedValue]) -> FrictionLimit:
     return FrictionLimit(share, cof, solid / (1.0 - share) if share < 1.0 else math.nan)
 
 
+def verdict(
+    scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
+) -> Literal["grips", "doubtful", "slips", ""]:
+    """Return what a person may expect of a step; empty where no slip probability is known.
+
+    Both ends of its 95 % interval decide. Pressures that the rubber cannot bear leave a doubt.
+    """
+    slip = scalars.get("slip_probability")
+    if slip is None or slip.value is None:
+        return ""
+    low, high = slip.interval or (slip.value, slip.value)
+    if low > SLIPS:
+        return "slips"
+    return "grips" if high < GRIPS and "overload" not in labels else "doubtful"
+
+
+def verdict_sentence(
+    scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
+) -> tuple[str, str]:
+    """Return the verdict and what it means for steps, both empty where there is none."""
+    word = verdict(scalars, labels)
+    slip = scalars.get("slip_probability", SourcedValue(None, reason="not asked for"))
+    if slip.value is None:
+        return "", ""
+    low, high = map(probability_text, slip.interval or (slip.value, slip.value))
+    steps = {
+        "grips": f"fewer than 1 of {1 / GRIPS:.0f} steps slips",
+        "slips": f"more than 1 of {1 / SLIPS:.0f} steps slips",
+    }.get(word, f"{low} to {high} of steps slip")
+    return word, f"{steps}, 95 %{', extrapolated' if slip.note else ''}"
+
+
 def headline(
     status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
 ) -> tuple[str, ...]:
@@ -175,7 +217,7 @@ def cautions(
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
     if inputs and friction_limit(scalars).kind == "film":
         reasons.append(
-            f"The film load depends on assumed values ({inputs}) that the ± leaves out; "
+            f"The film load depends on assumed values ({inputs}) that its interval leaves out; "
             "underfoot sensitivity gives their effect."
         )
     if "film_inlet" in labels and friction_limit(scalars).kind == "film":

@@ -363,13 +363,10 @@ def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
     versions = {result.provenance.versions.get("underfoot", "") for result in results}
     if len(versions) > 1:
         reasons.append(f"Computed with different versions: {', '.join(sorted(versions))}.")
-    outside = [
-        f"{letter} ({len(result.breaches)})"
-        for letter, result in zip(LETTERS, results, strict=False)
-        if result.status.usable and result.breaches
-    ]
-    if outside:
-        reasons.append(f"Inputs outside a tested range (number of them): {', '.join(outside)}.")
+    for letter, result in zip(LETTERS, results, strict=False):
+        if result.status.usable and result.breaches:
+            models = dict.fromkeys(line.partition(":")[0] for line in result.breaches)
+            reasons.append(f"{letter}: {summary.beyond_tests(models)}")
     return tuple(reasons)
 
 

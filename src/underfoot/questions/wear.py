@@ -138,12 +138,17 @@ class WearSeries(Presentable):
         if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
             bare = self.untreaded.number("cof")
             sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
+            if known.size > 1 and bare < cof[known[0]] < cof[known[-1]]:
+                sentences[-1] = (
+                    f"COF {cof[known[0]]:.3f} new and {bare:.3f} with the tread gone; shortly "
+                    f"before that {cof[known[-1]]:.3f}{self._sure()}, no reason to wear it down."
+                )
         walks = self.walked()
         if walks:
             measured = self.walker is not None and self.walker.pair is not None
-            bound = "" if measured else "life not estimated; walked on an abrasive sheet "
+            life = walks[-1] if measured else "life not estimated without a worn pair (--worn-pair)"
             volume = _size(float(self.measured("removed_volume")[-1]), "m^3")
-            sentences.append(f"The last state has lost {volume}: {bound}{walks[-1]}.")
+            sentences.append(f"The last state has lost {volume}: {life}.")
         return tuple(sentences)
 
     def _sure(self) -> str:
@@ -168,7 +173,8 @@ class WearSeries(Presentable):
     def cautions(self) -> tuple[str, ...]:
         reasons = []
         cof = self.values("cof")
-        if np.isfinite(cof[-1]) and cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof):
+        rises = cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof)
+        if np.isfinite(cof[-1]) and rises and self.untreaded is None:
             reasons.append(
                 "The COF still rises at the last state: its fall lies beyond the range (--to)."
             )
@@ -198,8 +204,8 @@ class WearSeries(Presentable):
             for _, unit, label in (*measures, *numbers)
         )
         walks = self.walked()
-        if walks:
-            heads = (*heads, "Walked" if self.walker and self.walker.pair else "On abrasive sheet")
+        if walks and self.walker and self.walker.pair:
+            heads = (*heads, "Walked")
             rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
 

@@ -31,7 +31,8 @@ class Picture:
 class Section:
     """A part of a page under a title: ready HTML, pictures, a table or a list.
 
-    ``folded`` hides all of it behind its title until it is asked for.
+    ``folded`` hides all of it behind its title until it is asked for; ``stage`` sets the first part
+    of a page beside its headline.
     """
 
     title: str
@@ -42,10 +43,17 @@ class Section:
     items: Sequence[str] = ()
     text: str = ""
     folded: bool = False
+    stage: bool = False
 
 
-def page(shown: Presentable, sections: Sequence[Section], *, script: str = "") -> str:
-    """Return the page of an object: headline and cautions, then ``sections``."""
+def page(
+    shown: Presentable,
+    sections: Sequence[Section],
+    *,
+    script: str = "",
+    verdict: tuple[str, str] = ("", ""),
+) -> str:
+    """Return the page of an object: verdict, headline and cautions, then ``sections``."""
     return (
         environment()
         .get_template("page.html")
@@ -54,6 +62,7 @@ def page(shown: Presentable, sections: Sequence[Section], *, script: str = "") -
             headline=shown.headline(),
             cautions=shown.cautions(),
             script=script,
+            verdict=verdict,
             **_content(sections),
         )
     )

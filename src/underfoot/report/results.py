@@ -55,13 +55,11 @@ def _result_sections(
     warning = "" if result.usable else "The computation did not converge: for diagnosis only."
     if "cof_tread_position" in result.scalars:
         warning = "The tread lies as the case describes it; the numbers are means over positions."
-    parts = [
-        Section("Under the sole", warning, html=viewer_section([result])),
-        *table_sections(result),
-    ]
+    parts = [Section("Under the sole", warning, html=viewer_section([result]), stage=True)]
     if advice is not None:
         caption = "This result, moved by what each change does on the coarse grid."
         parts.append(Section(advice.table().title, caption, table=advice.table()))
+    parts += table_sections(result)
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
         Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))
@@ -104,7 +102,7 @@ def _write_result(
 
     def text(drawn: dict[str, bytes]) -> str:
         parts, script = _result_sections(result, drawn, advice)
-        return page(result, parts, script=script)
+        return page(result, parts, script=script, verdict=result.verdict())
 
     data = files(result) | ({} if advice is None else data_writers(advice))
     drawn = None if maps else {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+from html import escape
 from typing import Any
 
 from nicegui import ui
@@ -35,6 +36,30 @@ def title(heading: str, level: int = 1) -> ui.element:
     with ui.element(f"h{level}") as made:
         ui.label(heading)
     return made
+
+
+SCALE_END = 0.8
+"""COF at the end of the scale."""
+
+
+def scale(marks: Sequence[tuple[str, str, float]], interval: Sequence[float] | None) -> None:
+    """Show coefficients of friction on one scale: (kind, name, COF) of each, and an interval."""
+
+    def place(cof: float) -> str:
+        return f"{100 * min(max(cof / SCALE_END, 0.0), 1.0):.1f}%"
+
+    names = "; ".join(f"{name}: {cof:.3f}" for _, name, cof in marks)
+    with ui.element("div").classes("scale").props(f'role="img" aria-label="{escape(names)}"'):
+        if interval:
+            low, high = map(place, interval)
+            ui.element("i").classes("reach").style(f"left: {low}; right: calc(100% - {high})")
+        for kind, _, cof in marks:
+            ui.element("i").classes(kind).style(f"left: {place(cof)}")
+    with ui.element("ul").classes("scale-names"):
+        for kind, name, cof in marks:
+            with ui.element("li"):
+                ui.element("i").classes(kind)
+                ui.label(f"{name}: {cof:.3f}")
 
 
 def table(shown: Mapping[str, Any]) -> ui.element:

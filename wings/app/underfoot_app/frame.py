@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from fastapi import Request
 from nicegui import ui
 
+from underfoot.core.units import SYSTEMS
+
 from .jobs import Jobs, Task
 from .project import Project
-from .session import Exchange, Page, Session
+from .session import Exchange, Page, Session, as_json
 from .text import LANGUAGES, Text, chosen_language
 
 HEAD = """
 <link rel="stylesheet" href="/viewer/palette.css"><link rel="stylesheet" href="/viewer/viewer.css">
 <link rel="stylesheet" href="/static/app.css">
 <script src="/static/theme.js"></script>
+<script src="/static/language.js"></script>
 <script defer src="/viewer/viewer_data.js"></script>
 <script defer src="/viewer/viewer_draw.js"></script>
 <script defer src="/viewer/viewer_page.js"></script>
@@ -33,15 +36,18 @@ def open_session(
     language = chosen_language(request.cookies.get("language"), accepted)
     theme = request.cookies.get("theme", "")
     query = dict(request.query_params)
-    return Session(project, jobs, Text(language), query, exchange, pages, theme)
+    chosen = request.cookies.get("units", "")
+    units = chosen if chosen in SYSTEMS else SYSTEMS[0]
+    return Session(project, jobs, Text(language), query, exchange, pages, theme, units)
 
 
 def framed(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")
-    language = f'<script>document.documentElement.lang = "{text.language}"</script>'
-    ui.add_head_html(HEAD + language)
+    spoken = as_json({"words": text.of_package(), "decimal": text("frame.decimal")})
+    language = f'document.documentElement.lang = "{text.language}"; const spoken = {spoken};'
+    ui.add_head_html(f"<script>{language}</script>{HEAD}")
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
     with ui.header(fixed=False).classes("app-bar"):
@@ -54,7 +60,8 @@ def framed(session: Session, page: Page) -> None:
                     link.props('aria-current="page"' if each is page else "")
         ui.space()
         _jobs_button(session)
-        _language_button(session)
+        _choice_button(session, "units", SYSTEMS, session.units, text.unit_systems())
+        _choice_button(session, "language", LANGUAGES, text.language, LANGUAGES)
         _theme_button(session)
     with ui.element("div").classes("page"):  # the framework's page is the main element
         session.problems = ui.element("div").classes("problems")
@@ -76,14 +83,19 @@ def _theme_button(session: Session) -> None:
     button.props(f'flat round dense aria-label="{session.text("frame.theme")}"')
 
 
-def _language_button(session: Session) -> None:
-    other = next(code for code in LANGUAGES if code != session.text.language)
-    button = ui.button(LANGUAGES[other]).props("flat dense no-caps")
-    button.on(
-        "click",
-        js_handler=f'() => {{ document.cookie = "language={other}; path=/; max-age=31536000; '
-        'SameSite=Strict"; location.reload() }',
-    )
+def _choice_button(
+    session: Session, cookie: str, codes: Iterable[str], present: str, names: Mapping[str, str]
+) -> None:
+    """Show a menu whose choice is kept in a cookie; the page is then built anew."""
+    button = ui.button(names[present]).props("flat dense no-caps")
+    button.props(f'aria-label="{session.text(f"frame.{cookie}")}: {names[present]}"')
+    with button, ui.menu():
+        for code in codes:
+            ui.menu_item(names[code]).on(
+                "click",
+                js_handler=f'() => {{ document.cookie = "{cookie}={code}; path=/; '
+                'max-age=31536000; SameSite=Strict"; location.reload() }',
+            )
 
 
 def _jobs_button(session: Session) -> None:

@@ -7,6 +7,7 @@ for its own origin. Bodies are bounded before they are read. Pages may load noth
 
 from __future__ import annotations
 
+import hashlib
 import hmac
 import ipaddress
 from collections.abc import Awaitable, Callable, MutableMapping
@@ -36,13 +37,15 @@ class Gate:
     Parameters:
         token: Secret of the address.
         port: Port that the server listens on.
+        name: Name of this machine that the server alone goes by (``own_name``).
         most_bytes: Largest upload.
     """
 
-    def __init__(self, app: Any, token: str, port: int, most_bytes: int) -> None:
+    def __init__(self, app: Any, token: str, port: int, most_bytes: int, name: str = "") -> None:
         self.app = app
         self._token = token
         self._port = port
+        self._names = ("localhost", name)
         self._most = most_bytes
         self._cookie = f"underfoot-{port}"
 
@@ -74,7 +77,7 @@ class Gate:
             await self.app(scope, receive, _with_policy(send))
 
     def _own_host(self, headers: dict[str, str]) -> bool:
-        """Return whether host and origin are this server, by a number or as localhost.
+        """Return whether host and origin are this server, by a number, as localhost or its name.
 
         A page of another site reaches this server only by a name that it controls.
         """
@@ -83,7 +86,7 @@ class Gate:
         try:
             ipaddress.ip_address(name)
         except ValueError:
-            if name != "localhost":
+            if not name or name not in self._names:
                 return False
         origin = headers.get("origin")
         return port == self._port and origin in (None, f"http://{host}")
@@ -108,6 +111,15 @@ class Gate:
         if int(length) > most:
             return 413, too_large(int(length), most)
         return None
+
+
+def own_name(token: str) -> str:
+    """Return a name of this machine that nobody can guess and the token can't be told from.
+
+    Browsers take every name below localhost for this machine, and send the cookie of a host to all
+    of its ports: under a name of its own no other program here is sent it.
+    """
+    return f"underfoot-{hashlib.sha256(token.encode()).hexdigest()[:16]}.localhost"
 
 
 def too_large(size: int, most: int) -> str:

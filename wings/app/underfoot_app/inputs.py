@@ -19,6 +19,13 @@ from .session import Session
 
 SIGNS = {"deg": "°", "um": "µm"}
 """How a unit is shown where it is not as it is written in a case."""
+CUSTOMARY = {
+    "mm": (25.4, "in"),
+    "um": (25.4, "mil"),
+    "m/s": (0.3048, "ft/s"),
+    "N": (4.4482216152605, "lbf"),
+}
+"""Size and sign of the US unit that is shown in place of one of a case."""
 _numbers = count()
 
 
@@ -39,10 +46,10 @@ class Input:
     step: float
     log: bool = False
 
-    @property
-    def sign(self) -> str:
-        """Return the unit as it is shown."""
-        return SIGNS.get(self.unit, self.unit)
+    def shown_in(self, units: str) -> tuple[float, str]:
+        """Return size and sign of the unit that is shown."""
+        metric = (1.0, SIGNS.get(self.unit, self.unit))
+        return CUSTOMARY.get(self.unit, metric) if units == "us" else metric
 
     def given(self, case: Case) -> float | None:
         """Return the value of a case in the unit, None where it has none."""
@@ -100,11 +107,13 @@ def sliders(
 
 def _row(session: Session, each: Input, value: float) -> str:
     low, high, shown, step = each.low, max(each.high, value), value, each.step
+    size, sign = each.shown_in(session.units)
     if each.log:
         low, high, shown, step = log10(low), log10(high), log10(max(value, low)), 0.01
     key = f"slider-{next(_numbers)}"
     # the browser moves the thumb to the next step: the value stands beside it until it is moved
-    marks = f'data-unit="{each.sign}" data-given="{value:.6g}"' + (' data-log="1"' * each.log)
+    marks = f'data-unit="{sign}" data-size="{size}" data-given="{value:.6g}"'
+    marks += ' data-log="1"' * each.log
     return (
         f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}</label>'
         f'<input type="range" id="{key}" name="{each.path}" min="{min(low, shown):.6g}" '
@@ -120,12 +129,14 @@ def number_field(
     value, origin = each.given(case), case.origins.get(each.path)
     if value is None and origin is None and case.value(each.path.rpartition(".")[0]) is None:
         return
-    field = ui.number(session.text(f"inputs.{each.path}"), value=value and float(f"{value:.4g}"))
-    field.props(f'dense outlined suffix="{each.sign}" step="any"').classes("number")
+    size, sign = each.shown_in(session.units)
+    shown = value and float(f"{value / size:.4g}")
+    field = ui.number(session.text(f"inputs.{each.path}"), value=shown)
+    field.props(f'dense outlined suffix="{sign}" step="any"').classes("number")
 
     def typed(_: GenericEventArguments) -> None:
-        if field.value is not None and field.value != value:
-            change({each.path: each.written(float(field.value))})
+        if field.value is not None and field.value != shown:
+            change({each.path: each.written(size * float(field.value))})
 
     field.on("change", typed)
     if origin is not None:

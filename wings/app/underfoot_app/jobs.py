@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core.errors import Cancelled, error_text
+from underfoot.core.units import SYSTEMS, UNITS_VARIABLE
 from underfoot.core.worker import Job, Worker
 
 from .project import append_line, lines
@@ -297,8 +298,9 @@ def _moved(content: Any, folder: str, to: str) -> Any:
     return content
 
 
-def named(function: str, *args: Any, progress: Any, **options: Any) -> Any:
-    """Return what a function ("module:name") answers."""
+def named(function: str, *args: Any, progress: Any, units: str = SYSTEMS[0], **options: Any) -> Any:
+    """Return what a function ("module:name") answers, with its texts in these units."""
+    os.environ[UNITS_VARIABLE] = units
     module, _, name = function.partition(":")
     return getattr(import_module(module), name)(*args, progress=progress, **options)
 

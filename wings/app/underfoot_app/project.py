@@ -6,6 +6,7 @@
     results/NAME/        what ``underfoot run --out`` writes
     studies/, trials/    design studies and measurements
     history.jsonl        every state of every variant, for undo and redo
+    known.txt            the variant whose shoe the person knows
 
 Each file is written as a whole or not at all. A file that another program changed meanwhile counts
 as one more state: nothing is lost.
@@ -85,6 +86,17 @@ class Project:
     def name(self) -> str:
         """Name of the folder."""
         return self.folder.name
+
+    @property
+    def known(self) -> str | None:
+        """Name of the variant whose shoe the person knows; results are shown beside it."""
+        file = self.folder / "known.txt"
+        return file.read_text(encoding="utf-8") if file.exists() else None
+
+    @known.setter
+    def known(self, name: str | None) -> None:
+        with whole_file(self.folder / "known.txt") as part:
+            part.write_text(name or "", encoding="utf-8")
 
     def inside(self, *parts: str) -> Path:
         """Return a path in the project.

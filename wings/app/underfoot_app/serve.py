@@ -22,7 +22,7 @@ from underfoot.core import InputError
 from underfoot.core.files import whole_file
 
 from .frame import framed, open_session
-from .gate import UPLOADS, Gate
+from .gate import UPLOADS, Gate, own_name
 from .jobs import Jobs
 from .pages import PAGES
 from .project import Project
@@ -60,8 +60,11 @@ def serve(
     port = listening.getsockname()[1]
     token = _token()
     jobs = Jobs(project.folder, PRELOAD)
-    server = _server(_application(project, jobs), token, port)
+    name = own_name(token)
+    server = _server(_application(project, jobs), token, port, name)
     shown = host if host not in ("0.0.0.0", "::") else _own_address()
+    if host in LOOPBACK[:2] and _is_this_machine(name):
+        shown = name
     place = f"[{shown}]" if ":" in shown else shown
     link = f"http://{place}:{port}/?token={token}"
     say(f"Underfoot shows the project {project.folder} at\n\n    {link}\n")
@@ -139,8 +142,8 @@ def _route(page: Page, project: Project, jobs: Jobs, exchange: Exchange) -> None
         framed(session, page)
 
 
-def _server(application: FastAPI, token: str, port: int) -> uvicorn.Server:
-    gate = Gate(application, token, port, MOST_BYTES)
+def _server(application: FastAPI, token: str, port: int, name: str) -> uvicorn.Server:
+    gate = Gate(application, token, port, MOST_BYTES, name)
     config = uvicorn.Config(gate, log_level="warning", timeout_graceful_shutdown=2, lifespan="on")
     return uvicorn.Server(config)
 
@@ -182,6 +185,16 @@ def _token() -> str:
     except OSError:
         pass  # a home that can't be written: the secret lasts as long as the server
     return token
+
+
+def _is_this_machine(name: str) -> bool:
+    """Return whether browsers take a name below localhost for this machine; Safari asks macOS."""
+    if sys.platform != "darwin":
+        return True
+    try:
+        return bool(socket.getaddrinfo(name, None))
+    except OSError:
+        return False
 
 
 def _own_address() -> str:

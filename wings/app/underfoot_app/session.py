@@ -13,8 +13,9 @@ from urllib.parse import urlencode
 from nicegui import ui
 
 from underfoot.core.errors import Cancelled, UnderfootError, error_text
+from underfoot.core.units import SYSTEMS
 
-from .jobs import Jobs
+from .jobs import Jobs, Task
 from .project import Project
 from .text import Text
 
@@ -73,6 +74,7 @@ class Session:
         query: What stands behind the ``?`` of the address.
         pages: All pages of the app.
         theme: "light", "dark", or "" for what the system has.
+        units: Units that are shown, "si" or "us".
         problems: Where errors are told; made by the frame.
     """
 
@@ -83,6 +85,7 @@ class Session:
     exchange: Exchange
     pages: Sequence[Page]
     theme: str = ""
+    units: str = SYSTEMS[0]
     problems: ui.element | None = None
 
     @property
@@ -101,7 +104,14 @@ class Session:
 
         Its errors pass through; raised in a handler of a page they are told there.
         """
-        return await self.jobs.live.ask(function, *args, **options)
+        return await self.jobs.live.ask(function, *args, units=self.units, **options)
+
+    def submit(
+        self, title: str, function: str, *args: Any, about: str = "", **options: Any
+    ) -> Task:
+        """Queue a long job, whose texts are in the units of the page; return its task."""
+        units = self.units
+        return self.jobs.submit(title, function, *args, about=about, units=units, **options)
 
     def follow(
         self, state: Callable[[], object], changed: Callable[[], object]

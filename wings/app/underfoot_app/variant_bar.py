@@ -60,14 +60,14 @@ def variant_bar(session: Session, route: str, name: str, changed: Callable[[], N
 
     with ui.element("div").classes("variant-bar"):
         choice = ui.select(project.variants(), value=name, label=text("variant.label"))
-        choice.props("dense outlined options-dense").classes("variant")
+        choice.props('dense outlined options-dense translate="no"').classes("variant")
         choice.on_value_change(lambda event: go(event.value))
         for key, icon, action in (
             ("undo", "undo", lambda: step(project.undo)),
             ("redo", "redo", lambda: step(project.redo)),
         ):
             button = ui.button(icon=icon, on_click=action).props("flat round dense")
-            button.props(f'aria-label="{text(f"variant.{key}")}"')
+            button.props(f'aria-label="{text(f"variant.{key}")}" data-step={key}')
             button.tooltip(text(f"variant.{key}"))
         with ui.button(icon="more_horiz").props("flat round dense") as more:
             more.props(f'aria-label="{text("variant.more")}"')
@@ -92,6 +92,7 @@ def _back(session: Session, name: str, route: str) -> None:
 def _rename(session: Session, route: str, name: str) -> None:
     text = session.text
     with ui.dialog(value=True) as dialog, ui.card():
+        dialog.props(f'aria-label="{text("variant.rename")}"')
         field = ui.input(text("variant.name"), value=name).props("autofocus")
 
         def done() -> None:

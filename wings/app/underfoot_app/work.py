@@ -9,18 +9,19 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.compute.continuation import preview
 from underfoot.compute.numbers import slip_probability
 from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
 from underfoot.compute.sole import bottom_surface
 from underfoot.compute.summary import friction_limit
-from underfoot.core import Progress
+from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.files import checksum
 from underfoot.core.presentation import Presentable, quantity_text
@@ -33,6 +34,8 @@ from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
 from underfoot.shoe.files import FileSettings
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
+
+from .run_preview import preview_of_run
 
 FINEST_DRAWN = 20_000
 """Cells of a sole that is drawn while sliders move."""
@@ -54,6 +57,20 @@ def case_of(path: str, changes: Mapping[str, Any] | None = None) -> Case:
     """Return the case of a file with changes."""
     case = Case.load(path)
     return case.replace(changes) if changes else case
+
+
+def zipped(folder: str, *, progress: Progress) -> str:
+    """Write a project as a ZIP into a folder of its own; return the file. Trial runs stay out."""
+    project = Path(folder)
+    file = Path(mkdtemp(prefix="underfoot-")) / f"{project.name}.zip"
+    parts = [part for part in sorted(project.rglob("*")) if part.is_file()]
+    with ZipFile(file, "w", ZIP_DEFLATED) as archive:
+        for number, part in enumerate(parts, 1):
+            place = part.relative_to(project)
+            if not any(name.startswith(".") for name in place.parts) and not part.is_symlink():
+                archive.write(part, Path(project.name) / place)
+            progress("packing", number / len(parts))
+    return str(file)
 
 
 def compound(path: str, *, progress: Progress) -> str:
@@ -140,6 +157,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
     result = Result.load(folder)
     cof, slip = result.scalars["cof"], result.scalars.get("slip_probability")
     numbers = {
+        "verdict": result.verdict()[0],
         "cof": cof.value,
         "interval": cof.interval,
         "slip": None if slip is None else slip.value,
@@ -155,21 +173,18 @@ def previewed(
 ) -> dict[str, Any]:
     """Return what changes of a case make of its stored result, by continuation: a preview.
 
-    The continuation is of the quick grid and one position of the tread: its share of change is
-    taken of what the whole run said.
+    The numbers are those of the stored run, moved by what the continuation says of the change.
     """
     case = Case.load(path).replace(UNREAD)
     changed = case.replace(changes) if changes else case
-    seen, start = preview(case, changes, progress=progress), _start(case)
     stored = json.loads((Path(folder) / "result.json").read_text(encoding="utf-8"))
-    share = {
-        name: stored[name]["value"] / start[name] if start[name] and stored[name]["value"] else 1.0
+    whole = {
+        name: SourcedValue(stored[name]["value"], numerical=stored[name].get("numerical"))
         for name in ("cof", "fluid_load")
     }
-    cof, draws = seen.cof.scaled(share["cof"]), seen.cof_draws
-    draws = None if draws is None else share["cof"] * draws
+    seen = preview_of_run(case, changes, whole, progress=progress)
     contact = seen.total_pressure - seen.fluid_pressure
-    slip, axes = slip_probability(changed, cof, draws)[0], ("x", "y")
+    slip, axes = slip_probability(changed, seen.cof, seen.cof_draws)[0], ("x", "y")
     fields = map_fields(seen.sole).assign(
         {
             "contact_pressure": (axes, contact, {"units": "Pa"}),
@@ -178,25 +193,14 @@ def previewed(
         }
     )
     return {
-        "cof": cof.value,
-        "error": share["cof"] * seen.errors["cof"],
-        "fluid_load": quantity_text(share["fluid_load"] * seen.values["fluid_load"], "N"),
+        "cof": seen.cof.value,
+        "error": seen.errors["cof"],
+        "fluid_load": quantity_text(seen.values["fluid_load"], "N", seen.errors["fluid_load"]),
         "slip": slip.value,
         "slip_interval": slip.interval,
         "extrapolated": bool(slip.note),
         "html": _html(Drawn(changed.name, fields)),
     }
-
-
-_STARTS: dict[str, Mapping[str, float]] = {}
-
-
-def _start(case: Case) -> Mapping[str, float]:
-    """Return the numbers of the march from which previews of a case go on."""
-    if case.hash not in _STARTS:
-        _STARTS.clear()
-        _STARTS[case.hash] = preview(case, {}).values
-    return _STARTS[case.hash]
 
 
 def presented(shown: Presentable) -> dict[str, Any]:

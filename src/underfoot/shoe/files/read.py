@@ -23,6 +23,8 @@ from .rhino import read_rhino
 from .scenes import AGAIN, read_scene
 from .stl import looks_like_stl, read_stl
 
+MOST_INFLATED = 500e6
+"""Bytes that an archive may hold unpacked: a 3MF of 6 million faces."""
 SUFFIXES = {
     ".stl": "STL",
     ".step": "STEP",
@@ -192,12 +194,20 @@ def _zipped(path: Path) -> str:
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
+            inflated = sum(part.file_size for part in archive.infolist())
     except (zipfile.BadZipFile, OSError) as error:
         raise DataError(
             "the file is an archive that is cut short or damaged",
             where=str(path),
             remedy="Export or copy it again",
         ) from error
+    if inflated > MOST_INFLATED:
+        raise DataError(
+            f"the archive holds {inflated / 1e6:.0f} MB",
+            where=str(path),
+            allowed=f"at most {MOST_INFLATED / 1e6:.0f} MB, which a reader takes twice in memory",
+            remedy="Export a coarser mesh (0.1 mm is fine enough), or as binary STL",
+        )
     if any(name.lower().endswith(".model") for name in names):
         return "3MF"
     shown = ", ".join(names[:5]) + (" ..." if len(names) > 5 else "")

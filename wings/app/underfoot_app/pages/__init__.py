@@ -12,10 +12,10 @@ write the module and its line in ``PAGES``; nothing else names it.
             ...                                                     # raise freely: errors are told
 
         def run() -> None:                                          # minutes: the queue
-            session.jobs.submit(session.text("answer.job"), "module:function", argument, about=name)
+            session.submit(session.text("answer.job"), "module:function", argument, about=name)
 
 - ``session.ask("module:function", *args)`` (the warm process, while a person waits) and
-  ``session.jobs.submit(title, "module:function", *args)`` (the queue) compute in another process:
+  ``session.submit(title, "module:function", *args)`` (the queue) compute in another process:
   ``function(*args, progress=...)`` takes and returns plain data (text, numbers, lists; HTML or JSON
   as text) and stands in ``underfoot_app.work`` or a module ``work_NAME`` beside it. A page never
   imports that module: the server must stay free of SciPy, xarray, pandas and Matplotlib.

@@ -14,7 +14,7 @@ from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
 from underfoot.core.presentation import is_wide, percent
 
-from ..components import SoleView, sentences, table, task_line, title
+from ..components import SoleView, scale, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
@@ -28,8 +28,12 @@ LIVE = (
     Input("shoe.wear.depth", "mm", 0.0, 4.0, 0.1),
     Input("shoe.material.shore_a", "", 45.0, 85.0, 1.0),
     Input("motion.normal_force", "N", 100.0, 900.0, 10.0),
+    Input("motion.shoe_angle", "deg", 0.0, 20.0, 0.5),
+    Input("shoe.tread.lug_width", "mm", 2.0, 20.0, 0.1),
+    Input("shoe.tread.channel_width", "mm", 1.0, 10.0, 0.1),
+    Input("shoe.tread.depth", "mm", 0.5, 8.0, 0.1),
 )
-"""Values that a preview can follow while they move."""
+"""Values that a preview follows while they move; of another tread the full run answers."""
 RUN, ADVICE = "underfoot_app.work:computed", "underfoot_app.work:advised"
 TRIED = ".tried"
 """Folder of results that holds full runs behind previews until they are kept as a variant."""
@@ -53,7 +57,7 @@ def begin_run(session: Session, name: str) -> Task:
             return task
         session.jobs.cancel(task)  # the file has changed since it began
     arguments = str(project.path(name)), str(project.result_folder(name))
-    return session.jobs.submit(job, RUN, *arguments, about=name)
+    return session.submit(job, RUN, *arguments, about=name)
 
 
 def example(session: Session) -> None:
@@ -111,7 +115,7 @@ class _Answer:
             if done.state == DONE:
                 path = str(self.session.project.path(self.name))
                 arguments = (self.text("answer.help_job"), ADVICE, path, str(self.folder))
-                self.session.jobs.submit(*arguments, about=self.name)
+                self.session.submit(*arguments, about=self.name)
                 self._reload()
 
         self.progress.clear()
@@ -134,17 +138,18 @@ class _Answer:
         with side:
             if not current:
                 ui.label(self.text("answer.changed")).classes("caution")
+            self.verdict = ui.element("div").classes("verdict-place").props('aria-live="polite"')
             self.summary = ui.element("div").props('aria-live="polite"')
             beside = self.session.query.get("beside", "")
             if beside in self.session.project.variants():
                 label = self.text("answer.beside", name=beside)
                 pair = address("/compare", variants=f"{beside}|{self.name}")
                 ui.link(label, pair).classes("strong")
+            self.help = ui.element("div")
             if current:
                 self._live()
-            self.help = ui.element("div")
         if not current:  # what was computed is of other inputs than the file's
-            for part in (self.summary, self.view, self.tables):
+            for part in (self.verdict, self.summary, self.view, self.tables):
                 part.classes("stale")
         with self.place:
             ui.timer(0, partial(self._answer, current), once=True)
@@ -156,8 +161,7 @@ class _Answer:
     async def _answer(self, current: bool) -> None:
         answer = await self.session.ask("underfoot_app.work:answer", str(self.folder))
         self.view.show(answer["html"])
-        with self.summary:
-            self._headline(answer)
+        self._headline(answer)
         with self.tables:
             self._tables(answer)
         if current:  # the march from which previews go on
@@ -165,20 +169,56 @@ class _Answer:
             await self.session.ask("underfoot_app.work:previewed", path, str(self.folder), {})
 
     def _headline(self, answer: dict[str, Any]) -> None:
-        with ui.element("div").classes("answer-card"):
-            if answer["usable"]:
+        """Show the verdict, then number and interval, then a shoe that one knows, then why."""
+        if not answer["usable"]:
+            with self.summary, ui.element("div").classes("answer-card"):
+                sentences(answer["headline"], "strong")
+            return
+        with self.verdict:
+            if answer["slip"] is not None:
+                word = answer["verdict"]
+                with ui.element("p").classes(f"verdict {word}"):
+                    ui.html(f"<b>{self.text(f'answer.{word}')}</b>", sanitize=False, tag="span")
+                    ui.label(self._risk(answer)).classes("strong")
+        with self.summary:
+            with ui.element("div").classes("answer-card"):
                 ui.label(self.text("answer.cof")).classes("soft")
                 ui.label(f"{answer['cof']:.3f}").classes("big")
                 if answer["interval"]:
                     low, high = (f"{end:.3f}" for end in answer["interval"])
                     ui.label(self.text("answer.interval", low=low, high=high))
-                if answer["slip"] is not None:
-                    ui.label(self._risk(answer)).classes("strong")
+                self.beside = ui.element("div")
+                self._beside(answer)
                 ui.label(answer["limit"]).classes("soft")
-            else:
-                sentences(answer["headline"], "strong")
-        for caution in answer["cautions"]:
-            ui.label(caution).classes("caution")
+            for caution in answer["cautions"]:
+                ui.label(caution).classes("caution")
+
+    def _beside(self, answer: dict[str, Any]) -> None:
+        """Show the COF on a scale with what walkers need and a shoe that the person knows."""
+        project = self.session.project
+        computed = [each.name for each in project.results() if each.cof and each.name != self.name]
+        known = project.known if project.known in computed else None
+        marks = [("here", self.text("answer.here"), answer["cof"])]
+        if (needed := self.case.value("risk.rcof_mean")) is not None:
+            marks.append(("needed", self.text("answer.needed"), needed))
+        if known and (summary := project.summary(known)) and summary.cof:
+            marks.append(("known", known, summary.cof))
+        self.beside.clear()
+        with self.beside:
+            scale(marks, answer["interval"])
+            if not computed:
+                return
+            choice = ui.select(computed, label=self.text("answer.known"), value=known)
+            choice.props("dense outlined options-dense clearable")
+
+            def chosen() -> None:
+                project.known = choice.value
+                self._beside(answer)
+
+            choice.on_value_change(chosen)
+            if known:
+                pair = address("/compare", variants=f"{known}|{self.name}")
+                ui.link(self.text("answer.how_sure"), pair)
 
     def _tables(self, answer: dict[str, Any]) -> None:
         sentences(answer["headline"])
@@ -256,7 +296,7 @@ class _Answer:
         folder = str(self.session.project.inside("results", TRIED, self.name))
         named = {**changes, "name": self.session.project.free_name(self.name)}
         arguments = (path, folder, named)
-        self.tried = jobs.submit(
+        self.tried = self.session.submit(
             self.text("answer.full"),
             RUN,
             *arguments,
@@ -352,7 +392,8 @@ class _Answer:
         return percent(probability)
 
     def _make(self, each: dict[str, Any]) -> None:
-        wanted = f"{self.name}, {each['name'].replace('_', ' ')}"
+        change = self.text.get(f"changes.{each['name']}", each["name"].replace("_", " "))
+        wanted = f"{self.name}, {change}"
         new = self.session.project.copy(self.name, wanted, each["values"])
         begin_run(self.session, new)
         self.session.go(ROUTE, variant=new, beside=self.name)

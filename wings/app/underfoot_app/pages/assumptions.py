@@ -43,7 +43,7 @@ def _filled(session: Session, name: str, again: Any) -> None:
             project = session.project
             folder = project.inside("studies", f"{name}, sensitivity")
             arguments = (str(project.path(name)), str(folder))
-            session.jobs.submit(text("assumptions.job"), EFFECTS, *arguments, about=name)
+            session.submit(text("assumptions.job"), EFFECTS, *arguments, about=name)
             await again()
 
         ui.button(text("assumptions.compute"), on_click=compute).props("no-caps outline")

@@ -36,7 +36,7 @@ class _Compare:
         with ui.element("div").classes("bar-row no-print"):
             self.choice = ui.select(names, multiple=True, value=asked or names[:2])
             self.choice.props(f'dense outlined use-chips label="{self.text("compare.choose")}"')
-            self.choice.props(f"max-values={MOST}").classes("compare-choice")
+            self.choice.props(f"max-values={MOST} translate=no").classes("compare-choice")
             self.choice.on_value_change(self.show)
             for key, icon, action in (
                 ("csv", "table_view", self._csv),

@@ -31,7 +31,9 @@ def build(session: Session) -> None:
     show()
     project = session.project
     session.follow(lambda: [(name, *project.state(name)) for name in project.variants()], show)
-    _tour(session)
+    with ui.element("div").classes("row"):
+        _tour(session)
+        _pack(session)
 
 
 def _door(session: Session, door: str) -> None:
@@ -63,7 +65,7 @@ def _recent(session: Session) -> None:
         for name in names:
             summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
-                ui.link(name, address("/design", variant=name))
+                ui.link(name, address("/design", variant=name)).props('translate="no"')
                 if summary is None or summary.cof is None:
                     ui.label(text("start.not_computed")).classes("soft")
                     continue
@@ -75,10 +77,27 @@ def _recent(session: Session) -> None:
                     ui.label(text("start.changed")).classes("soft")
 
 
+def _pack(session: Session) -> None:
+    """Offer the project as a ZIP, beside what computes."""
+
+    async def packed() -> None:
+        button.disable()
+        folder = str(session.project.folder)
+        task = session.submit(text("start.pack"), "underfoot_app.work:zipped", folder)
+        await session.jobs.finished(task)
+        button.enable()
+        if task.answer:
+            ui.download.file(task.answer)
+
+    text = session.text
+    button = ui.button(text("start.pack"), icon="archive", on_click=packed).props("no-caps flat")
+
+
 def _tour(session: Session) -> None:
     """Offer the tour; it opens by itself where the project is new."""
     text = session.text
     with ui.dialog() as dialog, ui.card().classes("tour"), ui.stepper() as steps:
+        dialog.props(f'aria-label="{text("tour.open")}"')
         steps.props("flat animated header-nav alternative-labels")
         for number, key in enumerate(TOUR):
             with ui.step(key, title=text(f"tour.{key}")):

@@ -291,7 +291,7 @@ class _Study:
     async def run(self) -> None:
         """Compute what is not finished; what is finished stays, however the run ends."""
         name = self.text("studies.job")
-        self._follow(self.session.jobs.submit(name, COMPUTED, *self.at, about=self.name))
+        self._follow(self.session.submit(name, COMPUTED, *self.at, about=self.name))
 
     async def stop(self) -> None:
         """Stop whoever computes: this app, and others in the same folder."""

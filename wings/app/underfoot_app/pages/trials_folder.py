@@ -167,7 +167,7 @@ class FolderView:
         """Write the report and show the way to it."""
         session, text = self.session, self.text
         work = f"{WORK}:written_report"
-        task = session.jobs.submit(
+        task = session.submit(
             text("trials.report_job"), work, self.study.asked, about=self.study.name
         )
 

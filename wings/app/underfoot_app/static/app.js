@@ -82,6 +82,14 @@ function takeFiles(id, settings, words) {
 // A page that puts what it shows into the address is built anew when one goes back.
 addEventListener("popstate", () => location.reload());
 
+// Ctrl+Z undoes, Ctrl+Shift+Z and Ctrl+Y redo, but for the text in a field.
+addEventListener("keydown", (e) => {
+  const key = e.key.toLowerCase(), typing = e.target.matches?.("textarea, input:not([type=range], [type=radio], [type=checkbox]), [contenteditable]");
+  if (!(e.ctrlKey || e.metaKey) || typing || (key !== "z" && key !== "y")) return;
+  const step = key === "y" || e.shiftKey ? "redo" : "undo", button = document.querySelector(`[data-step=${step}]`);
+  if (button) { e.preventDefault(); button.click(); }
+});
+
 // Put words into every element that waits for them by name.
 function showTexts(texts) {
   for (const [name, text] of Object.entries(texts)) {
@@ -103,7 +111,8 @@ function askLive(id, address, soleId, keep) {
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
     .map((i) => [i.name, value(i)])));
   const show = (input) => {
-    const words = `${Number(value(input).toPrecision(3))} ${input.dataset.unit}`.trim();
+    const shown = Number((value(input) / Number(input.dataset.size)).toPrecision(3));
+    const words = `${shown} ${input.dataset.unit}`.trim();
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };

@@ -1,6 +1,8 @@
-"""The words of the app: one file a language, looked up by key.
+"""The words of the app in each language, as catalogue files that another language can copy.
 
-What the package itself computes and says (results, remarks, errors) is English.
+``en.toml``, ``de.toml``: what the app says, by key. ``de.package.toml``: what the package says
+(results, remarks, catalogue, errors), by the English sentence; ``{}`` stands for a part that
+changes, ``{0}``, ``{1}`` for these parts in the other language. The browser puts these in.
 """
 
 from __future__ import annotations
@@ -11,8 +13,9 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-LANGUAGES = {"en": "English", "de": "Deutsch"}
-"""Name of each language in itself, by its code."""
+from underfoot.core.units import SYSTEMS
+
+FOLDER = files("underfoot_app.text")
 
 
 class Text:
@@ -30,6 +33,15 @@ class Text:
         """Return the words of a key with its placeholders filled."""
         return self._messages[key].format(**values)
 
+    def of_package(self) -> dict[str, str]:
+        """Return the sentences of the package in this language, by their English."""
+        file = FOLDER.joinpath(f"{self.language}.package.toml")
+        return tomllib.loads(file.read_text("utf-8")) if file.is_file() else {}
+
+    def unit_systems(self) -> dict[str, str]:
+        """Return the name of each system of units."""
+        return {system: self(f"frame.{system}") for system in SYSTEMS}
+
     def get(self, key: str, otherwise: str) -> str:
         """Return the words of a key, or ``otherwise`` where there is none."""
         return self._messages.get(key, otherwise)
@@ -38,8 +50,7 @@ class Text:
 @cache
 def catalogue(language: str) -> dict[str, str]:
     """Return the words of a language by dotted key."""
-    file = files("underfoot_app.text").joinpath(f"{language}.toml")
-    return _flat(tomllib.loads(file.read_text("utf-8")))
+    return _flat(tomllib.loads(FOLDER.joinpath(f"{language}.toml").read_text("utf-8")))
 
 
 def chosen_language(cookie: str | None, accepted: str) -> str:
@@ -54,3 +65,11 @@ def _flat(table: Mapping[str, Any], start: str = "") -> dict[str, str]:
         path = f"{start}{key}"
         flat |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
     return flat
+
+
+LANGUAGES = {
+    code: catalogue(code)["frame.language_name"]
+    for code, _, rest in sorted(file.name.partition(".") for file in FOLDER.iterdir())
+    if rest == "toml"
+}
+"""Name of each language in itself, by its code: one for each file."""

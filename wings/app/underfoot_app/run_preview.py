@@ -1,0 +1,95 @@
+"""A preview as the change of a whole run, with the errors of that run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from underfoot.case import Case
+from underfoot.compute.continuation import Continuation, Preview, kept_continuation
+from underfoot.compute.numerical_error import LUGS
+from underfoot.core import ConvergenceError, Progress, SourcedValue, silent
+from underfoot.core.threads import threads_limited
+
+SURE = 1.96
+"""Standard deviations of a numerical error in the ± beside a whole run: 95 %."""
+DRIFT = {"shoe.wear.depth": (60.0, 50.0), "motion.shoe_angle": (0.46, 0.17)}
+"""What one position on the quick grid may miss of wear (1/m) and turning (1/rad): share of the COF,
+and of the load for the film. Chosen on 50 settings of two treaded soles; ``benchmarks/previews.py``
+counts on others."""
+MOST_UNSURE = 0.25
+"""Error beside a whole run, over the COF and over the load for the film, that still says enough."""
+
+
+@threads_limited(1)
+def preview_of_run(
+    case: Case,
+    changes: Mapping[str, Any],
+    whole: Mapping[str, SourcedValue],
+    *,
+    progress: Progress = silent,
+) -> Preview:
+    """Return the preview of a changed case as a change of the ``whole`` run of the case."""
+    solved = kept_continuation(case, progress=progress)
+    return of_run(solved, solved.continued(changes), whole)
+
+
+def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue]) -> Preview:
+    """Return a preview as the change of a whole run, in its COF and load on the film.
+
+    ``whole`` are the scalars of the run of the unchanged case; they change by the share that
+    the preview changes by, the load on the film by that of its odds. The errors are where 95
+    of 100 whole runs of changed cases lie:
+
+        e^2 = (share x e_steps)^2 + 2 (1.96 s)^2 + sum (drift x change of the geometry)^2
+
+    with the numerical error s of a whole run, of grid and positions: once of the run that was
+    made and once of the one to come.
+
+    Raises:
+        ConvergenceError: An error above ``MOST_UNSURE``.
+    """
+    case = solved.case.replace(seen.changes)
+    load, values, errors = case.motion.normal_force, dict(seen.values), dict(seen.errors)
+    for number, (name, usual) in enumerate(LUGS.items()):
+        run, before, after = whole[name].value or 0.0, solved.values[name], seen.values[name]
+        limits = (math.inf, math.inf)
+        if name == "fluid_load":
+            limits = (solved.case.motion.normal_force, load)
+        values[name] = _moved(run, before, after, limits)
+        share = values[name] / after if after else 1.0
+        known = whole[name].numerical
+        relative = usual[True] if known is None or not run else known / run
+        size = values[name] if name == "cof" else load
+        moved = {p: (case.value(p) or 0.0) - (solved.case.value(p) or 0.0) for p in DRIFT}
+        drifts = (DRIFT[path][number] * change * size for path, change in moved.items())
+        repeated = math.sqrt(2.0) * SURE * relative * values[name]
+        errors[name] = math.hypot(share * seen.errors[name], repeated, *drifts)
+    if max(errors["cof"] / values["cof"], errors["fluid_load"] / load) > MOST_UNSURE:
+        raise ConvergenceError(
+            f"a preview would say COF {values['cof']:.3f} ± {errors['cof']:.3f}, film "
+            f"{values['fluid_load']:.0f} ± {errors['fluid_load']:.0f} N: too little",
+            where="continued",
+            remedy="Run the changed case",
+        )
+    share = values["cof"] / seen.values["cof"] if seen.values["cof"] else 1.0
+    draws = None if seen.cof_draws is None else share * seen.cof_draws
+    cof = seen.cof.scaled(share)
+    return replace(seen, values=values, errors=errors, cof=cof, cof_draws=draws)
+
+
+def _moved(run: float, before: float, after: float, limits: tuple[float, float]) -> float:
+    """Return a number of a whole run moved as from ``before`` to ``after``, by its odds.
+
+    ``limits`` are what it is at most, of the unchanged case and of the changed one.
+    """
+    if not (run > 0 and before > 0 and after > 0):
+        return after
+
+    def odds(value: float, most: float) -> float:
+        return value / (1.0 - min(value / most, 0.999))
+
+    moved = odds(run, limits[0]) / odds(before, limits[0]) * odds(after, limits[1])
+    return moved / (1.0 + moved / limits[1])
