@@ -41,6 +41,8 @@ def test_files_are_read_right_without_an_option(tmp_path, name):
     trial = TRIALS[name]
     # widths are known within half a cell; holes of a scan are not told from steps on 1 mm
     settings = HALF if trial.truth.width or "holes" in name else WHOLE
+    if name == "floor plane of a scan":  # on 0.5 mm the edges of its lugs lie on cells' middles
+        settings = FileSettings()
     found = outsole_from_file(trial.write(tmp_path), settings)
     measures, truth = tread_measures(found.surface), trial.truth
     assert measures.land_ratio == pytest.approx(truth.land, abs=0.02)

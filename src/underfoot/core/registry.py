@@ -33,8 +33,9 @@ WINGS = {
     ("tread", "free"): "underfoot-design-studies",
     **{
         ("commands", name): "underfoot-places"
-        for name in ("calibrate.machine", "choose", "machine")
+        for name in ("calibrate.machine", "choose", "machine", "machines")
     },
+    ("friction", "pair_read"): "underfoot-places",
     ("catalogues", "places"): "underfoot-places",
     ("reports", "underfoot_places"): "underfoot-places",
     ("reports", "underfoot_trial_analysis"): "underfoot-trial-analysis",
