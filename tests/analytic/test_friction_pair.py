@@ -377,6 +377,7 @@ def test_a_compound_and_a_floor_of_the_catalogue_are_drawn_over_their_spread():
     assert not np.array_equal(wide, exact)
 
 
+@pytest.mark.slow
 def test_packaged_draws_lie_on_the_safe_side_of_the_fit_to_every_reading():
     """They are those of 55 wet readings: COF inside the interval of all, and not above them.
 

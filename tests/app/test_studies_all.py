@@ -210,6 +210,7 @@ def test_the_page_of_a_study_is_read_without_scrolling_sideways(g3_run, width):
         assert tallest < 400  # 540 px once, when a note was squeezed beyond the right edge
 
 
+@pytest.mark.slow
 def test_a_study_fits_a_terminal_of_80_columns(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     found = called("studies", "run", "g3", "--quick")

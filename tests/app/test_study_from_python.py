@@ -21,6 +21,7 @@ def case():
     return uf.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(GRID)
 
 
+@pytest.mark.slow
 def test_a_sweep_gives_what_the_runs_of_its_cases_give(case, tmp_path):
     speeds = [0.3, 0.7]
     conditions = {"contaminant": ["glycerol_90pct", "canola_oil"]}

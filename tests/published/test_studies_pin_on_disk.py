@@ -237,6 +237,7 @@ def test_study_g3_judges_the_default_law(computed):
     assert set(computed.figures) == figures
 
 
+@pytest.mark.slow
 def test_study_g3_takes_the_loss_of_the_compounds_as_a_case_does(computed):
     """What the compounds lose is what a case of the same pair gives at its loss tangent."""
     catalogue, draws = Catalogue.load(), default_law.draws_without_report()
