@@ -47,8 +47,9 @@ QUANTITIES: Mapping[str, tuple[str, str]] = {
 }
 """Label and remark of each quantity, in the order of the summary; parts are indented."""
 GRIPS, SLIPS = 1e-3, 0.05
-"""Slip probability that every verdict "grips" lies below: the least that is printed; and that every
-verdict "slips" lies above: 1 in 20, which HSE calls more than a low slip potential (GEIS2)."""
+"""Slip probability that every verdict "grips" lies below, the least that is printed; and that every
+verdict "slips" lies above: 1 in 20, that of a floor at the end of "high slip potential" (pendulum
+value 24; as printed by C. Harris, Tomorrow's Health & Safety, April 2023, after HSE and BRE)."""
 LUGS_SHOWN = 6
 """Most lugs in the table of their drainage."""
 LABELS = {
