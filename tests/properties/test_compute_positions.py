@@ -1,6 +1,7 @@
 """The answer of a treaded sole: averaged over where its pattern lies."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.case import Case, CaseError
+from underfoot.compute import numerical_error
 from underfoot.compute.positions import (
     ANGLE_BAND,
     TreadPositions,
@@ -18,7 +20,8 @@ from underfoot.compute.positions import (
 )
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
-from underfoot.core import SourcedValue
+from underfoot.compute.summary import cautions
+from underfoot.core import SourcedValue, Status
 from underfoot.friction.coefficient import FrictionCoefficients
 from underfoot.friction.sampled_cof import SampledCof
 from underfoot.shoe import Sipes, Tread
@@ -285,12 +288,33 @@ def test_the_mean_hardly_depends_on_where_the_pattern_begins(bars):
     assert after[0] < 0.05 * np.mean(mean, axis=0)[0]
 
 
-def test_a_place_that_does_not_converge_is_said():
-    positions = TreadPositions(
-        places(np.eye(2), 1), {"cof": np.array([0.1]), "fluid_load": np.array([5.0])}, 3
+def test_a_place_that_does_not_converge_is_said_first_and_widens_the_error(monkeypatch):
+    """Places that fail float: what is missing may be as far off as the farthest of the others."""
+    load = np.array([60.0, 80.0, 100.0, 160.0])
+    values = {"cof": np.full(4, 0.1), "fluid_load": load}
+    errors = {}
+    monkeypatch.setattr(numerical_error, "_read", lambda *_: dict.fromkeys(values, 0.0))
+    monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
+    parts = SimpleNamespace(
+        case=SimpleNamespace(numerics=SimpleNamespace(grid_check=False)), objects={}, sole=None
     )
-    assert "3 did not converge" in positions.labels()["tread_position"]
-    assert positions.factors("cof").tolist() == [1.0]
+    for left_out in (0, 2):
+        positions = TreadPositions(places(np.eye(2), 4), values, left_out)
+        found = numerical_error.numerical_errors(
+            parts, SimpleNamespace(contact=None), positions, quick=False
+        )
+        errors[left_out] = found.grid["fluid_load"]
+        told = positions.labels()
+        assert ("positions_left_out" in told) == bool(left_out)
+    scatter = np.std(load, ddof=1) / 2
+    assert errors[0] == pytest.approx(math.hypot(0.1 * 100, scatter))
+    assert errors[2] == pytest.approx(math.hypot(0.1 * 100, scatter, 2 / 6 * 60))
+    assert "2 of 6 positions of the tread did not converge" in told["positions_left_out"]
+    assert cautions(Status.CONVERGED, {}, (), (), labels=told)[0] == told["positions_left_out"]
+    one = TreadPositions(places(np.eye(2), 1), {"cof": np.array([0.1]), "fluid_load": load[:1]}, 3)
+    assert "3 did not converge" in one.labels()["tread_position"]
+    assert "3 of 4" in one.labels()["positions_left_out"]
+    assert one.factors("cof").tolist() == [1.0]
 
 
 @pytest.mark.slow

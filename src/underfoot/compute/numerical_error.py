@@ -117,10 +117,11 @@ def numerical_errors(
 
     With n positions of a tread
 
-        s^2 = (c v)^2 + s_p^2 / n
+        s^2 = (c v)^2 + s_p^2 / n + (m / (n + m) d)^2
 
     c v what lies between grids under lugs (``LUGS``), s_p the standard deviation over the
-    positions. Without a tread s is the difference to the quick grid, of a quick run ``QUICK``.
+    positions, d the largest difference of one to their mean: m more that did not converge may be
+    as far off. Without a tread s is the difference to the quick grid, of a quick run ``QUICK``.
     ``numerics.grid_check`` compares with the quick grid, without lugs with ``CHECKED`` cells along
     the sliding on it, and these with twice the steps in time (first order).
 
@@ -155,7 +156,13 @@ def numerical_errors(
             values = positions.values[name]
             scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
             share = LUGS[name][quick] if name in LUGS else LUGS_PEAK
-            grid[name] = math.hypot(share * float(values.mean()), scatter / math.sqrt(count))
+            missing = (
+                positions.left_out
+                / (count + positions.left_out)
+                * float(np.abs(values - values.mean()).max())
+            )
+            mean = float(values.mean())
+            grid[name] = math.hypot(share * mean, scatter / math.sqrt(count), missing)
         return NumericalErrors(grid, {}, f"{count} positions, and other grids under lugs")
     return "not estimated with numerics.tread_positions = 1"
 

@@ -115,15 +115,23 @@ class TreadPositions:
     def labels(self) -> dict[str, str]:
         """Return what was averaged in words."""
         failed = f"{self.left_out} did not converge and are left out" if self.left_out else ""
+        told = {}
+        if failed:
+            told["positions_left_out"] = (
+                f"{self.left_out} of {self.left_out + len(self.places)} positions of the tread did "
+                "not converge. Most such positions float: COF may be lower and the load on the "
+                "film higher than the means over the others."
+            )
         if len(self.places) == 1:
-            return {"tread_position": f"as the case describes it; {failed} of the average"}
+            return {"tread_position": f"as the case describes it; {failed} of the average", **told}
         cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
         return {
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
             f"Numbers are means over them; maps and histories show the position that the case "
             f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
-            + (f"; {failed}" if failed else "")
+            + (f"; {failed}" if failed else ""),
+            **told,
         }
 
     def assumptions(self) -> tuple[str, ...]:

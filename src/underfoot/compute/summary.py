@@ -204,7 +204,7 @@ def cautions(
     """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
     if not status.usable:
         return ()
-    reasons = []
+    reasons = [labels["positions_left_out"]] if "positions_left_out" in labels else []
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
         reasons.append(f"Slip probability {slip.note}.")
