@@ -144,7 +144,8 @@ class FilmBalance:
         stored = self._storage * np.abs(operator.gap * fraction - self._content)
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
         moved = float((np.abs(carried) + stored)[self._film].sum()) + 1e-30
-        by_gap = by_gap.columns((operator.gap == gap) * 1.0)
+        # a gap that is pressed shut can open again: rows that did not know had no solution
+        by_gap = by_gap.columns((gap <= problem.largest_gap) * 1.0)
         return FilmRows(
             full,
             net,
