@@ -185,6 +185,38 @@ def test_who_takes_over_from_the_dead_computes_only_what_they_left(store, monkey
     assert set(Store(store.folder).records()) == set(keys)
 
 
+def test_a_claim_whose_name_is_not_written_yet_is_one(store, monkeypatch):
+    """A busy machine may stop a process between the two calls that claim a block."""
+    monkeypatch.setattr(claims, "block_edges", lambda count: [0, count])
+    keys, other = begun(store), Store(store.folder)
+    claim = store.round.folder / "0"
+    claim.touch()
+    with other.working(1):
+        assert took(other) is None
+        old = time.time() - store_module.SILENT - 5
+        os.utime(claim, (old, old))  # it died there
+        assert taken(other) == keys
+
+
+def test_two_that_see_the_same_dead_one_do_not_both_take_over(store, monkeypatch):
+    monkeypatch.setattr(claims, "block_edges", lambda count: [0, count])
+    keys, dead, slow = begun(store), Store(store.folder), Store(store.folder)
+    dead.name = dead_name(store)
+    assert taken(dead) == keys
+    quick = []
+
+    def while_looking(self, owner, mark=None):  # another is faster, after the look at the owner
+        if self is slow and not quick:
+            quick.append(taken(store))
+        return alive(self, owner, mark)
+
+    alive = Store._alive
+    monkeypatch.setattr(Store, "_alive", while_looking)
+    with store.working(1), slow.working(1):
+        assert took(slow) is None
+        assert quick == [keys]
+
+
 def test_who_knew_an_ended_round_computes_nothing_of_it_again(store):
     keys, other = begun(store), Store(store.folder)
     assert list(other.round.places)

@@ -1,7 +1,8 @@
 """Who computes what: the open jobs of a round, in blocks that processes claim.
 
     claims/ROUND/jobs.npy    first byte in jobs.jsonl of every job that was open as the round began
-    claims/ROUND/BLOCK       claimed: the processes that have had it, the last one its owner
+    claims/ROUND/BLOCK       claimed, by the process that it names
+    claims/ROUND/BLOCK-N     taken over from a dead one, by its Nth owner after the first
     claims/ROUND/BLOCK.done  beside it: every job of it has a record
 
 The one process that leads begins a round when the one before has ended; without jobs it is the
@@ -36,6 +37,8 @@ REFUSED = 4
 DONE = ".done"
 FIRST = 10_000_000
 """Numbers that a first round is drawn from."""
+Alive = Callable[[str, Path | None], bool]
+"""Whether a process works; one that has not written its name yet goes by the age of its claim."""
 
 
 class Round:
@@ -67,9 +70,7 @@ class Round:
         """Whether every block was done as this process looked last."""
         return len(self._done) == len(self._edges) - 1
 
-    def claim(
-        self, alive: Callable[[str], bool], *, in_order: bool
-    ) -> tuple[int, AnyArray, list[str]] | None:
+    def claim(self, alive: Alive, *, in_order: bool) -> tuple[int, AnyArray, list[str]] | None:
         """Return a block, the places of its jobs and who had it before; None where none is open.
 
         ``in_order`` takes the first open one; many processes begin at places of their own instead.
@@ -86,10 +87,10 @@ class Round:
             return block, self._jobs(block), []
         for block in random.sample(left, min(len(left), ASKED)):
             with suppress(FileNotFoundError):
-                path = self.folder / str(block)
-                owners = path.read_text(encoding="utf-8").split("\n")
-                if owners[-1] != self._name and not alive(owners[-1]):
-                    write_file(path, "\n".join([*owners, self._name]).encode("utf-8"))
+                path, owners = self._owners(block)
+                if owners[-1] == self._name or alive(owners[-1], None if owners[-1] else path):
+                    continue
+                if self._claimed(f"{block}-{len(owners)}"):
                     return block, self._jobs(block), owners
         return None
 
@@ -99,18 +100,30 @@ class Round:
         while self._free and refused < REFUSED:
             place = 0 if in_order else random.randrange(min(len(self._free), LARGEST))
             block = self._free.pop(place)
-            try:
-                path = self.folder / str(block)
-                descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
-            except FileExistsError:
-                refused += 1
-                continue
-            try:
-                write_all(descriptor, self._name.encode("utf-8"))
-            finally:
-                os.close(descriptor)
-            return block
+            if self._claimed(str(block)):
+                return block
+            refused += 1
         return None
+
+    def _claimed(self, name: str) -> bool:
+        """Return whether this process makes the file of a name: no other has. Its own goes in."""
+        try:
+            descriptor = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+        except FileExistsError:
+            return False
+        try:
+            write_all(descriptor, self._name.encode("utf-8"))
+        finally:
+            os.close(descriptor)
+        return True
+
+    def _owners(self, block: int) -> tuple[Path, list[str]]:
+        """Return the last claim of a block, and all who have had it in their order."""
+        path = self.folder / str(block)
+        owners = path.read_text(encoding="utf-8").split("\n")  # of before 0.3: all in one file
+        while (after := self.folder / f"{block}-{len(owners)}").exists():
+            path, owners = after, [*owners, after.read_text(encoding="utf-8")]
+        return path, owners
 
     def size(self, block: int) -> int:
         """Return the number of jobs of a block."""
@@ -122,15 +135,15 @@ class Round:
             os.close(os.open(self.folder / f"{block}{DONE}", os.O_WRONLY | os.O_CREAT, 0o644))
             self._done.add(block)
 
-    def other(self, alive: Callable[[str], bool]) -> str:
+    def other(self, alive: Alive) -> str:
         """Return another living process that computes a block of it; "" without."""
         names = set(os.listdir(self.folder))
         for name in names:
             if name.isdigit() and name + DONE not in names:
                 with suppress(OSError):
-                    owner = (self.folder / name).read_text(encoding="utf-8").split("\n")[-1]
-                    if owner != self._name and alive(owner):
-                        return owner
+                    path, owners = self._owners(int(name))
+                    if owners[-1] != self._name and alive(owners[-1], None if owners[-1] else path):
+                        return owners[-1] or path.name
         return ""
 
     def _jobs(self, block: int) -> AnyArray:
