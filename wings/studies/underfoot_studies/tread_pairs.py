@@ -33,11 +33,6 @@ grips four times another's, where wiping is most seen, and two outsoles in 50 % 
 pair is known. Both named before the fit."""
 
 
-LATER = ("work_wear_limit",)
-"""Sources read since the packaged table was made: they enter with the next one, as every interval
-of a tread then moves."""
-
-
 def tread_contrasts() -> list[Contrast]:
     """Return the published effects of treads that can be computed."""
     every = (one for source in corpus() if source.verified for one in contrasts(source))
@@ -66,7 +61,7 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
         second = _place(one.under.cases[0])
         names, case = (one.source, one.effect), one.over.cases[0]
         yield _pair(*names, case, ends, over / under, second, one.extremes_of)
-    paired = {one.source for one in tread_contrasts()} | set(LATER)
+    paired = {one.source for one in tread_contrasts()}
     for source in corpus():
         shoes = whole_shoe_stands(source) if source.verified and source.name not in paired else []
         for condition, stand in shoes:
