@@ -25,6 +25,7 @@ def test_two_states_foresee_the_treads_of_other_sources_better_than_one():
     assert sealed[oblique] < 0.05 < 0.4 < wiped[oblique] < math.log(4.3)
     for sole, read in (("hard_outsole", 0.159), ("soft_outsole", 0.182)):
         assert np.exp(wiped["report_g6", sole, "thick"]) == pytest.approx(read, rel=0.2)
-    for key, ratio in wiped.items():  # nothing happens in oil and 90 % glycerol
-        if key[2] == "thick" and key[0] != "report_g6":
+    # nothing happens in oil and 90 % glycerol; 50 % glycerol and oil in water (9 mPa s) drain
+    for key, ratio in wiped.items():
+        if key[2] == "thick" and key[0] not in ("report_g6", "work_wear_limit"):
             assert ratio == pytest.approx(sealed[key], abs=0.02), key

@@ -48,7 +48,7 @@ from .sources import Condition, Reading, corpus
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
 
-STEPS, QUICK_STEPS = 400, 150
+STEPS, QUICK_STEPS = 1000, 400
 """A fifth of the sampler's points."""
 LAW, PRIORS, REPORT = "pair", "pair, priors alone", "report"
 """REPORT is the laboratory of the report's own studies; everybody else is scored beside all."""

@@ -27,6 +27,7 @@ from scipy.optimize import minimize
 from scipy.stats import norm, qmc, spearmanr
 
 from underfoot.core.arrays import Array
+from underfoot.core.errors import ConvergenceError
 from underfoot.friction.pair_contact import (
     CONTACT_PRESSURE,
     LOSS_TANGENTS,
@@ -43,8 +44,8 @@ from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
 
 DRAWS_KEPT = 2000
 """Of a posterior."""
-ROUNDS = 12
-"""Most rounds of the sampler; the last three have all of its points."""
+ROUNDS = 24
+"""Most rounds of the sampler; the last twelve have all of its points."""
 FREEDOM = 5.0
 """Degrees of freedom of the sampler's proposals."""
 DRAWS = 8
@@ -455,7 +456,7 @@ def _sampled(
 
     From the mode, which lies near ``first`` on the scale ``width``, a Student t of five degrees
     of freedom takes mean and covariance of the weighted points, round after round, until they are
-    worth a twentieth of their number.
+    worth a twentieth of their number; ``ConvergenceError`` where they never are.
     """
     step = 1e-3 * width
 
@@ -469,7 +470,8 @@ def _sampled(
     points, weight = np.empty(0), np.empty(0)
     settled = False
     for number in range(ROUNDS):
-        count = size if settled else size // 4
+        # fewer points than this leave the covariance to a handful of them
+        count = size if settled else 50 * mean.size
         lower = np.linalg.cholesky(covariance + 1e-6 * np.eye(mean.size))
         normal = generator.normal(size=(count, mean.size))
         tails = np.sqrt(FREEDOM / generator.chisquare(FREEDOM, size=(count, 1)))
@@ -488,7 +490,12 @@ def _sampled(
         worth = 1 / (weight**2).sum() > count / 20
         if settled and worth:
             break
-        settled = settled or worth or number == ROUNDS - 4
+        settled = settled or worth or number == ROUNDS // 2 - 1
+    else:
+        raise ConvergenceError(
+            f"The {size} points of the posterior are worth {1 / (weight**2).sum():.0f} equal ones, "
+            f"fewer than a twentieth of them. More steps give the sampler more points."
+        )
     return points * width, weight
 
 
