@@ -88,7 +88,7 @@ def test_circle_is_told_as_a_path():
 
 
 def test_what_is_loaded_takes_little_time_beside_numpy_scipy_and_pydantic():
-    """In CPU seconds of one machine and one moment: the least of three starts of each."""
+    """In CPU seconds of one moment: a busy machine is slow for one of three starts, not for all."""
     parts = ("fft", "linalg", "ndimage", "sparse", "special")
     libraries = "import numpy, pydantic, " + ", ".join(f"scipy.{part}" for part in parts)
     case = "uf.load('examples/work_shoe_full_tread_glycerol.toml')"
@@ -96,17 +96,17 @@ def test_what_is_loaded_takes_little_time_beside_numpy_scipy_and_pydantic():
     environment = {**os.environ, "PYTHONPATH": str(SOURCE)}
     # without bytecode every start compiles what was changed
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    seconds: dict[str, list[float]] = {code: [] for code in codes}
-    for code in codes * 3:
+
+    def seconds(code: str) -> float:
         script = f"import time; s = time.process_time(); {code}; print(time.process_time() - s)"
         printed = subprocess.run(
             [sys.executable, "-c", script],
             cwd=REPOSITORY, env=environment, capture_output=True, text=True, check=True,
         )  # fmt: skip
-        seconds[code].append(float(printed.stdout))
-    least, start, first = (min(seconds[code]) for code in codes)
-    assert start < START * least
-    assert first < FIRST * least
+        return float(printed.stdout)
+
+    rounds = ([seconds(code) for code in codes] for _ in range(5))
+    assert any(start < START * least and first < FIRST * least for least, start, first in rounds)
 
 
 def test_no_line_names_a_path_of_a_machine():
