@@ -222,3 +222,16 @@ def test_surface_that_is_none_is_refused():
     height[0, 0] = 0.0
     with pytest.raises(InputError, match="land lies outside"):
         SoleSurface(axis, axis, height, np.ones((10, 10), bool), height * 0, 1e-3, rim)
+
+
+@pytest.mark.parametrize(("bevel", "is_land"), [(0.0, True), (0.2, False)])
+def test_a_slice_of_a_lug_at_the_rim_is_land_where_it_lies_like_the_land_beside_it(bevel, is_land):
+    """Bars on a heel with a facet of 10 degrees, whose rearmost lug is cut to 1.5 mm."""
+    spacing = 0.25e-3
+    x = spacing * (np.arange(240) + 0.5)[:, None] + np.zeros((1, 120))
+    facet = math.tan(math.radians(10)) * np.maximum(30e-3 - x, 0.0)
+    rim = bevel * np.maximum(1.5e-3 - x, 0.0)
+    channel = np.mod(x - 1.5e-3, 10e-3) < 4e-3
+    land = tread_map(facet + rim + 3e-3 * channel, spacing).land
+    assert np.unique(land[:4]).tolist() == [is_land]
+    assert np.array_equal(land[6:], ~channel[6:])

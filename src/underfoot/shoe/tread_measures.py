@@ -100,10 +100,15 @@ def tread_map(
     channel = without_specks(channel, cells)
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)
     land = inside & ~channel
-    # what only a tilted floor grazes, along the rim, is no land
+    # what only a tilted floor grazes, along the rim, is no land; a facet that lies like the land
+    # beside it is
     numbers, _ = pieces(land)
-    deeper = numbers[land & ~rim(inside, max(1, round(_GRAZED[0] / spacing)))]
-    steep = _slope(rolled, spacing) > _GRAZED[1]
+    away = land & ~rim(inside, max(1, round(_GRAZED[0] / spacing)))
+    deeper = numbers[away]
+    slopes = _slopes(rolled, spacing)
+    if away.any():
+        slopes = slopes - slopes[:, *nearest_true(away)]
+    steep = np.hypot(*slopes) > _GRAZED[1]
     steepness = np.bincount(numbers.ravel(), steep.ravel()) / np.maximum(
         np.bincount(numbers.ravel()), 1
     )
@@ -142,7 +147,7 @@ def _rounded_rim(height: Array, spacing: float) -> Array:
     of a channel that opens at the rim is not.
     """
     inside = np.isfinite(height)
-    slope = _slope(height, spacing)
+    slope = np.hypot(*_slopes(height, spacing))
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
     steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
     return np.where(steep, above, np.inf)
@@ -152,13 +157,13 @@ def _level(noise: float) -> float:
     return max(SHALLOWEST_CHANNEL, NOISE_FACTOR * noise)
 
 
-def _slope(height: Array, spacing: float) -> Array:
-    """Return the slope over 1 mm, carried on beyond the plan form."""
+def _slopes(height: Array, spacing: float) -> Array:
+    """Return the slopes along and across (2, nx, ny) over 1 mm, carried on beyond the plan form."""
     steps = max(1, round(_SLOPE_REACH / spacing))
     filled = np.pad(height[nearest_true(np.isfinite(height))], steps, mode="edge")
     along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
     across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
-    return np.hypot(along, across) / (2 * steps * spacing)
+    return np.array([along, across]) / (2 * steps * spacing)
 
 
 def height_noise(height: Array, lag: int = 1) -> float:
