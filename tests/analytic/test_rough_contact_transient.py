@@ -5,15 +5,15 @@ import pytest
 
 from underfoot.core import Cancelled, Status
 from underfoot.material import RelaxationSpectrum
-from underfoot.material.prony_march import (
+from underfoot.reference import sliding_sinusoid_cof
+from underfoot.rough_contact import steady_sliding
+from underfoot.rough_contact._kernels.periodic import ShiftedMap
+from underfoot_block.prony_march import (
     advance_memory,
     known_displacement,
     prony_step,
     relaxed_memory,
 )
-from underfoot.reference import sliding_sinusoid_cof
-from underfoot.rough_contact import steady_sliding
-from underfoot.rough_contact._kernels.periodic import ShiftedMap
 from underfoot_studies.transient import TransientSettings as Settings
 from underfoot_studies.transient import transient_sliding
 

@@ -362,7 +362,7 @@ def test_the_scene_of_wear_holds_what_each_state_has_lost():
     assert np.isnan(frames[0]).all(), "new"
     for frame, depth in zip(frames[1:], depths[1:], strict=True):
         assert np.nanmax(frame) == pytest.approx(depth * 1e3, rel=0.05)
-    first, last = (unpacked(pane["heights"][k], shape) for k in (0, -1))
+    first, last = (unpacked(pane["states"][k]["height"], shape) for k in (0, -1))
     assert np.nanmax(last - first) == pytest.approx(depths[-1], rel=0.05)
     assert pane["histories"]["lost"]["labels"][0].startswith("new")
 

@@ -33,6 +33,7 @@ from .html import embedded, new_figure
 from .maps import frame_sole
 from .page import Picture, Section, remark_sections, table_sections
 from .quantities import Quantity
+from .surface_mesh import surface_mesh
 from .viewer import listed_quantity, pane, scene, scene_section, viewer_script
 from .writing import Writer, data_writers
 
@@ -211,7 +212,7 @@ def outsole_scene(inspection: OutsoleInspection) -> dict[str, Any]:
         surface.name,
         sole,
         {quantity.name: values for quantity, values in coloured.items()},
-        outline=[[float(f"{v:.5g}") for v in point] for point in surface.outline],
+        surface_mesh(surface.x, surface.y, surface.height, surface.land),
         histories={},
     )
     return scene([shown], [listed_quantity(q, [values]) for q, values in coloured.items()])

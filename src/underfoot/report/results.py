@@ -7,10 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from underfoot.case import Case
 from underfoot.compute.result import Result
-from underfoot.compute.sole import sole_map
-from underfoot.core import silent
+from underfoot.compute.sole import sole_map, sole_shape
+from underfoot.core import UnderfootError, content_hash, silent
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
@@ -23,12 +25,17 @@ from .html import embedded, new_figure
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
 from .page import Picture, Section, page, remark_sections, table_sections
 from .quantities import quantities
+from .surface_mesh import SurfaceMesh, surface_mesh
 from .viewer import viewer_script, viewer_section
 from .writing import Writer, Written, data_writers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+DESIGNED = 0.3e-3
+"""m: side of the cells through which the designed surface is drawn."""
+SURFACES_KEPT = 6
+_surfaces: dict[str, SurfaceMesh] = {}
 SEEN = "Seen through the floor: the heel's back edge is at the bottom, walking direction up."
 
 
@@ -55,7 +62,7 @@ def _result_sections(
     warning = "" if result.usable else "The computation did not converge: for diagnosis only."
     if "cof_tread_position" in result.scalars:
         warning = "The tread lies as the case describes it; the numbers are means over positions."
-    parts = [Section("Under the sole", warning, html=viewer_section([result]), stage=True)]
+    parts = [Section("Under the sole", warning, html=_viewer([result]), stage=True)]
     if advice is not None:
         caption = "This result, moved by what each change does on the coarse grid."
         parts.append(Section(advice.table().title, caption, table=advice.table()))
@@ -130,7 +137,7 @@ def _comparison_sections(
         scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
         parts = [
             ranking[0],
-            Section("Under the soles", html=viewer_section(results)),
+            Section("Under the soles", html=_viewer(results)),
             *ranking[1:],
             Section("Maps and differences", scale),
             *(
@@ -145,6 +152,38 @@ def _comparison_sections(
     ]
     parts.append(Section("Results compared", items=sources))
     return parts, viewer_script() if comparison.usable else ""
+
+
+def _viewer(results: Sequence[Result]) -> str:
+    return viewer_section(results, [surface_of_result(result) for result in results])
+
+
+def surface_of_result(result: Result) -> SurfaceMesh | None:
+    """Return the sole of a result as it was designed; None where its file is not there any more."""
+    try:
+        return designed_surface(Case.from_text(result.case_text))
+    except UnderfootError:
+        return None
+
+
+def designed_surface(case: Case, spacing: float = DESIGNED) -> SurfaceMesh:
+    """Return the sole of a case over the floor, its lugs as they are drawn, not as they are solved.
+
+    Made from cells of ``spacing`` (m). The last few are kept in the process.
+
+    Raises:
+        InputError, DataError: The sole of the case can't be made: its file is not there.
+    """
+    shape = case.shoe.outsole or sole_shape(case)
+    key = content_hash(shape, case.shoe.wear, case.motion.shoe_angle, spacing)
+    if key not in _surfaces:
+        sole = sole_map(case, spacing, silent)
+        sole = sole.whole or sole
+        height = np.where(sole.inside, sole.clearance, np.nan)
+        while len(_surfaces) >= SURFACES_KEPT:
+            del _surfaces[next(iter(_surfaces))]
+        _surfaces[key] = surface_mesh(sole.x, sole.y, height, sole.land)
+    return _surfaces[key]
 
 
 def sole_fields(case: Case, spacing: float | None = None) -> Fields:

@@ -21,6 +21,7 @@ from underfoot.questions.comparison import LETTERS
 from .drawn_sole import DrawnSole, drawn_sole
 from .html import environment
 from .quantities import Quantity, carried_load, drawn, quantities, scale
+from .surface_mesh import SurfaceMesh, surface_mesh
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
 _DIFFERENCES = "RdBu_r"
@@ -42,12 +43,12 @@ class OnSole(Protocol):
         ...
 
 
-def viewer_section(results: Sequence[OnSole]) -> str:
+def viewer_section(results: Sequence[OnSole], surfaces: Sequence[SurfaceMesh | None] = ()) -> str:
     """Return the viewer of one result, or of several side by side, as a part of a page.
 
     The page needs ``viewer_script`` once, after its sections, and the style sheets of this room.
     """
-    return scene_section(viewer_scene(results))
+    return scene_section(viewer_scene(results, surfaces))
 
 
 def scene_section(scene: dict[str, Any]) -> str:
@@ -69,17 +70,21 @@ def viewer_script(*further: str) -> str:
     return "(() => {\n" + "\n".join([*parts, *further]) + "\n})();"
 
 
-def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:
+def viewer_scene(
+    results: Sequence[OnSole], surfaces: Sequence[SurfaceMesh | None] = ()
+) -> dict[str, Any]:
     """Return plain data for the viewer: one pane a result, one colour scale a quantity.
 
-    Lengths in m, fields in their shown units. Arrays are (nx, ny) in C order as float16 of value
-    over ``scale`` (relative error below 5e-4), high bytes first, deflated, base64.
+    ``surfaces`` are the designed ones; where there is none it is drawn through the cells. Lengths
+    in m, fields in their shown units. Arrays are (nx, ny) in C order as float16 of value over
+    ``scale`` (relative error below 5e-4), high bytes first, deflated, base64.
     """
     datasets = [result.data for result in results]
     shown = quantities(datasets)
     fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in shown}
     histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in shown}
     panes = []
+    designed = [*surfaces, *[None] * (len(results) - len(surfaces))]
     for number, result in enumerate(results):
         sole = drawn_sole(result.data)
         past = [(q.name, histories[q.name][number]) for q in shown]
@@ -88,7 +93,7 @@ def viewer_scene(results: Sequence[OnSole]) -> dict[str, Any]:
                 result.name,
                 sole,
                 {q.name: sole.placed(fields[q.name][number]) for q in shown},
-                outline=_outline(result.data),
+                designed[number],
                 histories={
                     name: history([f"{shown_time(t)}" for t in times], sole.placed(frames))
                     for name, each in past
@@ -146,14 +151,15 @@ def pane(
     name: str,
     sole: DrawnSole,
     fields: dict[str, NDArray[np.float64]],
+    surface: SurfaceMesh | None = None,
     *,
-    outline: list[list[float]],
     histories: dict[str, dict[str, Any]],
-    heights: Sequence[NDArray[np.float64]] = (),
+    states: Sequence[tuple[NDArray[np.float64], NDArray[np.bool_], SurfaceMesh]] = (),
 ) -> dict[str, Any]:
     """Return one sole for the viewer with its fields on the grid of the sole.
 
-    ``heights`` are the shapes of the sole at the instants of its histories, where it changes.
+    ``surface`` is what is drawn; by default that through the sole's cells. ``states`` are heights,
+    land and surface at the instants of its histories, where they change.
     """
     x, y = sole.x, sole.y
     rows, columns = sole.computed
@@ -167,12 +173,15 @@ def pane(
         "y0": float(y[0]),
         "spacing": sole.spacing,
         "plane": sole.plane,
-        "outline": outline,
         "computed": computed,
         "height": packed(sole.height),
         "pressed": None if sole.pressed is None else packed(sole.pressed),
         "land": packed(sole.land.astype(float)),
-        "heights": [packed(height) for height in heights],
+        "surface": _packed_surface(surface or surface_mesh(x, y, sole.height, sole.land)),
+        "states": [
+            {"height": packed(z), "land": packed(land.astype(float)), "surface": _packed_surface(s)}
+            for z, land, s in states
+        ],
         "fields": {name: packed(values) for name, values in fields.items()},
         "histories": histories,
     }
@@ -186,14 +195,6 @@ def history(labels: Sequence[str], frames: NDArray[np.float64]) -> dict[str, Any
 def shown_time(seconds: float) -> str:
     """Return a time on the slider."""
     return f"{seconds * 1e3:.3g} ms"
-
-
-def _outline(dataset: Fields) -> list[list[float]]:
-    """Return the rim as [x, y] in m, to which the page draws the outermost cells; or nothing."""
-    if "outline_x" not in dataset or "outline_y" not in dataset:
-        return []
-    rim = np.stack([dataset["outline_x"].values, dataset["outline_y"].values], axis=1)
-    return [[float(f"{v:.5g}") for v in point] for point in rim[np.isfinite(rim).all(axis=1)]]
 
 
 def _history(
@@ -227,6 +228,29 @@ def packed(values: NDArray[np.float64]) -> dict[str, Any]:
     planes = halves.view(np.uint8).reshape(-1, 2).T
     data = base64.b64encode(zlib.compress(np.ascontiguousarray(planes).tobytes(), 9))
     return {"scale": largest, "data": data.decode("ascii")}
+
+
+def _packed_surface(surface: SurfaceMesh) -> dict[str, Any]:
+    """Return a surface as text: its points in 65,535 steps of its box, its faces as they are."""
+    low, high = surface.points.min(axis=0), surface.points.max(axis=0)
+    steps = np.maximum(high - low, 1e-9) / 65_535
+    integers = {
+        "points": np.rint((surface.points - low) / steps),
+        "land": surface.land[:, None],
+        "triangles": surface.triangles,
+        "walls": surface.walls,
+        "sides": surface.sides,
+    }
+    arrays = {name: _packed_integers(values) for name, values in integers.items()}
+    return {"low": low.tolist(), "steps": steps.tolist(), **arrays}
+
+
+def _packed_integers(values: NDArray[Any]) -> dict[str, Any]:
+    """Return whole numbers (n, k), 0 or more, as text: columns, byte planes, deflate, base64."""
+    whole = np.ascontiguousarray(values.T).astype("<u4").ravel()
+    planes = whole.view(np.uint8).reshape(-1, 4).T
+    data = base64.b64encode(zlib.compress(np.ascontiguousarray(planes).tobytes(), 9))
+    return {"size": list(values.shape), "data": data.decode("ascii")}
 
 
 @cache

@@ -15,6 +15,7 @@ from .drawn_sole import DrawnSole
 from .html import embedded
 from .page import Picture, Section, remark_sections, table_sections
 from .quantities import Quantity
+from .surface_mesh import surface_mesh
 from .viewer import history, listed_quantity, pane, scene, scene_section, viewer_script
 from .writing import Writer, data_writers
 
@@ -66,14 +67,15 @@ def wear_scene(series: WearSeries) -> dict[str, Any]:
     for pressure in PRESSURES if series.maps else ():
         frames = np.stack([each[pressure.name][thinned] for each in series.maps]) / pressure.factor
         coloured[pressure] = np.where(frames > NONE, frames, np.nan)
+    surfaces = [surface_mesh(each.x, each.y, each.height, each.land) for each in series.soles]
     labels = [_state(series, number) for number in range(len(series.points))]
     shown = pane(
         series.name,
         shape,
         {quantity.name: frames[0] for quantity, frames in coloured.items()},
-        outline=[[float(f"{v:.5g}") for v in point] for point in new.outline],
+        surfaces[0],
         histories={quantity.name: history(labels, each) for quantity, each in coloured.items()},
-        heights=heights,
+        states=list(zip(heights, lands, surfaces, strict=True)),
     )
     listed = [listed_quantity(quantity, [frames]) for quantity, frames in coloured.items()]
     return scene([shown], listed, "Wear")

@@ -29,7 +29,14 @@ from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.report import write_report
 from underfoot.report.outsole import inspected
-from underfoot.report.results import map_fields, sole_fields
+from underfoot.report.results import (
+    DESIGNED,
+    designed_surface,
+    map_fields,
+    sole_fields,
+    surface_of_result,
+)
+from underfoot.report.surface_mesh import SurfaceMesh, surface_mesh
 from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
 from underfoot.shoe.files import FileSettings
@@ -37,8 +44,8 @@ from underfoot.shoe.tread_measures import channel_depth, tread_measures
 
 from .run_preview import preview_of_run
 
-FINEST_DRAWN = 20_000
-"""Cells of a sole that is drawn while sliders move."""
+SHAPED = 30_000
+"""Cells from which the surface of a sole is made while sliders move."""
 UNREAD = {"sensor.scans": 1}
 """Spares a preview the reading of floor sensors, which it does not show: 50 ms."""
 DRAWN_SPACING = 0.75e-3
@@ -85,9 +92,7 @@ def compound(path: str, *, progress: Progress) -> str:
 def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
     """Return the sole of a case as a part of a page (``html``), and its measures."""
     case = case_of(path, changes)
-    fields = sole_fields(case, case.numerics.grid_spacing)
-    if fields["inside"].size > FINEST_DRAWN:
-        fields = sole_fields(case)
+    fields = sole_fields(case)
     measures = tread_measures(bottom_surface(case))
     words = {
         "length": f"{1e3 * measures.length:.0f}",
@@ -95,7 +100,8 @@ def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[s
         "land": f"{100 * measures.land_ratio:.0f}",
         "lugs": f"{measures.lug_count}",
     }
-    return {"html": _html(Drawn(case.name, fields)), "measures": words}
+    surface = designed_surface(case, _moving_spacing(fields))
+    return {"html": _html(Drawn(case.name, fields), surface), "measures": words}
 
 
 def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
@@ -114,12 +120,11 @@ def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress
             ),
             "inside": (axes, surface.inside[thinned]),
             "land": (axes, surface.land[thinned]),
-            "outline_x": ("outline", surface.outline[:, 0]),
-            "outline_y": ("outline", surface.outline[:, 1]),
         },
         {"x": ("x", surface.x[::step]), "y": ("y", surface.y[::step])},
     )  # fmt: skip
-    html = _html(Drawn(inspection.file.name, fields))
+    whole = surface_mesh(surface.x, surface.y, surface.height, surface.land)
+    html = _html(Drawn(inspection.file.name, fields), whole)
     return {**presented(inspection), "html": html, "sha256": checksum(path)}
 
 
@@ -165,7 +170,8 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "extrapolated": slip is not None and bool(slip.note),
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
-    return {**presented(result), **numbers, "html": _html(result)}
+    html = _html(result, surface_of_result(result))
+    return {**presented(result), **numbers, "html": html}
 
 
 def previewed(
@@ -192,6 +198,9 @@ def previewed(
             "film_thickness": (axes, seen.film_thickness, {"units": "m"}),
         }
     )
+    # as the run beside it where the sole is the same, else as fast as a slider moves
+    same = changed.shoe == case.shoe and changed.motion.shoe_angle == case.motion.shoe_angle
+    surface = designed_surface(changed, DESIGNED if same else _moving_spacing(fields))
     return {
         "cof": seen.cof.value,
         "error": seen.errors["cof"],
@@ -199,7 +208,7 @@ def previewed(
         "slip": slip.value,
         "slip_interval": slip.interval,
         "extrapolated": bool(slip.note),
-        "html": _html(Drawn(changed.name, fields)),
+        "html": _html(Drawn(changed.name, fields), surface),
     }
 
 
@@ -220,5 +229,11 @@ def presented(shown: Presentable) -> dict[str, Any]:
     }
 
 
-def _html(drawn: Drawn | Result) -> str:
-    return scene_section(viewer_scene([drawn]))
+def _moving_spacing(fields: Fields) -> float:
+    """Return the cells' side (m) from which a surface is made while sliders move."""
+    box = np.prod([np.ptp(fields[axis].values) for axis in ("x", "y")])
+    return max(DESIGNED, float(np.sqrt(box / SHAPED)))
+
+
+def _html(drawn: Drawn | Result, surface: SurfaceMesh | None) -> str:
+    return scene_section(viewer_scene([drawn], [surface]))

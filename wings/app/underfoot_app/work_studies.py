@@ -16,6 +16,7 @@ from underfoot.questions.comparison import chance_higher, compare
 from underfoot.report.dispatch import figures, sections
 from underfoot.report.html import png
 from underfoot.report.page import Section, page_part
+from underfoot.report.results import designed_surface, surface_of_result
 from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot_design_studies import Study
 from underfoot_design_studies.check import study_check
@@ -90,7 +91,8 @@ def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[s
     job = next(job for job in result.jobs if job.design == number)
     case = study.plan.base.replace({**job.changes, "name": name})
     sole = Drawn(name, design_sole(study, result, number))
-    return {"case": case.to_toml(), "html": scene_section(viewer_scene([sole]))}
+    drawn = scene_section(viewer_scene([sole], [designed_surface(case)]))
+    return {"case": case.to_toml(), "html": drawn}
 
 
 def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
@@ -104,7 +106,8 @@ def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
         texts = {f"{name}_text": value_text(name, each) for name, each in known.items()}
         rows.append({"letter": letter, "name": result.name, **numbers, **texts})
     chances = [[_chance(one, other) for other in compared.results] for one in compared.results]
-    html = scene_section(viewer_scene(compared.results))
+    surfaces = [surface_of_result(result) for result in compared.results]
+    html = scene_section(viewer_scene(compared.results, surfaces))
     return {**presented(compared), "rows": rows, "chances": chances, "html": html}
 
 

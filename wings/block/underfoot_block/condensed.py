@@ -10,17 +10,17 @@ import numpy as np
 
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.threads import threads_limited
-from underfoot.material.prony_march import (
-    PronyStep,
-    advance_memory,
-    known_displacement,
-    prony_step,
-)
 
 from ._kernels.active_set import NodalContact, contact_at_height, contact_under_load
 from .compliance import CondensedBlock, condensed_block, pressed_block
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
 from .mesh import check_pattern
+from .prony_march import (
+    PronyStep,
+    advance_memory,
+    known_displacement,
+    prony_step,
+)
 from .result import MicroResult, edge_excess_area, resolution_note, whole_wavelength_averages
 
 PRESS_STEPS = 16

@@ -14,9 +14,9 @@ from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.optional import optional_module
 from underfoot.report.drawn_sole import DrawnSole, drawn_sole
 from underfoot.report.quantities import AREAS, Quantity, quantities, raw, scale, shown
-from underfoot.report.sole_mesh import SoleMesh, sole_mesh
 
 from .designed_sole import DesignedSole
+from .sole_mesh import SoleMesh, sole_mesh
 
 if TYPE_CHECKING:
     from underfoot.compute.result import Result

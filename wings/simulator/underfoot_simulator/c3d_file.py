@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from underfoot.trials.c3d_writer import c3d_bytes
+from underfoot_trial_analysis.c3d_writer import c3d_bytes
 
 from .walk import MARKER_RATE, RATE, WalkRecording
 

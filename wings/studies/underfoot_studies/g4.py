@@ -18,7 +18,6 @@ from underfoot.compute.run import run
 from underfoot.core import ConvergenceError, Progress, display, silent
 from underfoot.core.catalogue import Catalogue
 from underfoot.questions.outcomes import Outcome, outcomes
-from underfoot.questions.sampled import sampled
 from underfoot.questions.sensitivity import OpenInput, Sensitivity, open_inputs, sensitivity
 from underfoot.studies.figure import (
     OURS,
@@ -34,6 +33,8 @@ from underfoot.studies.figure import (
 from underfoot.studies.runner import Computed, Options, Table, part
 from underfoot.studies.verdict import Quantity
 from underfoot_trial_analysis.statistics import analysis_of_variance
+
+from .sampled import sampled
 
 STATEMENTS = Path(__file__).with_name("g4.toml")
 

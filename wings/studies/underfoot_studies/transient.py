@@ -9,18 +9,18 @@ from numpy.typing import ArrayLike
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.checks import choice
 from underfoot.core.threads import threads_limited
-from underfoot.material.prony_march import (
+from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contact
+from underfoot.rough_contact._kernels.krylov import Workspace
+from underfoot.rough_contact._kernels.operators import Body, Operators
+from underfoot.rough_contact._kernels.periodic import ShiftedMap, unit_compliance
+from underfoot.rough_contact.sliding_input import checked_contact_input
+from underfoot_block.prony_march import (
     PronyStep,
     advance_memory,
     known_displacement,
     prony_step,
     relaxed_memory,
 )
-from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contact
-from underfoot.rough_contact._kernels.krylov import Workspace
-from underfoot.rough_contact._kernels.operators import Body, Operators
-from underfoot.rough_contact._kernels.periodic import ShiftedMap, unit_compliance
-from underfoot.rough_contact.sliding_input import checked_contact_input
 
 
 @dataclass(frozen=True, slots=True)

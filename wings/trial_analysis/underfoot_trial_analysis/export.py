@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.trials.c3d_writer import c3d_bytes
 from underfoot.trials.events import Stance
 from underfoot.trials.plates import plate_axes
 from underfoot.trials.trial import Plate, Trial
 from underfoot.trials.walkway import body_mass
+
+from .c3d_writer import c3d_bytes
 
 
 def c3d_with_events(trial: Trial, stances: Sequence[Stance]) -> bytes:

@@ -1,14 +1,34 @@
-// Arrays from text, the mesh of a sole, colours, numbers.
+// Arrays from text, the surface of a sole, colours, numbers.
+
+async function inflated(text) {
+  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
 
 async function unpack(stored, count) {
-  const packed = Uint8Array.from(atob(stored.data), (c) => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const values = new Float32Array(count);
+  const planes = await inflated(stored.data), values = new Float32Array(count);
   for (let k = 0; k < count; k++) {
     values[k] = halfFloat(planes[k] | (planes[count + k] << 8)) * stored.scale;
   }
   return values;
+}
+
+// Whole numbers (n, k) that are stored column by column, row by row.
+async function unpackIntegers({ data, size: [count, width] }) {
+  const planes = await inflated(data), all = count * width, values = new Uint32Array(all);
+  for (let n = 0; n < count; n++) for (let k = 0; k < width; k++) {
+    const at = k * count + n;
+    values[n * width + k] = planes[at] | (planes[all + at] << 8) | (planes[2 * all + at] << 16);
+  }
+  return values;
+}
+
+async function unpackSurface({ low, steps, ...arrays }) {
+  const made = {};
+  for (const [name, stored] of Object.entries(arrays)) made[name] = await unpackIntegers(stored);
+  made.points = Float32Array.from(made.points, (v, k) => low[k % 3] + steps[k % 3] * v);
+  return made;
 }
 
 function halfFloat(bits) {
@@ -17,87 +37,57 @@ function halfFloat(bits) {
   return exponent ? sign * 2 ** (exponent - 15) * (1 + fraction / 1024) : sign * 2 ** -24 * fraction;
 }
 
-// Each cell is a quad of its own. Corners are shared in height with neighbours on the same level
-// (both land or both channel, slope below 2); where they are not, an upright wall joins them. So
-// lugs and channels keep their true, sharp shape. `kind`: 0 coloured cell, 1 wall, 2 side. A point
+// The designed surface with its walls and sides. `kind`: 0 channel, 1 lug, 2 wall, 3 side. A vertex
 // is x, y, height, height under load, place among the cells (2), kind.
 function soleMesh(pane) {
-  const { nx, ny, spacing: d, height, land, x0, y0, plane } = pane, pressed = pane.pressed || height;
-  const known = (i, j) => i >= 0 && j >= 0 && i < nx && j < ny && !Number.isNaN(height[i * ny + j]);
-  const level = (i, j, k) => known(i, j) && land[i * ny + j] === land[k]
-    && Math.abs(height[i * ny + j] - height[k]) < 2 * d;
-  const corner = (i, j, ci, cj) => {
-    const own = i * ny + j;
-    let sum = 0, low = 0, count = 0;
-    for (let a = i + ci - 1; a <= i + ci; a++) for (let b = j + cj - 1; b <= j + cj; b++) {
-      if (level(a, b, own)) { sum += height[a * ny + b]; low += pressed[a * ny + b]; count++; }
-    }
-    return [sum / count, low / count];
-  };
-  const flat = (x, y) => plane[0] + plane[1] * x + plane[2] * y;
+  const { spacing: d, x0, y0, plane, nx, ny, surface } = pane, { points, land, triangles, walls, sides } = surface;
+  const count = land.length, flat = (x, y) => plane[0] + plane[1] * x + plane[2] * y;
+  const made = [], faces = Array.from(triangles);
   let top = 0;
-  for (let k = 0; k < nx * ny; k++) if (!Number.isNaN(height[k])) {
-    top = Math.max(top, height[k] - flat(x0 + Math.floor(k / ny) * d, y0 + (k % ny) * d));
+  const within = (v, n) => Math.min(Math.max(v, 0.002), n - 0.002);
+  const vertex = (x, y, z, low, kind) => {
+    made.push(x, y, z, low, within((x - x0) / d + 0.5, nx), within((y - y0) / d + 0.5, ny), kind);
+    return made.length / 7 - 1;
+  };
+  for (let k = 0; k < count; k++) {
+    const [x, y, z] = points.subarray(3 * k, 3 * k + 3);
+    top = Math.max(top, z - flat(x, y));
+    vertex(x, y, z, Math.max(0, z + lowering(pane, x, y, land[k])), land[k]);
   }
   top += 0.004;
-  const corners = new Float32Array(nx * ny * 8).fill(NaN); // of each cell: 4 corners, 2 heights
-  for (let i = 0; i < nx; i++) for (let j = 0; j < ny; j++) if (known(i, j)) {
-    for (let c = 0; c < 4; c++) corners.set(corner(i, j, c >> 1, c & 1), (i * ny + j) * 8 + c * 2);
-  }
-  const both = (i, j, c) => corners.subarray((i * ny + j) * 8 + c * 2, (i * ny + j) * 8 + c * 2 + 2);
-  const points = [], faces = [], rim = onRim(pane, known);
-  const point = (i, j, ci, cj, z, kind) => {
-    const inset = kind ? 0.5 : 0.002;
-    points.push(...rim(i + ci, j + cj), z[0], z[1],
-      i + (kind ? 0.5 : ci ? 1 - inset : inset), j + (kind ? 0.5 : cj ? 1 - inset : inset), kind);
-    return points.length / 7 - 1;
-  };
+  const copy = (k, kind) => vertex(...made.slice(7 * k, 7 * k + 4), kind);
   const quad = (a, b, c, e) => faces.push(a, b, c, b, e, c);
-  for (let i = 0; i < nx; i++) for (let j = 0; j < ny; j++) if (known(i, j)) {
-    const z = [0, 1, 2, 3].map((c) => both(i, j, c));
-    quad(point(i, j, 0, 0, z[0], 0), point(i, j, 0, 1, z[1], 0),
-      point(i, j, 1, 0, z[2], 0), point(i, j, 1, 1, z[3], 0));
-    for (const [di, dj, p, q] of [[1, 0, [1, 0], [1, 1]], [0, 1, [0, 1], [1, 1]],
-      [-1, 0, [0, 0], [0, 1]], [0, -1, [0, 0], [1, 0]]]) {
-      const a = i + di, b = j + dj, zp = z[p[0] * 2 + p[1]], zq = z[q[0] * 2 + q[1]];
-      let other, kind = 1;
-      if (known(a, b)) {
-        if (di < 0 || dj < 0) continue; // the neighbour has drawn it
-        other = [p, q].map((c) => both(a, b, (c[0] - di) * 2 + c[1] - dj));
-        if (Math.abs(other[0][0] - zp[0]) + Math.abs(other[1][0] - zq[0]) < 1e-7) continue;
-      } else {
-        kind = 2;
-        const up = (c) => flat(x0 + (i + c[0] - 0.5) * d, y0 + (j + c[1] - 0.5) * d) + top;
-        other = [p, q].map((c) => [up(c), up(c)]);
-      }
-      quad(point(i, j, ...p, zp, kind), point(i, j, ...q, zq, kind),
-        point(i, j, ...p, other[0], kind), point(i, j, ...q, other[1], kind));
-    }
+  for (let k = 0; k < walls.length; k += 4) quad(...[0, 1, 2, 3].map((n) => copy(walls[k + n], 2)));
+  for (let k = 0; k < sides.length; k += 2) {
+    const ends = [sides[k], sides[k + 1]], upper = ends.map((n) => {
+      const [x, y] = made.slice(7 * n, 7 * n + 2), up = flat(x, y) + top;
+      return vertex(x, y, up, up, 3);
+    });
+    quad(...ends.map((n) => copy(n, 3)), ...upper);
   }
-  return { points: new Float32Array(points), faces: new Uint32Array(faces), top };
+  return { points: new Float32Array(made), faces: new Uint32Array(faces), top };
 }
 
-// Where the corner (i, j) of cells is drawn: on the rim of the sole if it is at its edge and the rim
-// is near, so that a round heel is not a staircase.
-function onRim(pane, known) {
-  const { spacing: d, x0, y0, outline: rim } = pane, seen = new Map();
-  const nearest = (x, y) => {
-    let best = [x, y], least = 0.9 * d;
-    for (let k = 0; k < rim.length; k++) {
-      const [ax, ay] = rim[k], [bx, by] = rim[(k + 1) % rim.length], dx = bx - ax, dy = by - ay;
-      const share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
-      const px = ax + share * dx, py = ay + share * dy, away = Math.hypot(px - x, py - y);
-      if (away < least) { least = away; best = [px, py]; }
-    }
-    return best;
-  };
-  return (i, j) => {
-    const x = x0 + (i - 0.5) * d, y = y0 + (j - 0.5) * d;
-    if (known(i - 1, j - 1) && known(i - 1, j) && known(i, j - 1) && known(i, j)) return [x, y];
-    const key = i * (pane.ny + 1) + j;
-    if (!seen.has(key)) seen.set(key, nearest(x, y));
-    return seen.get(key);
-  };
+// How far the load moves a place up (m): between the cells of its kind around it.
+function lowering(pane, x, y, land) {
+  if (!pane.pressed) return 0;
+  return betweenCells(pane, x, y, land, (cell) => pane.pressed[cell] - pane.height[cell]) || 0;
+}
+
+// A value at a place, linear between the cells of its kind (lug or channel) around it; of the
+// nearest one where all four are of the other kind. NaN: none within two cells.
+function betweenCells(pane, x, y, land, value) {
+  const i = (x - pane.x0) / pane.spacing, j = (y - pane.y0) / pane.spacing, i0 = Math.floor(i), j0 = Math.floor(j);
+  let sum = 0, weight = 0, nearest = 2.3, nearby = NaN;
+  for (let a = i0 - 1; a <= i0 + 2; a++) for (let b = j0 - 1; b <= j0 + 2; b++) {
+    if (a < 0 || b < 0 || a >= pane.nx || b >= pane.ny) continue;
+    const cell = a * pane.ny + b, w = Math.max(0, 1 - Math.abs(a - i)) * Math.max(0, 1 - Math.abs(b - j));
+    if (pane.land[cell] !== land || Number.isNaN(pane.height[cell])) continue;
+    const v = value(cell), away = Math.hypot(a - i, b - j);
+    if (w > 0 && !Number.isNaN(v)) { sum += w * v; weight += w; }
+    if (away < nearest) { nearest = away; nearby = v; }
+  }
+  return weight > 1e-4 ? sum / weight : nearby;
 }
 
 // A 10 mm grid behind the sole, in its upper plane, and an arrow along the walking direction.
@@ -106,7 +96,7 @@ function gridLines(pane, top) {
   const low = (v) => Math.floor(v / step) * step, high = (v) => Math.ceil(v / step) * step;
   const xs = [low(x0), high(x0 + (nx - 1) * d)], ys = [low(y0), high(y0 + (ny - 1) * d)];
   const lift = (x, y, up) => [x, y, plane[0] + plane[1] * x + plane[2] * y + up];
-  const add = (to, x, y, up = top) => { const at = lift(x, y, up); to.push(...at, at[2], 0, 0, 3); };
+  const add = (to, x, y, up = top) => { const at = lift(x, y, up); to.push(...at, at[2], 0, 0, 4); };
   for (let x = xs[0]; x < xs[1] + 1e-9; x += step) { add(lines, x, ys[0]); add(lines, x, ys[1]); }
   for (let y = ys[0]; y < ys[1] + 1e-9; y += step) { add(lines, xs[0], y); add(lines, xs[1], y); }
   const size = 0.04 * (xs[1] - xs[0]) + 0.002, from = xs[1] + 0.3 * size, tip = from + 2.4 * size, mid = (ys[0] + ys[1]) / 2;

@@ -3,50 +3,55 @@
 const VERTEX = `#version 300 es
 layout(location = 0) in vec4 place; layout(location = 1) in vec2 cell; layout(location = 2) in float kind;
 uniform mat4 camera; uniform vec3 plane; uniform float stretch, load;
-out vec3 world; out vec2 at; flat out float sort;
+out vec3 world; out vec2 at; out float level; flat out float sort;
 void main() {
   float base = plane.x + plane.y * place.x + plane.z * place.y;
   world = vec3(place.xy, base + stretch * (mix(place.z, place.w, load) - base));
-  at = cell; sort = kind; gl_Position = camera * vec4(world, 1.0);
+  at = cell; sort = kind; level = place.z; gl_Position = camera * vec4(world, 1.0);
 }`;
 
 const FRAGMENT = `#version 300 es
 precision highp float; precision highp sampler2D;
-in vec3 world; in vec2 at; flat in float sort; out vec4 colour;
+in vec3 world; in vec2 at; in float level; flat in float sort; out vec4 colour;
 uniform sampler2D cells, colours; uniform vec3 light, rubber, line; uniform vec2 limits;
 uniform vec4 computed; uniform bool logarithmic, picking; uniform float spacing;
 const float NONE = -1e29;
 void main() {
   ivec2 own = ivec2(at), size = textureSize(cells, 0).yx;
   if (picking) {
-    if (sort > 2.5) discard;
+    if (sort > 3.5) discard;
     int n = own.x * size.y + own.y + 1;
     colour = vec4(float(n & 255), float((n >> 8) & 255), float((n >> 16) & 255), 255.0) / 255.0;
     return;
   }
-  if (sort > 2.5) { colour = vec4(line, 1.0); return; }
+  if (sort > 3.5) { colour = vec4(line, 1.0); return; }
   vec3 normal = normalize(cross(dFdx(world), dFdy(world)));
   float shade = abs(dot(normal, light));
   bool solved = all(greaterThanEqual(at, computed.xy)) && all(lessThan(at, computed.zw));
-  vec3 base = mix(line, rubber, solved ? 1.0 : 0.4) * (sort > 1.5 ? 0.8 : sort > 0.5 ? 0.7 : 1.0);
-  vec3 mine = texelFetch(cells, own.yx, 0).rgb; // height, land, value
-  if (sort < 0.5 && mine.b > NONE) {
-    // smooth between cells of the same level, never across the wall of a lug
-    vec2 p = at - 0.5, f = fract(p);
-    float sum = 0.0, weight = 0.0;
-    for (int k = 0; k < 4; k++) {
-      ivec2 step = ivec2(k >> 1, k & 1), c = clamp(ivec2(floor(p)) + step, ivec2(0), size - 1);
-      vec3 there = texelFetch(cells, c.yx, 0).rgb;
-      float w = (step.x == 1 ? f.x : 1.0 - f.x) * (step.y == 1 ? f.y : 1.0 - f.y);
-      bool same = there.g == mine.g && abs(there.r - mine.r) < 2.0 * spacing;
-      if (there.b > NONE && same) { sum += w * there.b; weight += w; }
+  vec3 base = mix(line, rubber, solved ? 1.0 : 0.4) * (sort > 2.5 ? 0.8 : sort > 1.5 ? 0.7 : 1.0);
+  if (sort < 1.5) {
+    // between cells of the same kind and level, never across the wall of a lug
+    vec2 p = at - 0.5, f = p - floor(p);
+    float sum = 0.0, weight = 0.0, all = 0.0, nearest = 2.3, nearby = -1e30;
+    for (int k = 0; k < 16; k++) {
+      ivec2 step = ivec2(k >> 2, k & 3) - 1, c = ivec2(floor(p)) + step;
+      if (any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, size))) continue;
+      vec3 there = texelFetch(cells, c.yx, 0).rgb; // height, land, value
+      if (there.r < NONE || abs(there.g - sort) > 0.5 || abs(there.r - level) > 2.0 * spacing) continue;
+      vec2 off = abs(vec2(step) - f);
+      float w = max(1.0 - off.x, 0.0) * max(1.0 - off.y, 0.0), away = length(off);
+      all += w;
+      if (there.b > NONE) { sum += w * there.b; weight += w; }
+      if (away < nearest) { nearest = away; nearby = there.b; }
     }
-    float value = weight > 1e-4 ? sum / weight : mine.b;
-    float t = logarithmic ? log(value / limits.x) / log(limits.y / limits.x)
-                          : (value - limits.x) / (limits.y - limits.x);
-    base = texture(colours, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
-    colour = vec4(base * (0.72 + 0.28 * shade), 1.0);
-    return;
+    float value = all < 1e-4 ? nearby : weight >= 0.5 * all ? sum / weight : -1e30;
+    if (value > NONE) {
+      float t = logarithmic ? log(value / limits.x) / log(limits.y / limits.x)
+                            : (value - limits.x) / (limits.y - limits.x);
+      base = texture(colours, vec2((clamp(t, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+      colour = vec4(base * (0.72 + 0.28 * shade), 1.0);
+      return;
+    }
   }
   colour = vec4(base * (0.55 + 0.45 * shade), 1.0);
 }`;

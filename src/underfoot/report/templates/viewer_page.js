@@ -8,6 +8,7 @@ async function unpackPane(pane) {
   pane.height = await unpack(pane.height, count);
   pane.land = await unpack(pane.land, count);
   if (pane.pressed) pane.pressed = await unpack(pane.pressed, count);
+  pane.surface = await unpackSurface(pane.surface);
   pane.ready = {};
   for (const [name, stored] of Object.entries(pane.fields)) pane.ready[name] = await unpack(stored, count);
 }
@@ -107,9 +108,12 @@ async function startViewer(root) {
     const { pane } = drawing, past = pane.histories[q.name], count = pane.nx * pane.ny;
     if (!past || state.frame < 0) return pane.ready[q.name];
     const frame = Math.min(state.frame, past.frames.length - 1);
-    if (pane.heights.length && pane.frame !== frame) {
+    if (pane.states.length && pane.frame !== frame) {
+      const then = pane.states[frame];
       pane.frame = frame;
-      pane.height = await unpack(pane.heights[frame], count);
+      pane.height = await unpack(then.height, count);
+      pane.land = await unpack(then.land, count);
+      pane.surface = await unpackSurface(then.surface);
       drawing.shape();
     }
     return unpack(past.frames[frame], count);

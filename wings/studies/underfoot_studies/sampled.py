@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import InputError
-
-from .sensitivity import Sensitivity
+from underfoot.questions.sensitivity import Sensitivity
 
 LARGEST = 1.0
 """Standard deviations at which an input was computed; beyond, its effect is held, not carried on:

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from underfoot.core import InputError
-
-from .trial import MADE_UP
+from underfoot.trials.trial import MADE_UP
 
 _INTEL = 84
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .drawn_sole import DrawnSole
+from underfoot.report.drawn_sole import DrawnSole
 
 STEEPEST = 2.0
 """Slope between cells of one level beyond which a wall stands between them."""
