@@ -268,9 +268,8 @@ def drainage_table(fields: Fields) -> Table:
         for share, load, x, y, way, side, groove, to, relief in islice(lugs, LUGS_SHOWN)
         if share >= MATTERS
     ]
-    return Table(
-        "Drainage of lugs", ("Lug", "Load on its film", "Way out", "Best groove, relief"), rows
-    )
+    columns = ("Lug", "Load on its film", "Way out", "Best groove, relief")
+    return Table("Drainage of lugs", columns, rows, "lug")
 
 
 def notes(labels: Mapping[str, str]) -> tuple[str, ...]:

@@ -28,11 +28,15 @@ place of one standard deviation."""
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Title, column names and rows of text or numbers; without names where all are empty."""
+    """Title, column names and rows of text or numbers; without names where all are empty.
+
+    ``shows`` says what of a picture its rows are ("lug"), in the picture's order; "" for nothing.
+    """
 
     title: str
     columns: tuple[str, ...]
     rows: Sequence[Sequence[Any]]
+    shows: str = ""
 
     def cells(self) -> list[list[str]]:
         """Return every row as text; numbers with four figures."""

@@ -101,6 +101,7 @@ def viewer_scene(
                     for times, frames in (each,)
                 },
             )
+            | {"lugs": _lugs(result.data)}
         )
     listed = []
     for q in shown:
@@ -195,6 +196,14 @@ def history(labels: Sequence[str], frames: NDArray[np.float64]) -> dict[str, Any
 def shown_time(seconds: float) -> str:
     """Return a time on the slider."""
     return f"{seconds * 1e3:.3g} ms"
+
+
+def _lugs(dataset: Fields) -> list[list[float]]:
+    """Return place (x, y; m), length (m) and side of the best groove of each lug's drainage."""
+    if "lug_groove" not in dataset:
+        return []
+    names = ("x", "y", "groove", "groove_side")
+    return np.nan_to_num([dataset[f"lug_{name}"].values for name in names]).T.tolist()
 
 
 def _history(

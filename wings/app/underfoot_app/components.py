@@ -63,7 +63,7 @@ def scale(marks: Sequence[tuple[str, str, float]], interval: Sequence[float] | N
 
 
 def table(shown: Mapping[str, Any]) -> ui.element:
-    """Return a table of text: ``title``, ``columns``, ``rows``."""
+    """Return a table of text: ``title``, ``columns``, ``rows``; what of the sole its rows show."""
     with ui.element("div").classes("wide") as made, ui.element("table"):
         if shown["title"]:
             with ui.element("caption"):
@@ -74,13 +74,15 @@ def table(shown: Mapping[str, Any]) -> ui.element:
                     with ui.element("th").props('scope="col"'):
                         ui.label(name)
         with ui.element("tbody"):
-            for row in shown["rows"]:
-                with ui.element("tr"):
+            for place, row in enumerate(shown["rows"]):
+                with ui.element("tr") as line:
+                    if shown.get("shows"):
+                        line.props(f"data-{shown['shows']}={place} tabindex=0")
                     for number, cell in enumerate(row):
-                        with ui.element("td" if number else "th") as place:
+                        with ui.element("td" if number else "th") as made_cell:
                             ui.label(cell.strip())
                         if not number:
-                            place.props('scope="row"').classes("part" * cell.startswith("  "))
+                            made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
     return made
 
 

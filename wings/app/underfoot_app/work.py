@@ -215,7 +215,12 @@ def previewed(
 def presented(shown: Presentable) -> dict[str, Any]:
     """Return what an object says of itself as plain data."""
     tables = [
-        {"title": table.title, "columns": list(table.columns), "rows": table.cells()}
+        {
+            "title": table.title,
+            "columns": list(table.columns),
+            "rows": table.cells(),
+            "shows": table.shows,
+        }
         for table in shown.tables()
         if table.rows
     ]

@@ -21,7 +21,7 @@ async function startViewer(root) {
   await Promise.all(scene.panes.map(unpackPane));
   const stages = [...root.querySelectorAll(".stage")];
   const drawings = stages.map((stage, k) => new Drawing(stage.querySelector("canvas"), scene.panes[k], colours));
-  const state = { quantity: scene.quantities[0], frame: scene.steps ? 0 : -1, cell: -1, pane: 0, difference: false };
+  const state = { quantity: scene.quantities[0], frame: scene.steps ? 0 : -1, cell: -1, pane: 0, difference: false, lug: null, probes: [], cut: [], cutting: false };
   const view = { opening: 0.5, stretch: 1, load: 0 };
   const views = { below: [0, 0], oblique: [-0.5, 0.75], part: [-0.5, 0.75, true], side: [-Math.PI / 2, 1.45] };
   let waiting = false, printing = 0;
@@ -86,6 +86,7 @@ async function startViewer(root) {
         const put = (element, [x, y]) => { element.style.transform = `translate(${x}px, ${y}px)`; };
         if (there) put(mark, drawing.placeOfCell(cellIn(k), view));
         put(stages[k].querySelector(".toe"), drawing.placeOf(drawing.arrow));
+        overlay(k);
       });
       // a canvas of WebGL prints empty: pictures of what is seen lie ready for the printer
       clearTimeout(printing);
@@ -146,6 +147,8 @@ async function startViewer(root) {
     legend(scale);
     timeline(quantity);
     tell();
+    probes();
+    profile();
     redraw();
   }
 
@@ -221,9 +224,174 @@ async function startViewer(root) {
   }
 
   function pick(k, x, y) {
-    state.pane = k; state.cell = drawings[k].cellAt(x, y, view, theme());
-    tell(); point(k, x, y); redraw();
+    const cell = drawings[k].cellAt(x, y, view, theme());
+    if (state.cutting) { if (cell >= 0) cutAt(placeOf(scene.panes[k], cell)); return; }
+    state.pane = k; state.cell = cell; state.lug = lugAt(k, cell);
+    tell(); point(k, x, y); chosenRow(true); redraw();
   }
+
+  const placeOf = (pane, cell) => [pane.x0 + Math.floor(cell / pane.ny) * pane.spacing, pane.y0 + (cell % pane.ny) * pane.spacing];
+  const cellOf = (pane, [x, y]) => {
+    const i = Math.round((x - pane.x0) / pane.spacing), j = Math.round((y - pane.y0) / pane.spacing);
+    return i >= 0 && j >= 0 && i < pane.nx && j < pane.ny ? i * pane.ny + j : -1;
+  };
+
+  // The lug at a cell: its cells, and its number in the table of drainage or -1; null: no lug.
+  function lugAt(k, cell) {
+    const { land, nx, ny, height, lugs = [] } = scene.panes[k];
+    if (cell < 0 || !land[cell] || !lugs.length) return null;
+    const cells = new Set([cell]), waiting = [cell];
+    while (waiting.length) {
+      const at = waiting.pop(), i = Math.floor(at / ny), j = at % ny;
+      for (const [a, b] of [[i + 1, j], [i - 1, j], [i, j + 1], [i, j - 1]]) {
+        const next = a * ny + b;
+        if (a < 0 || b < 0 || a >= nx || b >= ny || cells.has(next) || !land[next] || Number.isNaN(height[next])) continue;
+        cells.add(next); waiting.push(next);
+      }
+    }
+    return { pane: k, cells, number: lugs.findIndex((lug) => cells.has(cellOf(scene.panes[k], lug))) };
+  }
+
+  // The row of the lug that is chosen, in the table of drainage; and the lug of a row.
+  function chosenRow(show) {
+    for (const row of document.querySelectorAll("tr[data-lug]")) {
+      const chosen = Boolean(state.lug) && Number(row.dataset.lug) === state.lug.number;
+      row.classList.toggle("chosen", chosen);
+      if (chosen && show && row.getBoundingClientRect().bottom > 0) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+  function chooseLug(number) {
+    const pane = scene.panes[0], lug = (pane.lugs || [])[number];
+    if (!lug) return;
+    state.pane = 0; state.cell = cellOf(pane, lug);
+    state.lug = lugAt(0, state.cell);
+    tell(); chosenRow(false); redraw();
+    stages[0].scrollIntoView({ block: "nearest" });
+  }
+  const rowOf = (e) => root.isConnected && e.target.closest?.("tr[data-lug]");
+  document.addEventListener("click", (e) => { const row = rowOf(e); if (row) chooseLug(Number(row.dataset.lug)); });
+  document.addEventListener("keydown", (e) => {
+    const row = rowOf(e);
+    if (row && (e.key === "Enter" || e.key === " ")) { e.preventDefault(); chooseLug(Number(row.dataset.lug)); }
+  });
+
+  // What is drawn over a sole: the lug that is chosen with its best groove, places kept, the section.
+  const GROOVE = 0.002, SIDES = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+  function overlay(k) {
+    const pane = scene.panes[k], drawing = drawings[k], parts = [];
+    const seen = (x, y) => {
+      const cell = cellOf(pane, [x, y]), heights = (view.load && pane.pressed) || pane.height;
+      const base = pane.plane[0] + pane.plane[1] * x + pane.plane[2] * y, z = cell < 0 ? NaN : heights[cell];
+      return drawing.placeOf([x, y, Number.isNaN(z) ? base : base + view.stretch * (z - base)]).map((v) => v.toFixed(1));
+    };
+    const path = (points, kind) => parts.push(`<path class="${kind}" d="M${points.map((p) => p.join(" ")).join("L")}"/>`);
+    if (state.lug && state.lug.pane === k) {
+      const { points, land, walls, sides } = pane.surface;
+      const edge = (a, b) => {
+        const ends = [a, b].map((n) => [points[3 * n], points[3 * n + 1]]), middle = [0, 1].map((c) => (ends[0][c] + ends[1][c]) / 2);
+        if (!land[a] || ![...beside(pane, middle)].some((cell) => state.lug.cells.has(cell))) return;
+        path(ends.map(([x, y], n) => {
+          const z = points[3 * [a, b][n] + 2], base = pane.plane[0] + pane.plane[1] * x + pane.plane[2] * y;
+          return drawing.placeOf([x, y, base + view.stretch * (z - base)]).map((v) => v.toFixed(1));
+        }), "lug");
+      };
+      for (let n = 0; n < walls.length; n += 4) { edge(walls[n], walls[n + 1]); edge(walls[n + 2], walls[n + 3]); }
+      for (let n = 0; n < sides.length; n += 2) edge(sides[n], sides[n + 1]);
+      const [x, y, length, side] = (pane.lugs || [])[state.lug.number] || [0, 0, 0, 0];
+      if (length > 0) {
+        const [u, v] = SIDES[side], half = GROOVE / 2;
+        const corners = [[-half, -half], [length, -half], [length, half], [-half, half]];
+        path([...corners, corners[0]].map(([a, b]) => seen(x + a * u + b * v, y + a * v + b * u)), "groove");
+      }
+    }
+    if (state.cut.length) path(state.cut.map(([x, y]) => seen(x, y)), "cut");
+    for (const [x, y] of state.cut) parts.push(dot(seen(x, y)));
+    state.probes.forEach(([x, y], n) => {
+      const [a, b] = seen(x, y);
+      parts.push(dot([a, b]), `<text x="${a}" y="${b - 9}">${n + 1}</text>`);
+    });
+    stages[k].querySelector(".overlay").innerHTML = parts.join("");
+  }
+  const dot = ([x, y]) => `<circle cx="${x}" cy="${y}" r="4.5"/>`;
+  function* beside(pane, [x, y]) {
+    for (const a of [-0.6, 0, 0.6]) for (const b of [-0.6, 0, 0.6]) yield cellOf(pane, [x + a * pane.spacing, y + b * pane.spacing]);
+  }
+
+  // Places that are kept: their values of what is shown, at the instant shown.
+  function probes() {
+    const cell = (tag, text) => Object.assign(document.createElement(tag), { textContent: text });
+    find("probes").hidden = !state.probes.length;
+    find("probes-head").replaceChildren(...["", "Place", ...scene.panes.map((_, k) => (scene.panes.length > 1 ? `${LETTERS[k]} ` : "") + state.quantity.title), ""].map((text) => cell("th", text)));
+    find("probes-rows").replaceChildren(...state.probes.map((place, n) => {
+      const row = document.createElement("tr"), away = cell("button", "Remove"), last = document.createElement("td");
+      away.type = "button";
+      away.addEventListener("click", () => { state.probes.splice(n, 1); probes(); redraw(); });
+      last.append(away);
+      row.append(cell("th", String(n + 1)), cell("td", `At x ${(place[0] * 1e3).toFixed(1)} mm, y ${(place[1] * 1e3).toFixed(1)} mm`),
+        ...drawings.map((d) => cell("td", valueText(d.pane, cellOf(d.pane, place), d.own, state.quantity))), last);
+      return row;
+    }));
+  }
+  find("keep").addEventListener("click", () => {
+    state.probes.push(placeOf(scene.panes[state.pane], state.cell));
+    probes(); redraw();
+  });
+
+  // A section along a line: gap, film and pressures under it.
+  function cutAt(place) {
+    state.cut = state.cut.length === 1 ? [...state.cut, place] : [place];
+    if (state.cut.length === 2) cutting(false);
+    profile(); redraw();
+  }
+  function cutting(on) {
+    state.cutting = on;
+    find("section").setAttribute("aria-pressed", String(on));
+    find("profile").hidden = !on && state.cut.length < 2;
+    if (on) { find("profile-place").textContent = "Click the two ends of the section on the sole."; find("profile-lines").replaceChildren(); }
+  }
+  find("section").addEventListener("click", () => {
+    state.cut = []; state.cell = -1;
+    cutting(!state.cutting); tell(); redraw();
+  });
+
+  const SECTIONED = ["fluid_pressure", "contact_pressure", "film_thickness"], INKS = ["#0b6fa4", "#d1495b", "#2e8b57", "#8a5fb4"];
+  async function profile() {
+    if (state.cut.length < 2) return;
+    const [a, b] = state.cut, long = Math.hypot(b[0] - a[0], b[1] - a[1]) * 1e3, count = 240;
+    const gap = { name: "gap", title: "Gap under load", unit: "mm", factor: 1e-3 };
+    const rows = [gap, ...scene.quantities.filter((q) => SECTIONED.includes(q.name))];
+    const fields = await Promise.all(rows.map((q) => Promise.all(drawings.map((d) => (q === gap ? (d.pane.pressed || d.pane.height).map((v) => v / gap.factor) : valuesNow(d, q))))));
+    find("profile").hidden = false;
+    find("profile-place").textContent = `Section from x ${(a[0] * 1e3).toFixed(1)} mm, y ${(a[1] * 1e3).toFixed(1)} mm to x ${(b[0] * 1e3).toFixed(1)} mm, y ${(b[1] * 1e3).toFixed(1)} mm: ${long.toFixed(1)} mm`;
+    find("profile-lines").innerHTML = rows.map((q, n) => {
+      const lines = drawings.map(({ pane }, k) => Array.from({ length: count + 1 }, (_, s) => {
+        const [x, y] = [0, 1].map((c) => a[c] + (b[c] - a[c]) * s / count), cell = cellOf(pane, [x, y]);
+        if (cell < 0 || Number.isNaN(pane.height[cell])) return NaN;
+        const v = betweenCells(pane, x, y, pane.land[cell], (at) => fields[n][k][at]);
+        return q.stress && Number.isNaN(v) ? 0 : v;
+      }));
+      const most = Math.max(...lines.flat().filter((v) => v === v), 1e-12);
+      const drawn = lines.map((line, k) => line.reduce((made, v, s) => {
+        if (v !== v) made.push([]); else made[made.length - 1].push(`${1000 * s / count},${(100 - 96 * v / most).toFixed(1)}`);
+        return made;
+      }, [[]]).filter((part) => part.length > 1).map((part) => `<polyline stroke="${INKS[k % 4]}" points="${part.join(" ")}"/>`).join("")).join("");
+      return `<h4>${q.title} (${q.unit}), up to ${shortNumber(most)}</h4><svg data-section="${q.name}" viewBox="0 0 1000 100" preserveAspectRatio="none" role="img" aria-label="${q.title}"><line class="axis" x1="0" y1="100" x2="1000" y2="100"/>${drawn}</svg>`;
+    }).join("");
+  }
+
+  // One sole after the other at one place, seen with one camera.
+  const blink = find("blink");
+  let blinking = 0;
+  if (blink) blink.addEventListener("click", () => {
+    const on = !blinking, rows = root.querySelector(".stages");
+    blink.setAttribute("aria-pressed", String(on));
+    rows.classList.toggle("blinking", on);
+    clearInterval(blinking);
+    let now = 0;
+    const turn = () => stages.forEach((stage, k) => stage.classList.toggle("now", k === now % stages.length));
+    blinking = on ? setInterval(() => { now += 1; turn(); }, 700) : 0;
+    turn(); redraw();
+  });
 
   // The value under the pointer, beside it.
   function point(k, x, y) {
@@ -307,7 +475,7 @@ async function startViewer(root) {
       else if (e.key === "-") zoom(1.15);
       else if (e.key === "0" || e.key === "Home") look("oblique");
       else if (e.key === "Enter" || e.key === " ") pick(k, canvas.clientWidth / 2, canvas.clientHeight / 2);
-      else if (e.key === "Escape") { state.cell = -1; tell(); redraw(); }
+      else if (e.key === "Escape") { state.cell = -1; state.lug = null; state.cut = []; cutting(false); tell(); chosenRow(false); redraw(); }
       else return;
       e.preventDefault();
     });
@@ -405,7 +573,7 @@ async function startViewer(root) {
         drawings[k].shape();
       });
       scene.quantities = fresh.quantities;
-      state.cell = -1;
+      state.cell = -1; state.lug = null;
       await choose(scene.quantities[chosen]);
       return true;
     },
