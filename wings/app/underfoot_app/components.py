@@ -21,6 +21,8 @@ class SoleView(ui.element):
         super().__init__("div")
         self._session = session
         self.classes("sole-view")
+        for key in ("lugs", "file-lugs"):
+            self.props(f'data-{key}="{escape(session.text(f"sole.{key}"))}"')
 
     def show(self, html: str) -> None:
         """Show what ``scene_section`` returned, from the answer of a computing process."""

@@ -100,7 +100,7 @@ def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[s
         "land": f"{100 * measures.land_ratio:.0f}",
         "lugs": f"{measures.lug_count}",
     }
-    surface = designed_surface(case, _moving_spacing(fields))
+    surface = designed_surface(case, _moving_spacing(fields) if changes else DESIGNED)
     return {"html": _html(Drawn(case.name, fields), surface), "measures": words}
 
 

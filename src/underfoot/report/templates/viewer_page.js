@@ -228,6 +228,7 @@ async function startViewer(root) {
     if (state.cutting) { if (cell >= 0) cutAt(placeOf(scene.panes[k], cell)); return; }
     state.pane = k; state.cell = cell; state.lug = lugAt(k, cell);
     tell(); point(k, x, y); chosenRow(true); redraw();
+    if (state.lug) root.dispatchEvent(new CustomEvent("lug", { bubbles: true }));
   }
 
   const placeOf = (pane, cell) => [pane.x0 + Math.floor(cell / pane.ny) * pane.spacing, pane.y0 + (cell % pane.ny) * pane.spacing];
@@ -238,8 +239,8 @@ async function startViewer(root) {
 
   // The lug at a cell: its cells, and its number in the table of drainage or -1; null: no lug.
   function lugAt(k, cell) {
-    const { land, nx, ny, height, lugs = [] } = scene.panes[k];
-    if (cell < 0 || !land[cell] || !lugs.length) return null;
+    const { land, nx, ny, height, lugs = [], surface } = scene.panes[k];
+    if (cell < 0 || !land[cell] || surface.land.every((each) => each)) return null; // untreaded
     const cells = new Set([cell]), waiting = [cell];
     while (waiting.length) {
       const at = waiting.pop(), i = Math.floor(at / ny), j = at % ny;
@@ -249,7 +250,7 @@ async function startViewer(root) {
         cells.add(next); waiting.push(next);
       }
     }
-    return { pane: k, cells, number: lugs.findIndex((lug) => cells.has(cellOf(scene.panes[k], lug))) };
+    return { pane: k, place: placeOf(scene.panes[k], cell), cells, edges: [], number: lugs.findIndex((lug) => cells.has(cellOf(scene.panes[k], lug))) };
   }
 
   // The row of the lug that is chosen, in the table of drainage; and the lug of a row.
@@ -287,13 +288,20 @@ async function startViewer(root) {
     const path = (points, kind) => parts.push(`<path class="${kind}" d="M${points.map((p) => p.join(" ")).join("L")}"/>`);
     if (state.lug && state.lug.pane === k) {
       const { points, land, walls, sides } = pane.surface;
+      state.lug.edges = [];
       const edge = (a, b) => {
         const ends = [a, b].map((n) => [points[3 * n], points[3 * n + 1]]), middle = [0, 1].map((c) => (ends[0][c] + ends[1][c]) / 2);
         if (!land[a] || ![...beside(pane, middle)].some((cell) => state.lug.cells.has(cell))) return;
-        path(ends.map(([x, y], n) => {
-          const z = points[3 * [a, b][n] + 2], base = pane.plane[0] + pane.plane[1] * x + pane.plane[2] * y;
-          return drawing.placeOf([x, y, base + view.stretch * (z - base)]).map((v) => v.toFixed(1));
-        }), "lug");
+        const onto = ([x, y], n) => {
+          const z = points[3 * n + 2], base = pane.plane[0] + pane.plane[1] * x + pane.plane[2] * y;
+          return drawing.placeOf([x, y, base + view.stretch * (z - base)]);
+        };
+        const drawn = [onto(ends[0], a), onto(ends[1], b)], along = [0, 1].map((c) => ends[1][c] - ends[0][c]);
+        const size = Math.hypot(...along) || 1, out = [-along[1] / size, along[0] / size];
+        const inside = state.lug.cells.has(cellOf(pane, middle.map((v, c) => v + out[c] * pane.spacing)));
+        const normal = inside ? out.map((v) => -v) : out, moved = onto(ends[0].map((v, c) => v + 1e-3 * normal[c]), a);
+        state.lug.edges.push({ drawn, normal, shift: [0, 1].map((c) => (moved[c] - drawn[0][c]) / 1e-3) });
+        path(drawn.map((end) => end.map((v) => v.toFixed(1))), "lug");
       };
       for (let n = 0; n < walls.length; n += 4) { edge(walls[n], walls[n + 1]); edge(walls[n + 2], walls[n + 3]); }
       for (let n = 0; n < sides.length; n += 2) edge(sides[n], sides[n + 1]);
@@ -315,6 +323,17 @@ async function startViewer(root) {
   const dot = ([x, y]) => `<circle cx="${x}" cy="${y}" r="4.5"/>`;
   function* beside(pane, [x, y]) {
     for (const a of [-0.6, 0, 0.6]) for (const b of [-0.6, 0, 0.6]) yield cellOf(pane, [x + a * pane.spacing, y + b * pane.spacing]);
+  }
+
+  // The edge of the chosen lug under a point of the canvas, where the page can move it.
+  function edgeAt(k, x, y) {
+    if (!root.dataset.editable || !state.lug || state.lug.pane !== k) return null;
+    const away = ({ drawn: [[ax, ay], [bx, by]] }) => {
+      const dx = bx - ax, dy = by - ay, share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+      return Math.hypot(ax + share * dx - x, ay + share * dy - y);
+    };
+    const nearest = state.lug.edges.reduce((best, edge) => (!best || away(edge) < away(best) ? edge : best), null);
+    return nearest && away(nearest) < 8 ? nearest : null;
   }
 
   // Places that are kept: their values of what is shown, at the instant shown.
@@ -421,16 +440,26 @@ async function startViewer(root) {
 
   stages.forEach((stage, k) => {
     const canvas = stage.querySelector("canvas"), pointers = new Map();
-    let moved = 0, hovering = false;
+    let moved = 0, hovering = false, edge = null, began = [0, 0];
+    // how far an edge is dragged outwards (m), told to the page
+    const drag = (e, done) => {
+      const by = [e.clientX - began[0], e.clientY - began[1]], { shift, normal } = edge;
+      const out = (by[0] * shift[0] + by[1] * shift[1]) / (shift[0] ** 2 + shift[1] ** 2 || 1);
+      root.dispatchEvent(new CustomEvent("edge", { bubbles: true, detail: { out, normal, done } }));
+    };
     canvas.addEventListener("pointerleave", (e) => { if (e.pointerType === "mouse") stage.querySelector(".tip").hidden = true; });
     canvas.addEventListener("pointerdown", (e) => {
       canvas.setPointerCapture(e.pointerId);
       pointers.set(e.pointerId, [e.clientX, e.clientY]);
       if (pointers.size === 1) moved = 0;
+      const box = canvas.getBoundingClientRect();
+      edge = pointers.size === 1 ? edgeAt(k, e.clientX - box.left, e.clientY - box.top) : null;
+      began = [e.clientX, e.clientY];
     });
     canvas.addEventListener("pointermove", (e) => {
       const before = pointers.get(e.pointerId), box = canvas.getBoundingClientRect();
       if (!before) {
+        canvas.style.cursor = edgeAt(k, e.clientX - box.left, e.clientY - box.top) ? "move" : "";
         if (e.pointerType === "mouse" && !hovering) {
           hovering = true;
           requestAnimationFrame(() => { hovering = false; point(k, e.clientX - box.left, e.clientY - box.top); });
@@ -440,6 +469,7 @@ async function startViewer(root) {
       stage.querySelector(".tip").hidden = true;
       const dx = e.clientX - before[0], dy = e.clientY - before[1];
       moved += Math.abs(dx) + Math.abs(dy);
+      if (edge) { pointers.set(e.pointerId, [e.clientX, e.clientY]); drag(e, false); return; }
       if (pointers.size === 2) {
         const other = [...pointers].find(([id]) => id !== e.pointerId)[1];
         const gap = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
@@ -450,7 +480,10 @@ async function startViewer(root) {
       pointers.set(e.pointerId, [e.clientX, e.clientY]);
     });
     const release = (e) => {
-      if (!pointers.delete(e.pointerId) || e.type === "pointercancel" || moved > 5) return;
+      const held = edge && pointers.has(e.pointerId) && moved > 5;
+      if (held) drag(e, true);
+      edge = null;
+      if (!pointers.delete(e.pointerId) || held || e.type === "pointercancel" || moved > 5) return;
       const box = canvas.getBoundingClientRect();
       pick(k, e.clientX - box.left, e.clientY - box.top);
     };
@@ -573,7 +606,8 @@ async function startViewer(root) {
         drawings[k].shape();
       });
       scene.quantities = fresh.quantities;
-      state.cell = -1; state.lug = null;
+      state.cell = -1;
+      if (state.lug) state.lug = lugAt(state.lug.pane, cellOf(scene.panes[state.lug.pane], state.lug.place));
       await choose(scene.quantities[chosen]);
       return true;
     },

@@ -35,6 +35,11 @@ TREAD = (
     Input("shoe.tread.angle", "deg", -90.0, 90.0, 1.0),
     Input("shoe.tread.edge_radius", "mm", 0.0, 2.0, 0.05),
     Input("shoe.tread.edge_chamfer", "mm", 0.0, 2.0, 0.05),
+    Input("shoe.tread.sipes.width", "mm", 0.2, 2.0, 0.1),
+    Input("shoe.tread.sipes.depth", "mm", 0.5, 8.0, 0.1),
+    Input("shoe.tread.sipes.spacing", "mm", 1.0, 20.0, 0.5),
+    Input("shoe.heel.profile.angle", "deg", 0.0, 30.0, 0.5),
+    Input("shoe.heel.profile.length", "mm", 1.0, 60.0, 0.5),
     Input("shoe.material.shore_a", "", 40.0, 90.0, 1.0),
     Input("shoe.wear.depth", "mm", 0.0, 6.0, 0.1),
 )
@@ -159,6 +164,9 @@ class _Design:
             self._entries("material", case.catalogue),
             case.entries.get("shoe.material"),
         )
+        if case.value("shoe.tread.depth") and case.value("shoe.tread.sipes.width") is None:
+            sipes = ui.button(self.text("sole.sipes"), on_click=lambda: self.change(_sipes(case)))
+            sipes.props("no-caps flat dense")
         sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
@@ -206,3 +214,15 @@ class _Design:
             entries = (catalogue.entry(kind, name) for name in names)
             names = [each.name for each in entries if any("motion." in p for p in each.values)]
         return {name: catalogue.entry(kind, name).title for name in names}
+
+
+def _sipes(case: Case) -> dict[str, str]:
+    """Return sipes as changes of a case: 0.8 mm wide, across the shoe, a lug and channel apart."""
+    lug, channel = (case.value(f"shoe.tread.{name}_width") for name in ("lug", "channel"))
+    along = case.value("shoe.tread.lug_length") or lug
+    lengths = {
+        "width": 0.8e-3,
+        "depth": 0.75 * case.value("shoe.tread.depth"),
+        "spacing": along + channel,
+    }
+    return {f"shoe.tread.sipes.{name}": f"{1e3 * v:.4g} mm" for name, v in lengths.items()}

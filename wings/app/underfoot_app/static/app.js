@@ -90,6 +90,45 @@ addEventListener("keydown", (e) => {
   if (button) { e.preventDefault(); button.click(); }
 });
 
+// A lug that is chosen on the sole: its lengths are those of the sliders. They are typed here, or its
+// edge is dragged; every change goes the way of a slider.
+const LENGTHS = ["lug_width", "lug_length", "channel_width", "depth", "edge_chamfer"].map((name) => `shoe.tread.${name}`);
+const lengthSlider = (name) => document.querySelector(`.sliders input[name="${name}"]`);
+function setSlider(slider, shown, done) {
+  const step = Number(slider.step), low = Number(slider.min);
+  slider.value = String(low + Math.round((shown - low) / step) * step);
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  if (done) slider.dispatchEvent(new Event("change", { bubbles: true }));
+}
+addEventListener("lug", ({ target: viewer }) => {
+  const place = viewer.closest(".sole-view"), sliders = LENGTHS.map(lengthSlider).filter(Boolean);
+  const card = Object.assign(document.createElement("div"), { className: "lug-card" });
+  if (sliders.length) viewer.dataset.editable = "yes";
+  const note = Object.assign(document.createElement("p"), { textContent: sliders.length ? place.dataset.lugs : place.dataset.fileLugs });
+  card.append(note);
+  for (const slider of sliders) {
+    const label = document.createElement("label"), field = Object.assign(document.createElement("input"), { type: "number", step: "any", min: 0 });
+    const size = Number(slider.dataset.size);
+    field.name = `lug ${slider.name}`;
+    field.value = String(Number(((slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given)) / size).toPrecision(3)));
+    field.addEventListener("change", () => { if (field.value) setSlider(slider, Number(field.value) * size, true); });
+    label.append(document.querySelector(`label[for="${slider.id}"]`).textContent, field, slider.dataset.unit);
+    card.append(label);
+  }
+  place.querySelector(".lug-card")?.remove();
+  viewer.querySelector(".scene").after(card);
+});
+let dragged = null;
+addEventListener("edge", ({ target: viewer, detail: { out, normal, done } }) => {
+  const long = lengthSlider("shoe.tread.lug_length"), slider = long && Math.abs(normal[0]) > Math.abs(normal[1]) ? long : lengthSlider("shoe.tread.lug_width");
+  if (!slider) return;
+  dragged ??= slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given);
+  setSlider(slider, dragged + 2e3 * out, done); // mm; it grows to both sides
+  const field = viewer.querySelector(`[name="lug ${slider.name}"]`);
+  if (field) field.value = String(Number((Number(slider.value) / Number(slider.dataset.size)).toPrecision(3)));
+  if (done) dragged = null;
+});
+
 // Put words into every element that waits for them by name.
 function showTexts(texts) {
   for (const [name, text] of Object.entries(texts)) {

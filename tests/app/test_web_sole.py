@@ -1,0 +1,149 @@
+"""A designer's tasks on the drawn sole, in a browser: each within a minute, its clicks counted."""
+
+import time
+
+import pytest
+from web_app import Cost, begin, drawn, page_of, served
+
+from underfoot.case import Case
+
+pytest.importorskip("nicegui")
+pytest.importorskip("playwright.sync_api")
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+LONGEST = 60  # s a task, wall time or processor time of app and browser, whichever is less
+OUTLINE = """() => { const box = document.querySelector('canvas').getBoundingClientRect();
+return [...document.querySelectorAll('.overlay .lug')].map((path) => path.getAttribute('d')
+.slice(1).split('L').map((end) => end.split(' ').map(Number)))
+.map((ends) => ends.map(([x, y]) => [x + box.left, y + box.top])); }"""
+
+
+class Task:
+    """One task: what it costs, and how many clicks it takes."""
+
+    def __init__(self, page, name):
+        self.page, self.name, self.clicks = page, name, 0
+
+    def __enter__(self):
+        self._cost = Cost().__enter__()
+        return self
+
+    def __exit__(self, kind, *_):
+        self._cost.__exit__()
+        print(f"{self.name}: {self.clicks} clicks, {self._cost}")
+        assert kind is not None or self._cost.least < LONGEST
+
+    def click(self, place):
+        self.clicks += 1
+        place.click()
+
+    def click_lug(self):
+        """Click lugs from the middle of the sole outwards until one is chosen."""
+        self.page.get_by_role("button", name="From below").click()
+        box = self.page.locator(".sole-view canvas").bounding_box()
+        for across in (0.5, 0.51, 0.52, 0.53, 0.54):
+            for along in (0.6, 0.62, 0.64, 0.66):
+                self.page.mouse.click(
+                    box["x"] + across * box["width"], box["y"] + along * box["height"]
+                )
+                if self.page.locator(".lug-card").count():
+                    self.clicks += 2  # the view and the lug: a person sees where it is
+                    return
+        raise AssertionError("no lug under the pointer")
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sole")
+    with served(folder / "project", folder / "home") as running:
+        yield running
+
+
+@pytest.fixture
+def page(app):
+    with page_of(app.link) as opened:
+        skip = opened.get_by_role("button", name="Skip")
+        if skip.count():
+            skip.first.click()
+        begin(opened, app.base) if not list((app.folder / "variants").glob("*.toml")) else None
+        opened.goto(app.base + "design")
+        drawn(opened)
+        yield opened
+        assert opened.complaints == []
+
+
+def value(app, path):
+    (file,) = (app.folder / "variants").glob("*.toml")
+    return Case.load(file).value(path)
+
+
+def until(met):
+    limit = time.monotonic() + 120
+    while not met():
+        assert time.monotonic() < limit
+        time.sleep(0.1)
+
+
+def test_channels_are_widened_by_a_number_typed_at_a_lug_and_undone(app, page):
+    before = value(app, "shoe.tread.channel_width")
+    with Task(page, "widen the channels") as task:
+        task.click_lug()
+        field = page.locator("[name='lug shoe.tread.channel_width']")
+        field.fill("4")
+        field.press("Enter")
+        until(lambda: value(app, "shoe.tread.channel_width") == pytest.approx(4e-3))
+    with Task(page, "take it back") as task:
+        task.click(page.locator("[data-step=undo]"))
+        until(lambda: value(app, "shoe.tread.channel_width") == before)
+
+
+def test_the_edge_of_a_lug_is_dragged(app, page):
+    before = value(app, "shoe.tread.lug_width")
+    with Task(page, "drag the edge of a lug") as task:
+        task.click_lug()
+        page.wait_for_function("document.querySelectorAll('.overlay .lug').length >= 4")
+        edges = page.evaluate(OUTLINE)
+        longest = max(edges, key=lambda e: abs(e[0][1] - e[1][1]) - abs(e[0][0] - e[1][0]))
+        centre = [sum(end[c] for edge in edges for end in edge) / len(edges) / 2 for c in (0, 1)]
+        x, y = (sum(end[c] for end in longest) / 2 for c in (0, 1))
+        page.mouse.move(x, y)
+        page.mouse.down()
+        outwards = 1 if x > centre[0] else -1
+        for step in range(1, 5):
+            page.mouse.move(x + outwards * 3 * step, y)
+        page.mouse.up()
+        task.clicks += 1
+        until(lambda: value(app, "shoe.tread.lug_width") > before + 0.3e-3)
+    assert value(app, "shoe.tread.lug_width") < before + 12e-3
+    page.locator("[data-step=undo]").click()
+    until(lambda: value(app, "shoe.tread.lug_width") == before)
+
+
+def test_the_rear_of_the_heel_is_chamfered(app, page):
+    before = value(app, "shoe.heel.profile.angle")
+    with Task(page, "chamfer the heel") as task:
+        slider = page.locator("input[name='shoe.heel.profile.angle']")
+        task.click(slider)
+        until(lambda: value(app, "shoe.heel.profile.angle") != before)
+    page.locator("[data-step=undo]").click()
+    until(lambda: value(app, "shoe.heel.profile.angle") == before)
+
+
+def test_sipes_are_added(app, page):
+    with Task(page, "add sipes") as task:
+        task.click(page.get_by_role("button", name="Add sipes"))
+        until(lambda: value(app, "shoe.tread.sipes.width") == pytest.approx(0.8e-3))
+        page.locator("input[name='shoe.tread.sipes.width']").wait_for()
+    page.locator("[data-step=undo]").click()
+    until(lambda: value(app, "shoe.tread.sipes.width") is None)
+
+
+def test_the_lug_that_floats_is_found(app, page):
+    page.get_by_role("button", name="Compute friction").click()
+    page.wait_for_selector("tr[data-lug]")
+    drawn(page)
+    with Task(page, "find the lug that floats") as task:
+        task.click(page.locator("tr[data-lug='0']"))
+        page.wait_for_function("document.querySelectorAll('.overlay .lug').length >= 4")
+        assert page.locator(".overlay .groove").count() == 1
+        place = page.locator("[data-part=values-place]").inner_text()
+    assert place.startswith("At x")
