@@ -199,7 +199,7 @@ def test_pressed_the_sole_looks_different(tab):
 
 
 def whole_result(result, tread=0.01):
-    """A result as that of a whole sole would be: the computed part lies in a longer one."""
+    """A result of a whole sole whose file is gone: the computed part lies in a longer one."""
     fields = result.fields
     x, y = fields.x.values, fields.y.values
     side = x[1] - x[0]
@@ -212,7 +212,8 @@ def whole_result(result, tread=0.01):
         "whole_land": (("whole_x", "whole_y"), np.isfinite(height)),
     }
     fields = fields.assign(more).assign_coords(whole_x=along, whole_y=y)
-    return dataclasses.replace(result, data=from_xarray(fields))
+    gone = result.case_text + '\n[shoe.outsole]\nfile = "/nowhere/sole.stl"\n'
+    return dataclasses.replace(result, data=from_xarray(fields), case_text=gone)
 
 
 def test_a_whole_sole_is_drawn_with_its_computed_part(worn_shoe_result):
