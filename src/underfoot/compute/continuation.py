@@ -149,18 +149,9 @@ class Continuation:
             ConvergenceError: The step does not converge: the case is too far away.
         """
         began = time.process_time()
-        case = self.case.replace(changes)
-        _refuse_history(case)
-        parts, first, second = self._steps(case)
-        one, two = (place_numbers(parts, each) for each in (first, second))
-        values, errors = {}, {}
-        for name in one.keys() & self.values.keys() & self._unchanged.keys():
-            off = self.values[name] - self._unchanged[name]
-            values[name] = two[name] + off
-            steps = abs(off) + abs(two[name] - one[name])
-            errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
-        drawn = self._friction(parts, second)
-        factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
+        parts, second, values, errors = self._continued(changes)
+        drawn, last = self._friction(parts, second), place_numbers(parts, second)["cof"]
+        factor = max(values["cof"] / last, 0.0) if last else 1.0
         return Preview(
             dict(changes),
             drawn.sums.cof.scaled(factor),
@@ -174,6 +165,25 @@ class Continuation:
             Status.PREVIEW,
             time.process_time() - began,
         )
+
+    def continued_values(self, changes: Mapping[str, Any]) -> dict[str, float]:
+        """Return the ``values`` of what ``continued`` returns, without drawing the friction."""
+        return self._continued(changes)[2]
+
+    def _continued(
+        self, changes: Mapping[str, Any]
+    ) -> tuple[Prepared, SoleContact, dict[str, float], dict[str, float]]:
+        case = self.case.replace(changes)
+        _refuse_history(case)
+        parts, first, second = self._steps(case)
+        one, two = (place_numbers(parts, each) for each in (first, second))
+        values, errors = {}, {}
+        for name in one.keys() & self.values.keys() & self._unchanged.keys():
+            off = self.values[name] - self._unchanged[name]
+            values[name] = two[name] + off
+            steps = abs(off) + abs(two[name] - one[name])
+            errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
+        return parts, second, values, errors
 
     @cached_property
     def _unchanged(self) -> dict[str, float]:
