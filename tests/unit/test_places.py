@@ -14,12 +14,14 @@ from underfoot.compute.run import run
 from underfoot.core import InputError, RangeError
 from underfoot.core.arrays import Array
 from underfoot.film import wedge_film
+from underfoot.friction.pair_contact import Pair
+from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.questions.method import method_name, method_prediction
 from underfoot.rough_contact import ExponentialLaw
 from underfoot_places.calibration import calibrated_floor, class_bounds
 from underfoot_places.choice import chosen, slip_share
 from underfoot_places.evidence import learned, machine_scores, score
-from underfoot_places.joint import JointDraws
+from underfoot_places.joint import JointDraws, Reading
 from underfoot_places.machines import (
     FLUIDS,
     SCALES,
@@ -291,6 +293,65 @@ def test_a_reading_moves_what_it_is_of_and_leaves_other_floors():
         medians.append(np.median(joint.between("roughness of floor hall", span)))
         assert np.median(joint.share("roughness of floor other")) == pytest.approx(other, abs=0.05)
     assert medians[0] < medians[1]
+
+
+ANY = (0.2 * UM, 15 * UM)
+
+
+def shoe_cofs(joint):
+    """Return the water-wet COF of two shoes on two floors, by their names."""
+    hardness = {"soft": 50.0, "hard": 75.0}
+    return {
+        (shoe, floor): joint.contact_cof(
+            Pair(hardness[shoe], (1 * UM, 10 * UM), ANY, "aqueous"),
+            laboratory="the place",
+            floor=floor,
+            sole=shoe,
+            pressure=3e5,
+            drag=3e-4,
+        )
+        for shoe in hardness
+        for floor in ("hall", "yard")
+    }
+
+
+def moved(read):
+    """Return ln of the ratio of median COFs after a high and after a low reading."""
+    medians = []
+    for high in (False, True):
+        joint = JointDraws(count=24000)
+        read(joint, high)
+        medians.append({name: np.log(np.median(cof)) for name, cof in shoe_cofs(joint).items()})
+    return {name: medians[1][name] - medians[0][name] for name in medians[0]}
+
+
+def test_a_floor_that_was_read_moves_every_shoe_on_it_and_none_elsewhere():
+    def read(joint, high):
+        value, device = 60.0 if high else 15.0, machine("pendulum-96")
+        log = device.log_likelihood(joint, "hall", ANY, FLUIDS["water"], value)
+        joint.learn(log, "hall")
+
+    change = moved(read)
+    assert all(change[shoe, "hall"] > 0.5 for shoe in ("soft", "hard"))
+    assert all(abs(change[shoe, "yard"]) < 0.1 for shoe in ("soft", "hard"))
+
+
+def test_a_shoe_that_was_read_moves_on_every_floor_more_than_another_shoe():
+    def read(joint, high):
+        test = slip_tests()["tile_glycerine"]
+        cof = joint.contact_cof(
+            Pair(50.0, (1 * UM, 10 * UM), test.floor_rq, test.family),
+            laboratory="test house",
+            floor=test.name,
+            sole="soft",
+            pressure=3e5,
+            drag=test.viscosity * SPEED,
+        )
+        joint.learn(joint.log_likelihood(cof, Reading(0.4 if high else 0.08)), "soft")
+
+    change = moved(read)
+    for floor in ("hall", "yard"):
+        assert change["soft", floor] > max(0.03, change["hard", floor])
 
 
 def test_a_bound_says_less_than_a_value():
