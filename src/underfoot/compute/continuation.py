@@ -141,38 +141,16 @@ class Continuation:
         """How unknown the film is (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
 
-    def continued(self, changes: Mapping[str, Any]) -> Preview:
+    def continued(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
+
+        ``drawn`` False leaves out the spread of the law.
 
         Raises:
             CaseError, InputError: Changes that are none of this case, or of its grid or plan.
             ConvergenceError: The step does not converge: the case is too far away.
         """
         began = time.process_time()
-        parts, second, values, errors = self._continued(changes)
-        drawn, last = self._friction(parts, second), place_numbers(parts, second)["cof"]
-        factor = max(values["cof"] / last, 0.0) if last else 1.0
-        return Preview(
-            dict(changes),
-            drawn.sums.cof.scaled(factor),
-            None if drawn.sampled is None else factor * drawn.sampled.cof,
-            values,
-            errors,
-            parts.sole,
-            second.total_pressure,
-            second.fluid_pressure,
-            second.film_thickness,
-            Status.PREVIEW,
-            time.process_time() - began,
-        )
-
-    def continued_values(self, changes: Mapping[str, Any]) -> dict[str, float]:
-        """Return the ``values`` of what ``continued`` returns, without drawing the friction."""
-        return self._continued(changes)[2]
-
-    def _continued(
-        self, changes: Mapping[str, Any]
-    ) -> tuple[Prepared, SoleContact, dict[str, float], dict[str, float]]:
         case = self.case.replace(changes)
         _refuse_history(case)
         parts, first, second = self._steps(case)
@@ -183,7 +161,25 @@ class Continuation:
             values[name] = two[name] + off
             steps = abs(off) + abs(two[name] - one[name])
             errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
-        return parts, second, values, errors
+        cof, draws = SourcedValue(values["cof"], "1"), None
+        if drawn:
+            friction = self._friction(parts, second)
+            factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
+            cof = friction.sums.cof.scaled(factor)
+            draws = None if friction.sampled is None else factor * friction.sampled.cof
+        return Preview(
+            dict(changes),
+            cof,
+            draws,
+            values,
+            errors,
+            parts.sole,
+            second.total_pressure,
+            second.fluid_pressure,
+            second.film_thickness,
+            Status.PREVIEW,
+            time.process_time() - began,
+        )
 
     @cached_property
     def _unchanged(self) -> dict[str, float]:

@@ -235,11 +235,8 @@ def method_name(name: str, case: Case) -> str:
     plain = name.strip().lower().replace("-", "_").replace(" ", "_")
     plain = NICKNAMES.get(plain, plain)
     entries = [case.catalogue.entry("setup", known) for known in case.catalogue.names("setup")]
-    known = [
-        each.name
-        for each in entries
-        if {"motion.speed", "method.question"} & each.values.keys() and each.under("method")
-    ]
+    asked = {"motion.speed", "method.question"}
+    known = [each.name for each in entries if asked & each.values.keys() and each.under("method")]
     if plain not in known:
         raise unknown_name("test method", name, known, where="--method")
     return plain

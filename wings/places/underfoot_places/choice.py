@@ -351,7 +351,7 @@ class _Solver:
                 try:
                     section = dict(solved_floors[floor.name].section)
                     changes = {"floor": section, "contaminant": fluid}
-                    values = march.continued_values(changes)
+                    values = march.continued(changes, drawn=False).values
                 except (InputError, ConvergenceError):
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values
