@@ -31,6 +31,8 @@ CORPUS = {"polished_concrete_2015": "bot-3000e", "fiberon_decking": "english-xl"
 """Machine of a source of the corpus whose device is called a slipmeter there."""
 SOFT = 70.0
 """Shore A between the sliders 55 and 96."""
+RQ_PER_RA = (np.pi / 2) ** 0.5
+"""Rq / Ra of Gaussian heights."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,15 +95,24 @@ def _of_corpus() -> Iterator[Evidence]:
             values = [_reading(end, device) for end in ends if end is not None]
             kinds = ("value",) if len(values) == 1 else ("lower", "upper")
             fluid = device.fluid_of_standard()
-            low, high = (to_si(end, "m", where=name) for end in at["floor_rq"]["range"])
+            rq, printed = _floor_rq(at, name)
             bounds = tuple(
                 FloorReading(device, fluid, value, kind)
                 for value, kind in zip(values, kinds, strict=True)
             )
             reader = str(table.get("laboratory", name))
-            yield Evidence(
-                reader, f"{name}, {at['floor']}", (low, high), False, bounds, at["quote"]
-            )
+            yield Evidence(reader, f"{name}, {at['floor']}", rq, printed, bounds, at["quote"])
+
+
+def _floor_rq(at: Mapping[str, Any], name: str) -> tuple[tuple[float, float], bool]:
+    """Return Rq (m) of the floor of a condition, and whether it is printed."""
+    given, factor = at.get("floor_rq"), 1.0
+    if given is None:
+        given, factor = at["floor_ra"], RQ_PER_RA
+    spread = isinstance(given, Mapping) and "range" in given
+    ends = given["range"] if spread else [given["value"] if isinstance(given, Mapping) else given]
+    low, *_, high = [factor * to_si(end, "m", where=name) for end in (*ends, ends[-1])]
+    return (low, high), not spread
 
 
 def _machine_of_corpus(name: str, at: Mapping[str, Any]) -> Machine | None:
