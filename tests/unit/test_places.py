@@ -183,14 +183,15 @@ def test_a_class_of_a_machine_stands_for_its_bounds():
 
 
 def test_published_readings_are_predicted_without_their_source():
-    """Coverage is as wanted; the median error and the rank correlation are not yet."""
+    """Coverage is as wanted (90 to 98 %); error (6) and rank correlation (0.7) are not yet."""
     told = machine_scores()
     pendulum = told.of("pendulum-96", "pendulum-55")
     scored = score(pendulum)
     assert len({row.evidence.floor for row in pendulum}) >= 20
     assert 0.9 <= scored.inside <= 0.98
-    assert scored.error < scored.constant_error
-    assert 0.5 < scored.rank < 1
+    assert scored.error == pytest.approx(11.8, abs=0.5)  # as the guide prints it
+    assert scored.constant_error == pytest.approx(14, abs=0.5)
+    assert scored.rank == pytest.approx(0.60, abs=0.02)
     one = pendulum[0].evidence
     assert learned(one.machine, one.source) != learned(one.machine)
 

@@ -454,20 +454,9 @@ def _condition(
         if limit is not None and limit.value:
             least = math.log(limit.value)
             probability = probability_at_least(math.log(max(mean, 1e-9)), spread, least)
-    return Condition(
-        name,
-        title,
-        _present(case, "floor"),
-        _present(case, "contaminant"),
-        cof,
-        low,
-        high,
-        limit,
-        probability,
-        band,
-        middle,
-        window,
-    )
+    floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
+    return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
+                     middle, window)  # fmt: skip
 
 
 def probability_at_least(mean: float, deviation: float, limit: float) -> float:
