@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import underfoot as uf
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
@@ -208,6 +209,20 @@ def test_every_machine_is_a_method_that_reads_the_floor_of_a_case(name):
         assert all(source for *_, source in settings)
         medians.append(told.median)
     assert medians[0] < medians[1] or name == "ramp-oil"
+
+
+def test_a_machine_of_ones_own_is_an_entry_of_the_catalogue(tmp_path):
+    (tmp_path / "catalogue").mkdir()
+    entry = '[setup.soft_pendulum]\nfrom = "pendulum_96"\ntitle = "Soft"\nspecimen.shore_a = 40\n'
+    (tmp_path / "catalogue" / "own.toml").write_text(entry, encoding="utf-8")
+    lines = ["[shoe]", "[floor]", "[contaminant]", "[motion]"]
+    names = ["work_shoe_untreaded", "vinyl", "water", "whole_shoe_g6"]
+    text = "\n".join(f'{a}\nfrom = "{b}"' for a, b in zip(lines, names, strict=True))
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    told = method_prediction(uf.load(tmp_path / "case.toml"), "soft-pendulum")
+    assert isinstance(told, MachinePrediction)
+    assert told.machine.shore_a == 40
+    assert told.heading() == "Soft, water"
 
 
 def test_a_machine_knows_what_another_read_of_the_floor():

@@ -29,7 +29,15 @@ from underfoot.friction import (
 from underfoot.friction.pair_contact import Pair
 
 from .joint import JointDraws, floor_name, interval
-from .machines import ANY_FLOOR_RQ, Fluid, Machine, MachinePrediction, machine, prediction
+from .machines import (
+    ANY_FLOOR_RQ,
+    Fluid,
+    Machine,
+    MachinePrediction,
+    machine,
+    machine_of,
+    prediction,
+)
 
 PendulumValue = Annotated[float, Quantity("1", 0.0, 150.0)]
 RampAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45.0))]
@@ -141,7 +149,7 @@ def machine_reading(case: Case, *, method: str, keep: Sequence[str] = ()) -> Mac
     Raises:
         InputError: Another part to keep, or another law of friction.
     """
-    device, law = machine(method, "--method"), pair_law(case)
+    device, law = machine_of(case.catalogue.entry("setup", method)), pair_law(case)
     for part in keep:
         if part != "contaminant":
             raise unknown_name("part of the case to keep", part, ["contaminant"], where="--keep")

@@ -189,7 +189,7 @@ class Learned:
         return (
             self.factor
             + self.factor_sd * joint.normal(f"factor of {machine}")
-            + self.source_sd * joint.normal(f"reader of {machine} on {floor}")
+            + self.source_sd * joint.normal(f"reader of {machine}")
             + self.floor_sd * joint.normal(f"{machine} on {floor}")
         )
 
