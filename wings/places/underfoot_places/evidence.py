@@ -23,7 +23,7 @@ from .calibration import FloorReading, class_bounds
 from .joint import JointDraws, interval
 from .machines import FLUIDS, RZ_SPREAD, Learned, Machine, machine, machines
 
-DRAWS = 2000
+DRAWS = 8000
 NOTHING = Learned(0.0, 0.0, 0.0, 0.0)
 LEAST_SPREAD = 0.02
 """Smallest standard deviation of ln COF between readers or floors that a fit may return."""
