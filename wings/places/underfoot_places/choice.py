@@ -324,8 +324,8 @@ class _Solver:
     quick: bool
     read: Mapping[str, PlaceFloor]
     """Floors with the roughness that their readings leave, by name: what is solved."""
-    moved: dict[tuple[str, bool], Array] = field(default_factory=dict)
-    """``film_odds_over_positions`` of soles, new and worn."""
+    marches: dict[tuple[str, bool], tuple[Continuation, Array]] = field(default_factory=dict)
+    """What is continued of soles, new and worn, and their ``film_odds_over_positions``."""
 
     def cells(
         self, shoe: PlaceShoe, floors: Sequence[PlaceFloor], worn: bool
@@ -338,16 +338,16 @@ class _Solver:
         ]
         # a thick film is where continuation begins from best
         order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
-        march = Continuation(cases[order[0]], quick=self.quick)
-        sole = shoe.name, worn
-        if sole not in self.moved:
-            self.moved[sole] = film_odds_over_positions(cases[order[0]])
-        moved, tread = self.moved[sole], tread_place(cases[order[0]])
+        sole, first = (shoe.name, worn), cases[order[0]]
+        if sole not in self.marches:
+            begun = Continuation(first, quick=self.quick)
+            self.marches[sole] = begun, film_odds_over_positions(first)
+        (march, moved), tread = self.marches[sole], tread_place(first)
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
-            solved, values = march, march.values
-            if number != order[0]:
+            solved = march
+            if case.hash != march.case.hash:
                 try:
                     section = dict(solved_floors[floor.name].section)
                     changes = {"floor": section, "contaminant": fluid}
@@ -355,6 +355,8 @@ class _Solver:
                 except (InputError, ConvergenceError):
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values
+            else:
+                values = march.values
             pair = _law(self.place.case(shoe, floor, fluid, worn)).pair
             found[floor.name, fluid] = self._cell(
                 case, values, solved.spreads, shoe, floor, pair, moved, tread
