@@ -8,22 +8,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import underfoot as uf
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
 from underfoot.core import InputError, RangeError
 from underfoot.core.arrays import Array
 from underfoot.film import wedge_film
-from underfoot.questions.method import method_name
+from underfoot.friction.pair_contact import Pair
+from underfoot.friction.shoe_class import SPEED, slip_tests
+from underfoot.questions.method import method_name, method_prediction
 from underfoot.rough_contact import ExponentialLaw
 from underfoot_places.calibration import calibrated_floor, class_bounds
 from underfoot_places.choice import chosen, slip_share
-from underfoot_places.evidence import machine_scores
+from underfoot_places.evidence import learned, machine_scores, score
 from underfoot_places.joint import JointDraws, Reading
 from underfoot_places.machines import (
     FLUIDS,
     SCALES,
-    Edge,
+    Bearing,
+    MachinePrediction,
     machine,
     machines,
     predicted_reading,
@@ -98,38 +102,43 @@ def test_a_rougher_floor_reads_higher_wet_and_a_dry_one_higher_still(name):
     assert sum(chance for _, chance in dry.classes) == pytest.approx(1)
 
 
-def test_each_anchor_of_the_pendulum_lies_within_what_the_other_leaves():
-    device = machine("pendulum-96")
-    for told, asked in ((0, 1), (1, 0)):
-        joint = JointDraws()
-        rz, reading, _ = device.anchors[told]
-        cof = device.cof(joint, "told", rq_of_rz(rz), FLUIDS["water"])
-        at = float(device.scale.cof(reading))
-        joint.learn(joint.log_likelihood(cof, Reading(at, sd=0.15 * at)), "anchor")
-        rz, reading, _ = device.anchors[asked]
-        there = device.scale.reading(device.cof(joint, "asked", rq_of_rz(rz), FLUIDS["water"]))
-        low, high = np.quantile(there, (0.025, 0.975))
-        assert low < reading < high
+@pytest.mark.parametrize("name", [name for name, one in machines().items() if one.learned])
+def test_what_a_set_up_has_learned_is_what_its_readings_teach(name):
+    device = machine(name)
+    assert dataclasses.astuple(learned(device)) == pytest.approx(
+        dataclasses.astuple(device.learned), abs=0.002
+    )
 
 
-EDGE = Edge(load=25.0, width=76e-3, length=(1e-3, 3e-3))
+EDGE = Bearing(length=(1e-3, 3e-3), width=76e-3, load=25.0)
 PRESSURE, DRAG, STIFF = 160e3, 2.6e-3, 30e6
+ALONG = 25.0 / (76e-3 * PRESSURE)
 
 
 def film(rq: float, *, drag: float = DRAG, taper: float = 1.19) -> tuple[float, float]:
-    each: list[Array] = [np.array([x]) for x in (PRESSURE, drag, rq)]
+    each: list[Array] = [np.array([x]) for x in (PRESSURE, ALONG, drag, rq)]
     share, gap = EDGE.film(*each, STIFF, np.array([taper]))
     return float(share[0]), float(gap[0])
 
 
 def test_the_edge_of_a_slider_floats_on_a_smooth_floor_as_a_wedge_does():
     share, gap = film(1e-9)
-    along = EDGE.load / (EDGE.width * PRESSURE)
     alone = wedge_film(
-        viscosity=DRAG, speed=1.0, length=along, width=EDGE.width, load=EDGE.load, taper=1.19
+        viscosity=DRAG, speed=1.0, length=ALONG, width=EDGE.width, load=25.0, taper=1.19
     )
     assert share == pytest.approx(1.0)
-    assert gap == pytest.approx(alone, rel=0.02)  # the edge leaks 4 % of its load at the sides
+    assert gap == pytest.approx(alone, rel=1e-3)
+
+
+def test_a_lug_as_wide_as_long_floats_as_its_wedge_does():
+    lug = Bearing(length=(4e-3, 15e-3), width=10e-3, load=None)
+    ones = np.ones(1)
+    share, gap = lug.film(3e5 * ones, 0.01 * ones, 0.02 * ones, 1e-9 * ones, 5e6, 0.7 * ones)
+    alone = wedge_film(
+        viscosity=0.02, speed=1.0, length=0.01, width=0.01, load=3e5 * 1e-4, taper=0.7
+    )
+    assert share[0] == pytest.approx(1.0)
+    assert gap[0] == pytest.approx(alone, rel=1e-3)
 
 
 @pytest.mark.parametrize("rq", [1e-6, 2e-6, 6e-6])
@@ -144,17 +153,20 @@ def test_the_film_of_the_edge_grows_with_speed_and_falls_with_roughness():
     assert film(2e-6, drag=2 * DRAG)[0] > film(2e-6)[0] > film(2e-6, taper=0.1)[0]
 
 
-def test_a_worn_edge_reads_less_of_a_smooth_wet_floor():
+def test_a_longer_edge_reads_less_of_a_smooth_wet_floor():
     """The longer the edge, the better it floats: why sliders are dressed."""
-    device, joint = machine("pendulum-96"), JointDraws()
-    read = device.cof(joint, "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
-    length = joint.share("edge of pendulum-96")
-    assert np.median(read[length > 0.8]) < np.median(read[length < 0.2])
+    device, read = machine("pendulum-96"), []
+    for length in (1e-3, 3e-3):
+        worn = dataclasses.replace(device, bearing=Bearing((length, length), 76e-3, 25.0))
+        cof = worn.cof(JointDraws(), "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
+        read.append(np.median(cof))
+    assert read[1] < read[0]
 
 
 def test_a_walker_of_the_ramp_slips_below_the_angle_of_friction():
     """Without the need of a half step the angle is that of the friction."""
     device, angles = machine("ramp-oil"), []
+    device = dataclasses.replace(device, bearing=None, deviation=0.0)
     for walker in (device.walker, (0.0, 0.0)):
         walked = dataclasses.replace(device, walker=walker)
         cof = walked.cof(JointDraws(), "floor", rq_of_rz(60 * UM), FLUIDS["ramp oil"])
@@ -172,12 +184,58 @@ def test_a_class_of_a_machine_stands_for_its_bounds():
 
 
 def test_published_readings_are_predicted_without_their_source():
+    """Coverage is as wanted (90 to 98 %); error (6) and rank correlation (0.7) are not yet."""
     told = machine_scores()
-    assert all(row.inside for row in told.rows)
-    assert "no score" in told.headline()[1]
-    bands = [row for row in told.rows if row.source == "bands of HSE"]
-    known = predicted_reading("pendulum-96", rq_of_rz(20 * UM))
-    assert bands[1].predicted[1] < known.median  # whose anchors they are
+    pendulum = told.of("pendulum-96", "pendulum-55")
+    scored = score(pendulum)
+    assert len({row.evidence.floor for row in pendulum}) >= 20
+    assert 0.9 <= scored.inside <= 0.98
+    assert scored.error == pytest.approx(11.8, abs=0.5)  # as the guide prints it
+    assert scored.constant_error == pytest.approx(14, abs=0.5)
+    assert scored.rank == pytest.approx(0.60, abs=0.02)
+    one = pendulum[0].evidence
+    assert learned(one.machine, one.source) != learned(one.machine)
+
+
+@pytest.mark.parametrize("name", list(machines()))
+def test_every_machine_is_a_method_that_reads_the_floor_of_a_case(name):
+    case = read_case(ptv_96=40).replace({"friction": {"model": "pair"}})
+    medians = []
+    for rq in ("1 um", "8 um"):
+        told = method_prediction(case.replace({"floor.roughness.rq": rq}), name)
+        assert isinstance(told, MachinePrediction)
+        assert sum(chance for _, chance in told.classes) == pytest.approx(1)
+        settings = told.tables()[1].rows
+        assert all(source for *_, source in settings)
+        medians.append(told.median)
+    assert medians[0] < medians[1] or name == "ramp-oil"
+
+
+def test_a_machine_of_ones_own_is_an_entry_of_the_catalogue(tmp_path):
+    (tmp_path / "catalogue").mkdir()
+    entry = '[setup.soft_pendulum]\nfrom = "pendulum_96"\ntitle = "Soft"\nspecimen.shore_a = 40\n'
+    (tmp_path / "catalogue" / "own.toml").write_text(entry, encoding="utf-8")
+    lines = ["[shoe]", "[floor]", "[contaminant]", "[motion]"]
+    names = ["work_shoe_untreaded", "vinyl", "water", "whole_shoe_g6"]
+    text = "\n".join(f'{a}\nfrom = "{b}"' for a, b in zip(lines, names, strict=True))
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    told = method_prediction(uf.load(tmp_path / "case.toml"), "soft-pendulum")
+    assert isinstance(told, MachinePrediction)
+    assert told.machine.shore_a == 40
+    assert told.heading() == "Soft, water"
+
+
+def test_a_machine_knows_what_another_read_of_the_floor():
+    told = [method_prediction(read_case(ptv_96=ptv), "bot-3000e").median for ptv in (12, 60)]
+    assert told[0] < told[1]
+
+
+def test_a_machine_outside_its_standard_is_told_and_nothing_else_is_kept():
+    case = read_case(ptv_96=40).replace({"contaminant": "canola_oil"})
+    told = method_prediction(case, "pendulum-96", keep=["contaminant"])
+    assert any("Outside the standard" in text for text in told.cautions())
+    with pytest.raises(InputError, match=r"speed.*contaminant"):
+        method_prediction(case, "pendulum-96", keep=["speed"])
 
 
 def read_case(**friction):
@@ -253,6 +311,65 @@ def test_a_reading_moves_what_it_is_of_and_leaves_other_floors():
     assert medians[0] < medians[1]
 
 
+ANY = (0.2 * UM, 15 * UM)
+
+
+def shoe_cofs(joint):
+    """Return the water-wet COF of two shoes on two floors, by their names."""
+    hardness = {"soft": 50.0, "hard": 75.0}
+    return {
+        (shoe, floor): joint.contact_cof(
+            Pair(hardness[shoe], (1 * UM, 10 * UM), ANY, "aqueous"),
+            laboratory="the place",
+            floor=floor,
+            sole=shoe,
+            pressure=3e5,
+            drag=3e-4,
+        )
+        for shoe in hardness
+        for floor in ("hall", "yard")
+    }
+
+
+def moved(read):
+    """Return ln of the ratio of median COFs after a high and after a low reading."""
+    medians = []
+    for high in (False, True):
+        joint = JointDraws(count=24000)
+        read(joint, high)
+        medians.append({name: np.log(np.median(cof)) for name, cof in shoe_cofs(joint).items()})
+    return {name: medians[1][name] - medians[0][name] for name in medians[0]}
+
+
+def test_a_floor_that_was_read_moves_every_shoe_on_it_and_none_elsewhere():
+    def read(joint, high):
+        value, device = 60.0 if high else 15.0, machine("pendulum-96")
+        log = device.log_likelihood(joint, "hall", ANY, FLUIDS["water"], value)
+        joint.learn(log, "hall")
+
+    change = moved(read)
+    assert all(change[shoe, "hall"] > 0.5 for shoe in ("soft", "hard"))
+    assert all(abs(change[shoe, "yard"]) < 0.1 for shoe in ("soft", "hard"))
+
+
+def test_a_shoe_that_was_read_moves_on_every_floor_more_than_another_shoe():
+    def read(joint, high):
+        test = slip_tests()["tile_glycerine"]
+        cof = joint.contact_cof(
+            Pair(50.0, (1 * UM, 10 * UM), test.floor_rq, test.family),
+            laboratory="test house",
+            floor=test.name,
+            sole="soft",
+            pressure=3e5,
+            drag=test.viscosity * SPEED,
+        )
+        joint.learn(joint.log_likelihood(cof, Reading(0.4 if high else 0.08)), "soft")
+
+    change = moved(read)
+    for floor in ("hall", "yard"):
+        assert change["soft", floor] > max(0.03, change["hard", floor])
+
+
 def test_a_bound_says_less_than_a_value():
     """A value narrows to a band; a lower bound cuts one side alone (of ln: errors are factors)."""
     device, span, wide = machine("pendulum-96"), (0.3 * UM, 20 * UM), {}
@@ -267,15 +384,17 @@ def test_a_bound_says_less_than_a_value():
     assert wide["lower"][0] > wide["upper"][0]
 
 
-def test_the_constants_of_a_reading_agree_with_those_of_another_order():
+def test_two_readings_teach_the_same_in_either_order():
     """Learning one after the other is learning both: the order changes the sampling alone."""
-    device, found = machine("pendulum-96"), []
+    device, found = machine("bot-3000e"), []
+    device = dataclasses.replace(device, learned=None)
     for order in (("a", "b"), ("b", "a")):
         joint = JointDraws(count=20000)
         for floor in order:
-            value = {"a": 25.0, "b": 40.0}[floor]
+            value = {"a": 0.3, "b": 0.5}[floor]
             span = {"a": rq_of_rz(10 * UM), "b": rq_of_rz(30 * UM)}[floor]
-            joint.learn(device.log_likelihood(joint, floor, span, FLUIDS["water"], value), floor)
+            fluid = FLUIDS["detergent"]
+            joint.learn(device.log_likelihood(joint, floor, span, fluid, value), floor)
         found.append(np.log(joint.constants.constants.kappa_0))
     assert np.mean(found[0]) == pytest.approx(np.mean(found[1]), abs=0.15 * np.std(found[0]) + 0.05)
 

@@ -281,7 +281,7 @@ def by_method(
         ),
     ] = None,
 ) -> None:
-    """Predict the result of a standard test method: COF and probability of passing.
+    """Predict a standard test method: COF of the shoe, or a machine's reading of the floor.
 
     Angle, load, speed, floor, contaminant and averaging window are the method's, each listed with
     its source. With --quick the uncertainty is that of the friction law alone.

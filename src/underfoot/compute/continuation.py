@@ -141,8 +141,10 @@ class Continuation:
         """How unknown the film is (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
 
-    def continued(self, changes: Mapping[str, Any]) -> Preview:
+    def continued(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
+
+        ``drawn`` False leaves out the spread of the law.
 
         Raises:
             CaseError, InputError: Changes that are none of this case, or of its grid or plan.
@@ -159,12 +161,16 @@ class Continuation:
             values[name] = two[name] + off
             steps = abs(off) + abs(two[name] - one[name])
             errors[name] = SAFETY * steps + SHARE * abs(two[name] - self._unchanged[name])
-        drawn = self._friction(parts, second)
-        factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
+        cof, draws = SourcedValue(values["cof"], "1"), None
+        if drawn:
+            friction = self._friction(parts, second)
+            factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
+            cof = friction.sums.cof.scaled(factor)
+            draws = None if friction.sampled is None else factor * friction.sampled.cof
         return Preview(
             dict(changes),
-            drawn.sums.cof.scaled(factor),
-            None if drawn.sampled is None else factor * drawn.sampled.cof,
+            cof,
+            draws,
             values,
             errors,
             parts.sole,

@@ -18,6 +18,7 @@ from underfoot.core.presentation import (
 )
 from underfoot.core.progress import part
 
+from .ask import ask
 from .outcomes import Outcome, outcomes
 from .sensitivity import Band, Sensitivity, sensitivity, variants
 
@@ -234,9 +235,8 @@ def method_name(name: str, case: Case) -> str:
     plain = name.strip().lower().replace("-", "_").replace(" ", "_")
     plain = NICKNAMES.get(plain, plain)
     entries = [case.catalogue.entry("setup", known) for known in case.catalogue.names("setup")]
-    known = [
-        each.name for each in entries if "motion.speed" in each.values and each.under("method")
-    ]
+    asked = {"motion.speed", "method.question"}
+    known = [each.name for each in entries if asked & each.values.keys() and each.under("method")]
     if plain not in known:
         raise unknown_name("test method", name, known, where="--method")
     return plain
@@ -251,8 +251,10 @@ def method_prediction(
     quick: bool = False,
     processes: int | None = 1,
     progress: Progress = silent,
-) -> MethodPrediction:
+) -> Presentable:
     """Return the COF that a test method would measure on the shoe of a case.
+
+    Of a set-up with ``method.question``, as machines that read floors, what its package answers.
 
     Parameters:
         case: Shoe and models; floor, fluid and motion as far as the method leaves them open.
@@ -273,6 +275,8 @@ def method_prediction(
         if name not in KEEPABLE:
             raise unknown_name("part of the case to keep", name, KEEPABLE, where="--keep")
     entry = case.catalogue.entry("setup", method_name(method, case))
+    if "method.question" in entry.values:
+        return ask(entry.text("method.question"), case, method=entry.name, keep=keep)
     plan = [
         (name, *_prepared(case, entry, floor, fluid, keep))
         for name, floor, fluid in _conditions(entry)
@@ -450,20 +454,9 @@ def _condition(
         if limit is not None and limit.value:
             least = math.log(limit.value)
             probability = probability_at_least(math.log(max(mean, 1e-9)), spread, least)
-    return Condition(
-        name,
-        title,
-        _present(case, "floor"),
-        _present(case, "contaminant"),
-        cof,
-        low,
-        high,
-        limit,
-        probability,
-        band,
-        middle,
-        window,
-    )
+    floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
+    return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
+                     middle, window)  # fmt: skip
 
 
 def probability_at_least(mean: float, deviation: float, limit: float) -> float:

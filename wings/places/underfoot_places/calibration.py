@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Annotated, Any, ClassVar
@@ -29,7 +29,15 @@ from underfoot.friction import (
 from underfoot.friction.pair_contact import Pair
 
 from .joint import JointDraws, floor_name, interval
-from .machines import ANY_FLOOR_RQ, Fluid, Machine, machine
+from .machines import (
+    ANY_FLOOR_RQ,
+    Fluid,
+    Machine,
+    MachinePrediction,
+    machine,
+    machine_of,
+    prediction,
+)
 
 PendulumValue = Annotated[float, Quantity("1", 0.0, 150.0)]
 RampAngle = Annotated[float, Quantity("rad", 0.0, math.radians(45.0))]
@@ -56,7 +64,7 @@ class FloorReading:
 def learn_floor(
     joint: JointDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
 ) -> None:
-    """Teach draws what a machine read on a floor; the anchors of the machine go before."""
+    """Teach draws what a machine read on a floor."""
     log = reading.machine.log_likelihood(
         joint, floor, floor_rq, reading.fluid, reading.value, kind=reading.kind, sd=reading.sd
     )
@@ -105,13 +113,9 @@ def floor_calibration(
     Raises:
         InputError: Readings that hardly any draw agrees with.
     """
-    joint, roughness = JointDraws(seed=seed, start=draws), f"roughness of floor {FLOOR}"
+    joint, roughness = floor_draws(pair, draws, seed), f"roughness of floor {FLOOR}"
     share = floor_name(pair)
-    if share in draws.errors:
-        joint.begin(roughness, joint.errors()[share])
     before = interval(joint.between(roughness, pair.floor_rq))
-    for device in {one.machine.offset: one.machine for one in readings}.values():
-        device.learn_anchors(joint)
     for one in readings:
         learn_floor(joint, FLOOR, pair.floor_rq, one)
     rows = np.arange(KEPT)  # in random order already
@@ -127,6 +131,50 @@ def floor_calibration(
     return FloorCalibration(readings, kept, before, after, joint.fewest)
 
 
+def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> JointDraws:
+    """Return joint draws that know of the floor of a pair what its draws do."""
+    joint, share = JointDraws(seed=seed, start=draws), floor_name(pair)
+    if share in draws.errors:
+        joint.begin(f"roughness of floor {FLOOR}", joint.errors()[share])
+    return joint
+
+
+def machine_reading(case: Case, *, method: str, keep: Sequence[str] = ()) -> MachinePrediction:
+    """Return what a machine prints of the floor of a case; its shoe is not asked.
+
+    Parameters:
+        method: Name of the machine's set-up.
+        keep: "contaminant" takes the fluid of the case in place of the standard's.
+
+    Raises:
+        InputError: Another part to keep, or another law of friction.
+    """
+    device, law = machine_of(case.catalogue.entry("setup", method)), pair_law(case)
+    for part in keep:
+        if part != "contaminant":
+            raise unknown_name("part of the case to keep", part, ["contaminant"], where="--keep")
+    fluid = device.fluid_of_standard()
+    if keep:
+        viscosity = None if law.viscosity is None else (law.viscosity, law.viscosity)
+        fluid = Fluid(
+            case.entries.get("contaminant", "fluid of the case"), law.pair.family, viscosity
+        )
+    joint = floor_draws(law.pair, law.draws, case.numerics.seed)
+    return prediction(device, joint, FLOOR, law.pair.floor_rq, fluid, law.pair.measured[1])
+
+
+def pair_law(case: Case) -> PairContactLaw:
+    """Return the law of a case.
+
+    Raises:
+        InputError: It is none of a pair.
+    """
+    law = case.friction.build(resolved(case))
+    if not isinstance(law, PairContactLaw):
+        raise InputError(f'the law is "{law.name}"', where="friction", allowed='model = "pair"')
+    return law
+
+
 def calibrated_floor(
     case: Case, named: str, reading: float, *, kind: str = "value", fluid: str = "", seed: int = 0
 ) -> FloorCalibration:
@@ -139,10 +187,7 @@ def calibrated_floor(
     device = machine(named, "--machine")
     liquid = device.fluid_of_standard(fluid, "--fluid")
     value = device.checked(reading, "--reading")
-    law = case.friction.build(resolved(case))
-    if not isinstance(law, PairContactLaw):
-        raise InputError(f'the law is "{law.name}"', where="friction", allowed='model = "pair"')
-    read = FloorReading(device, liquid, value, kind)
+    law, read = pair_law(case), FloorReading(device, liquid, value, kind)
     return floor_calibration(law.pair, law.draws, (read,), case.numerics.seed + seed)
 
 

@@ -37,6 +37,7 @@ from underfoot.compute.solve import solved_at
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent, probability_text
+from underfoot.core.threads import threads_limited
 from underfoot.friction import PairContactLaw
 from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, Pair
 from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
@@ -250,11 +251,11 @@ class Choice(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return what was assumed."""
-        used = {each.machine.name for floor in self.place.floors for each in floor.readings}
-        notes = [f"{machines()[name].title}: {machines()[name].source}" for name in sorted(used)]
-        memory = [
-            f"{machines()[name].title}, from memory: {'; '.join(machines()[name].memory)}"
-            for name in sorted(used)
+        used = {each.machine for floor in self.place.floors for each in floor.readings}
+        notes = [
+            f"{each.title}: {each.standard}; settings and sources: underfoot explain "
+            f"{each.entry.name}"
+            for each in sorted(used, key=lambda each: each.name)
         ]
         return {
             "Assumed": (
@@ -262,7 +263,7 @@ class Choice(Presentable):
                 f"Readings leave {self.effective:.0f} of the draws",
                 "Shoes are worn evenly over their months; half of them are new on the mean day",
             ),
-            "Machines": (*notes, *memory),
+            "Machines": notes,
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -323,8 +324,8 @@ class _Solver:
     quick: bool
     read: Mapping[str, PlaceFloor]
     """Floors with the roughness that their readings leave, by name: what is solved."""
-    moved: dict[tuple[str, bool], Array] = field(default_factory=dict)
-    """``film_odds_over_positions`` of soles, new and worn."""
+    marches: dict[tuple[str, bool], tuple[Continuation, Array]] = field(default_factory=dict)
+    """What is continued of soles, new and worn, and their ``film_odds_over_positions``."""
 
     def cells(
         self, shoe: PlaceShoe, floors: Sequence[PlaceFloor], worn: bool
@@ -337,26 +338,28 @@ class _Solver:
         ]
         # a thick film is where continuation begins from best
         order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
-        march = Continuation(cases[order[0]], quick=self.quick)
-        sole = shoe.name, worn
-        if sole not in self.moved:
-            self.moved[sole] = film_odds_over_positions(cases[order[0]])
-        moved = self.moved[sole]
+        sole, first = (shoe.name, worn), cases[order[0]]
+        if sole not in self.marches:
+            begun = Continuation(first, quick=self.quick)
+            self.marches[sole] = begun, film_odds_over_positions(first)
+        (march, moved), tread = self.marches[sole], tread_place(first)
         found = {}
         for number in order:
             case, (floor, fluid) = cases[number], wanted[number]
-            solved, values = march, march.values
-            if number != order[0]:
+            solved = march
+            if case.hash != march.case.hash:
                 try:
                     section = dict(solved_floors[floor.name].section)
                     changes = {"floor": section, "contaminant": fluid}
-                    values = march.continued(changes).values
+                    values = march.continued(changes, drawn=False).values
                 except (InputError, ConvergenceError):
                     solved = Continuation(case, quick=self.quick)
                     values = solved.values
+            else:
+                values = march.values
             pair = _law(self.place.case(shoe, floor, fluid, worn)).pair
             found[floor.name, fluid] = self._cell(
-                case, values, solved.spreads, shoe, floor, pair, moved
+                case, values, solved.spreads, shoe, floor, pair, moved, tread
             )
         return found
 
@@ -369,6 +372,7 @@ class _Solver:
         floor: PlaceFloor,
         pair: Pair,
         moved: Array,
+        tread: Array,
     ) -> Cell:
         context = resolved(case)
         law = case.friction.build(context)
@@ -387,9 +391,8 @@ class _Solver:
             pair, laboratory="the place", floor=floor.name, sole=shoe_name(shoe),
             pressure=CONTACT_PRESSURE, drag=drag,
         )  # fmt: skip
-        place = place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
         errors = {
-            name: joint.error(error, place) for name, error in sole_errors(case, context).items()
+            name: joint.error(error, tread) for name, error in sole_errors(case, context).items()
         }
         share = np.zeros(joint.count)
         if film > 0:
@@ -423,6 +426,11 @@ def film_odds_over_positions(case: Case) -> Array:
     return np.array(odds) - odds[0]
 
 
+def tread_place(case: Case) -> Array:
+    """Return the place of a case's tread, (6,), on the quick grid (``place_of_tread``)."""
+    return place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
+
+
 def shoe_name(shoe: PlaceShoe) -> str:
     """Return the name of a sole's errors: the same sole twice has the same."""
     return repr((sorted(shoe.section.items()), shoe.known_class, shoe.readings))
@@ -454,13 +462,13 @@ def test_cof(
         pair, laboratory=f"test house of {shoe.name}", floor=test.name, sole=shoe_name(shoe),
         pressure=CONTACT_PRESSURE, drag=test.viscosity * SPEED,
     )  # fmt: skip
-    place = place_of_tread(case, sole_map(case, case.value("numerics.quick_grid_spacing")))
-    return cof * np.exp(joint.error(tread_error(test.viscosity), place))
+    return cof * np.exp(joint.error(tread_error(test.viscosity), tread_place(case)))
 
 
 test_cof.__test__ = False  # type: ignore[attr-defined]
 
 
+@threads_limited(1)
 def chosen(
     place: Place, *, seed: int = 0, quick: bool = True, progress: Progress = silent
 ) -> Choice:
@@ -623,9 +631,6 @@ def _learn(
     cases: Mapping[str, Any],
 ) -> None:
     """Teach the draws every reading of floors and shoes, in the order of names."""
-    used = {each.machine.offset: each.machine for f in place.floors for each in f.readings}
-    for name in sorted(used):
-        used[name].learn_anchors(joint)
     for floor in sorted(place.floors, key=lambda each: each.name):
         for one in floor.readings:
             learn_floor(joint, floor.name, floor_rq[floor.name], one)

@@ -18,7 +18,14 @@ from scipy.special import log_ndtr, ndtri
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.friction import PairDraws, packaged_pair_draws
-from underfoot.friction.pair_contact import DRY_PART, LABORATORY, TERMS, ContactTerms, Pair
+from underfoot.friction.pair_contact import (
+    DRY_PART,
+    LABORATORY,
+    TERMS,
+    ContactTerms,
+    Pair,
+    PairConstants,
+)
 from underfoot.friction.propagation import named_shares
 from underfoot.friction.tread_error import READING, SharedError
 
@@ -107,6 +114,7 @@ class JointDraws:
         sole: str,
         pressure: ArrayLike,
         drag: ArrayLike | None,
+        middle: bool = False,
     ) -> Array:
         """Return COF (count,) of a contact by the law of the pair.
 
@@ -115,12 +123,19 @@ class JointDraws:
             laboratory, floor, sole: Names; what has one name has one error or roughness.
             pressure: Pa, above 0.
             drag: Viscosity times speed, N/m; None on a dry floor.
+            middle: At the median of the law's constants and without its errors.
         """
-        base = self.constants
+        base, scale = self.constants, float(not middle)
+        if middle:
+            columns = base.constants, PairConstants.__dataclass_fields__
+            medians = (np.median(getattr(columns[0], name)) for name in columns[1])
+            middle_of = PairConstants(*(np.full(self.count, value) for value in medians))
+            base = replace(base, constants=middle_of)
         errors = {
-            DRY_PART: base.sd_dry_part * self.normal(f"dry part: {laboratory}"),
-            LABORATORY: base.sd_laboratory * self.normal(f"laboratory: {laboratory}"),
-            pair.compound_and_floor: base.sd_pair
+            DRY_PART: scale * base.sd_dry_part * self.normal(f"dry part: {laboratory}"),
+            LABORATORY: scale * base.sd_laboratory * self.normal(f"laboratory: {laboratory}"),
+            pair.compound_and_floor: scale
+            * base.sd_pair
             * self.normal(f"pair: {sole}, {floor}, {pair.family}"),
             floor_name(pair): self.share(f"roughness of floor {floor}"),
             pair.sole_roughness: self.share(f"roughness of sole {sole}"),

@@ -1,14 +1,15 @@
 """Machines that read floors, as devices of the law of the pair: pendulum, ramp, tribometer.
 
 A specimen of known rubber is pressed on the floor and slides. Its contact friction mu_c is that of
-any sole (``underfoot.friction.pair_contact``) at the machine's pressure and speed, off by the error
-of the machine as by that of a laboratory. The edge of a slider is a bearing as well (``Edge``):
-where a film carries the share phi of its load, the machine reads
+any sole (``underfoot.friction.pair_contact``) at the machine's pressure and speed. The edge of a
+slider and the lug of a boot are bearings as well (``Bearing``): where a film carries the share phi
+of the load, the machine reads
 
-    mu = (1 - phi) mu_c + eta V / (h p)
+    mu = f [(1 - phi) mu_c + eta V / (h p)]
 
-The scale turns mu into the machine's own number. A walker on the ramp needs the friction r of a
-half step beside that of the slope:
+f is what its published readings teach (``Learned``); without any it is off as a laboratory is. The
+scale turns mu into the machine's own number. A walker on the ramp needs the friction r of a half
+step beside that of the slope:
 
     pendulum     PTV = 330 mu / (3 + mu)
     ramp         angle = atan(mu) - atan(r)
@@ -18,22 +19,23 @@ half step beside that of the slope:
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
-from importlib import resources
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from underfoot.case.surfaces import FLOOR_RQ
-from underfoot.core import InputError, RangeError, to_si, unknown_name
+from underfoot.core import InputError, RangeError, unknown_name
 from underfoot.core.arrays import Array
+from underfoot.core.catalogue import Entry, catalogue
 from underfoot.core.presentation import Presentable, Table, percent
-from underfoot.film import wedge_load_factor
+from underfoot.film import side_leakage, wedge_load_factor
 from underfoot.friction.pair_contact import Pair
 from underfoot.material import youngs_modulus_gent
+from underfoot.questions.method import Basis
 from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
 
 from .joint import JointDraws, Reading, interval
@@ -44,14 +46,10 @@ RZ_SPREAD = (4.0, 8.0)
 ANY_FLOOR_RQ = (0.2e-6, 15e-6)
 """Rq (m), polished to safety floors, over which a floor is drawn that was read and not measured
 (assumed): the reading tells which it is."""
-ANCHOR_SD = 0.15
-"""Standard deviation of ln of an anchor: an indicative band, no reading (assumed)."""
 TAPER = (0.1, 2.0)
 """(h1 - h0) / h0 of the wedge under a worn edge (assumed; the film is thickest at 1.19)."""
 SMALLEST = 1e-3
 """COF below which no machine reads."""
-MIDDLE_RQ = 2e-6
-"""Rq (m) of a floor at which the error over roughness of a machine is 0: between its anchors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,36 +110,43 @@ SCALES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
-    """Worn edge of a slider: load (N), its width across the motion and its length along it (m)."""
+class Bearing:
+    """Part of a specimen that a film may lift, edge or lug: length along the motion, width (m).
 
-    load: float
-    width: float
+    ``load`` (N) is what it bears at any length; None where it bears the specimen's pressure.
+    """
+
     length: tuple[float, float]
+    width: float
+    load: float | None
 
     def film(
-        self, pressure: Array, drag: Array, rq: Array, modulus: float, taper: Array
+        self,
+        pressure: Array,
+        length: Array,
+        drag: Array,
+        rq: Array,
+        modulus: float,
+        taper: Array,
     ) -> tuple[Array, Array]:
         """Return the share of the load on the film, 0 to 1, and the gap (m), each (count,).
 
-        The film of a wide wedge and the rough contact carry the load at one mean gap:
+        The film of a wedge with open sides and the rough contact carry the load at one mean gap:
 
-            p = 6 eta V l K(m) / h^2 + 0.375 E / (1 - nu^2) exp(-h / (0.5 Rq))
+            p = 6 eta V l K(m) eta_s(l / b, m) / h^2 + 0.375 E / (1 - nu^2) exp(-h / (0.5 Rq))
 
         Parameters:
-            pressure: p, of the edge, Pa.
+            pressure: p, Pa.
+            length: l, m.
             drag: eta V, viscosity times speed, N/m.
             rq: Of both surfaces together, m.
-            modulus: E of the slider, Pa; nu = 0.5.
+            modulus: E of the specimen, Pa; nu = 0.5.
             taper: m = (h1 - h0) / h0 of the wedge.
 
-        Source: Reynolds 1886 (``underfoot.film.wedge_load_factor``); Persson 2007
-        (``underfoot.rough_contact.ExponentialLaw``). The leakage at the sides, below 5 % where the
-        edge is 25 times as wide as long, is left out.
+        Source: Reynolds 1886, Michell 1905 (``underfoot.film.side_leakage``); Persson 2007
+        (``underfoot.rough_contact.ExponentialLaw``).
         """
-        along = self.load / (self.width * pressure)
-        factors = np.array([wedge_load_factor(float(m)) for m in taper])
-        wedge = 6 * drag * along * factors
+        wedge = 6 * drag * length * _wedge_factors(taper, length / self.width)
         stiff = INTERCEPT_OVER_MODULUS * modulus / 0.75
         gap, step = np.full_like(pressure, 1e-6), math.log(1e3)
         for _ in range(50):  # both parts fall with the gap: halve the steps of its logarithm
@@ -151,20 +156,55 @@ class Edge:
         return np.minimum(wedge / gap**2 / pressure, 1.0), gap
 
 
-@dataclass(frozen=True, slots=True)
-class Machine:
-    """A machine: specimen, motion, fluids of its standard, scale and classes; SI.
+def _wedge_factors(taper: Array, length_over_width: Array) -> Array:
+    """Return K eta_s of wedges, (count,), from a table of them; 1e-3 off at most."""
+    return _wedge_table()(np.log([taper, length_over_width]).T)
 
-    ``anchors`` are (Rz, reading, source) that its offset is learned from, wet with water.
-    ``walker`` is the range of the friction that a walker needs beside that of the slope.
-    ``deviation`` is the standard deviation of ln COF where the law has no reading, as of skin or
-    at 2.8 m/s; ``roughness_deviation`` that of the exponent of Rq there.
-    ``reproducibility`` says how far laboratories differ, with its source.
+
+@cache
+def _wedge_table() -> Any:
+    tapers, ratios = np.geomspace(*TAPER, 25), np.geomspace(5e-3, 3, 25)
+    table = [
+        [wedge_load_factor(float(m)) * side_leakage(float(ratio), float(m)) for ratio in ratios]
+        for m in tapers
+    ]
+    return RegularGridInterpolator((np.log(tapers), np.log(ratios)), table, method="cubic")
+
+
+@dataclass(frozen=True, slots=True)
+class Learned:
+    """What readings teach of a machine, of ln COF.
+
+    ``factor`` over the law of the pair and ``factor_sd``, how unsure it is; ``source_sd`` between
+    those who read, ``floor_sd`` between floors of one roughness.
     """
 
+    factor: float
+    factor_sd: float
+    source_sd: float
+    floor_sd: float
+
+    def error(self, joint: JointDraws, machine: str, floor: str) -> Array:
+        """Return draws (count,) of ln of COF over that of the law."""
+        return (
+            self.factor
+            + self.factor_sd * joint.normal(f"factor of {machine}")
+            + self.source_sd * joint.normal(f"reader of {machine}")
+            + self.floor_sd * joint.normal(f"{machine} on {floor}")
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """A machine: a set-up of the catalogue with ``method.question = "machine_reading"``; SI.
+
+    Where nobody's readings teach it (``learned`` None), its error is that of a laboratory, and
+    ``deviation`` the standard deviation of ln COF for what the law has no reading of, as skin.
+    ``walker`` is the range of the friction that a walker needs beside that of the slope.
+    """
+
+    entry: Entry = field(compare=False, repr=False)
     name: str
-    title: str
-    standard: str
     scale: Scale
     shore_a: float
     sole_rq: tuple[float, float]
@@ -174,21 +214,25 @@ class Machine:
     classes: tuple[tuple[float, str], ...]
     above: bool
     most: float
-    source: str
-    memory: tuple[str, ...]
-    note: str
-    reproducibility: str
-    walker: tuple[float, float] = (0.0, 0.0)
-    deviation: float = 0.0
-    roughness_deviation: float = 0.0
-    edge: Edge | None = None
-    anchors: tuple[tuple[float, float, str], ...] = ()
-    anchored_by: str = ""
+    walker: tuple[float, float]
+    bearing: Bearing | None
+    deviation: float
+    learned: Learned | None
 
     @property
-    def offset(self) -> str:
-        """Name of the machine's error: machines with anchors in common share it."""
-        return f"machine {self.anchored_by or self.name}"
+    def title(self) -> str:
+        """Title of the set-up."""
+        return self.entry.title
+
+    @property
+    def standard(self) -> str:
+        """Name of its standard."""
+        return self.entry.text("machine.standard")
+
+    @property
+    def reproducibility(self) -> str:
+        """How far two who read one floor differ."""
+        return self.entry.text("machine.reproducibility")
 
     def class_of(self, reading: float) -> str:
         """Return the class of a reading."""
@@ -235,49 +279,58 @@ class Machine:
     def cof(
         self, joint: JointDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
     ) -> Array:
-        """Return draws (count,) of the COF that the machine reads on a floor of Rq (m)."""
+        """Return draws (count,) of the COF that the machine reads on a floor of Rq (m).
+
+        A machine with readings is taken at the middle of the law's constants and of what is open
+        of its own setting: its factor was learned there and holds their errors.
+        """
+        known = self.learned is not None
+
+        def setting(what: str, ends: tuple[float, float]) -> Array:
+            if known:
+                return np.full(joint.count, math.sqrt(ends[0] * ends[1]))
+            return joint.between(f"{what} of {self.name}", ends)
+
         pair = Pair(self.shore_a, self.sole_rq, floor_rq, fluid.family)
-        pressure = self._pressure(joint)
-        drag = None
+        bearing, drag = self.bearing, None
+        length = None if bearing is None else setting("edge", bearing.length)
+        if bearing is not None and bearing.load is not None:
+            assert length is not None
+            pressure = bearing.load / (bearing.width * length)
+        else:
+            pressure = setting("pressure", self.pressure)
         if fluid.viscosity is not None:
-            drag = joint.between(f"speed of {self.name}", self.speed) * joint.between(
+            drag = setting("speed", self.speed) * joint.between(
                 f"viscosity of {fluid.name}", fluid.viscosity
             )
         sole = f"specimen of {self.name}"
         cof = joint.contact_cof(
-            pair, laboratory=self.offset, floor=floor, sole=sole, pressure=pressure, drag=drag
-        )
-        cof = cof * np.exp(self.deviation * joint.normal(f"{self.offset}, untested"))
-        rq = joint.between(f"roughness of floor {floor}", floor_rq)
-        if drag is not None:
-            tilt = self.roughness_deviation * joint.normal(f"{self.offset}, over roughness")
-            cof = cof * (rq / MIDDLE_RQ) ** tilt
-        if self.edge is not None and drag is not None:
+            pair, laboratory=f"machine {self.name}", floor=floor, sole=sole, pressure=pressure,
+            drag=drag, middle=known,
+        )  # fmt: skip
+        cof = cof * np.exp(self.deviation * joint.normal(f"{self.name}, untested"))
+        if bearing is not None and length is not None and drag is not None:
+            rq = joint.between(f"roughness of floor {floor}", floor_rq)
             rough = np.hypot(joint.between(f"roughness of sole {sole}", self.sole_rq), rq)
             modulus = float(youngs_modulus_gent(self.shore_a))
-            taper = joint.between(f"wedge of {self.name}", TAPER)
-            film, gap = self.edge.film(pressure, drag, rough, modulus, taper)
+            film, gap = bearing.film(
+                pressure, length, drag, rough, modulus, setting("wedge", TAPER)
+            )
             cof = (1 - film) * cof + film * drag / (gap * pressure)
+        if self.learned is not None:
+            cof = cof * np.exp(self.learned.error(joint, self.name, floor))
         if self.walker[1]:
             low, high = self.walker
             needed = low + (high - low) * joint.share(f"walker of {self.name}")
             cof = np.tan(np.arctan(cof) - np.arctan(needed))
         return np.maximum(cof, SMALLEST)
 
-    def _pressure(self, joint: JointDraws) -> Array:
-        if self.edge is None:
-            return joint.between(f"pressure of {self.name}", self.pressure)
-        length = joint.between(f"edge of {self.name}", self.edge.length)
-        return self.edge.load / (self.edge.width * length)
-
-    def learn_anchors(self, joint: JointDraws) -> None:
-        """Teach draws the offset of the machine, as far as its anchors tell it."""
-        owner = machines()[self.anchored_by] if self.anchored_by else self
-        for rz, reading, _ in owner.anchors:
-            cof = owner.cof(joint, f"anchor Rz {rz:g}", rq_of_rz(rz), FLUIDS["water"])
-            at = float(owner.scale.cof(reading))
-            log = joint.log_likelihood(cof, Reading(at, "value", ANCHOR_SD * at))
-            joint.learn(log, owner.name)
+    def read(
+        self, joint: JointDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
+    ) -> Array:
+        """Return draws (count,) of what the machine prints of a floor, in its unit."""
+        cof = self.cof(joint, floor, floor_rq, fluid)
+        return np.minimum(self.scale.reading(cof), self.most)
 
     def log_likelihood(
         self,
@@ -303,58 +356,58 @@ def rq_of_rz(rz: float) -> tuple[float, float]:
 
 @cache
 def machines() -> Mapping[str, Machine]:
-    """Return the machines by name."""
-    text = resources.files("underfoot_places").joinpath("machines.toml").read_text("utf-8")
+    """Return the machines by name: set-ups of the catalogue that answer ``machine_reading``."""
+    every = catalogue()
+    entries = [every.entry("setup", name) for name in every.names("setup")]
+    read = [each for each in entries if "machine.scale" in each.values]
+    return {each.name: each for each in map(machine_of, read)}
 
-    def span(entry: Mapping[str, Any], key: str, unit: str) -> tuple[float, float]:
-        low, high = (to_si(end, unit, where=key) for end in entry[key])
+
+def machine_of(entry: Entry) -> Machine:
+    """Return the machine of a set-up of the catalogue."""
+
+    def span(path: str, unit: str) -> tuple[float, float]:
+        low, high = entry.numbers(path, unit)
         return low, high
 
-    def edge(entry: Mapping[str, Any]) -> Edge | None:
-        if "edge" not in entry:
+    def number(path: str, unit: str = "1") -> float:
+        return float(entry.sourced(path, unit).value or 0.0)
+
+    def learned() -> Learned | None:
+        if "learned.ln_factor" not in entry.values:
             return None
-        table = entry["edge"]
-        load = to_si(table["load"], "N", where="edge.load")
-        width = to_si(table["width"], "m", where="edge.width")
-        return Edge(load, width, span(table, "length", "m"))
+        paths = ("ln_factor", "ln_factor_sd", "ln_source_sd", "ln_floor_sd")
+        return Learned(*(number(f"learned.{path}") for path in paths))
 
-    def pressure(entry: Mapping[str, Any]) -> tuple[float, float]:
-        bears = edge(entry)
-        if bears is None:
-            return span(entry, "pressure", "Pa")
-        low, high = (bears.load / (bears.width * end) for end in reversed(bears.length))
-        return low, high
-
-    return {
-        name: Machine(
-            name,
-            entry["title"],
-            entry["standard"],
-            SCALES[entry["scale"]],
-            float(entry["shore_a"]),
-            span(entry, "sole_rq", "m"),
-            pressure(entry),
-            span(entry, "speed", "m/s"),
-            tuple(entry["fluids"]),
-            tuple((float(limit), label) for limit, label in entry["classes"]),
-            entry.get("above", False),
-            float(entry["most"]),
-            entry["source"],
-            tuple(entry["memory"]),
-            entry.get("note", ""),
-            entry["reproducibility"],
-            tuple(entry.get("walker", (0.0, 0.0))),
-            entry.get("deviation", 0.0),
-            entry.get("roughness_deviation", 0.0),
-            edge(entry),
-            tuple(
-                (to_si(one["rz"], "m", where=name), one["reading"], one["source"])
-                for one in entry.get("anchor", ())
-            ),
-            entry.get("anchors_of", ""),
+    bearing = None
+    if "specimen.edge_length" in entry.values:
+        load = number("specimen.edge_load", "N") if "specimen.edge_load" in entry.values else None
+        bearing = Bearing(
+            span("specimen.edge_length", "m"), number("specimen.edge_width", "m"), load
         )
-        for name, entry in tomllib.loads(text).items()
-    }
+    if bearing is not None and bearing.load is not None:
+        low, high = (bearing.load / (bearing.width * end) for end in reversed(bearing.length))
+        pressure = low, high
+    else:
+        pressure = span("specimen.pressure", "Pa")
+    limits, labels = entry.numbers("classes.limits", "1"), entry.leaf("classes.labels").given
+    return Machine(
+        entry,
+        entry.name.replace("_", "-"),
+        SCALES[entry.text("machine.scale")],
+        number("specimen.shore_a"),
+        span("specimen.rq", "m"),
+        pressure,
+        span("sliding.speed", "m/s"),
+        tuple(entry.leaf("fluids.names").given),
+        tuple(zip(limits, labels, strict=True)),
+        "classes.above" in entry.values,
+        number("machine.most"),
+        span("sliding.walker", "1") if "sliding.walker" in entry.values else (0.0, 0.0),
+        bearing,
+        number("specimen.ln_deviation") if "specimen.ln_deviation" in entry.values else 0.0,
+        learned(),
+    )
 
 
 def machine(name: str, where: str = "machine") -> Machine:
@@ -363,9 +416,10 @@ def machine(name: str, where: str = "machine") -> Machine:
     Raises:
         InputError: No such machine; the nearest and all are named.
     """
-    if name not in machines():
+    plain = name.replace("_", "-")
+    if plain not in machines():
         raise unknown_name("machine", name, machines(), where=where)
-    return machines()[name]
+    return machines()[plain]
 
 
 def machine_fluid(name: str, where: str = "fluid") -> Fluid:
@@ -418,43 +472,48 @@ class MachinePrediction(Presentable):
             lines.append(
                 f"The floor has no roughness: it was drawn over Rq {low:.2g} to {high:.2g} um."
             )
-        if not (self.machine.anchors or self.machine.anchored_by):
+        if self.machine.learned is None:
             lines.append("No reading of this machine stands behind the prediction.")
+        unsure = [
+            each for each in self.machine.entry.values.values() if each.assumed or not each.verified
+        ]
+        lines.append(
+            f"{len(unsure)} settings of the set-up are assumed or from memory; see the table."
+        )
         return tuple(lines)
 
     def table(self) -> Table:
         """Return the classes with their probabilities."""
-        rows = [(label, percent(chance)) for label, chance in self.classes]
-        return Table("Class", ("class", "probability"), rows)
+        reached = np.cumsum([chance for _, chance in reversed(self.classes)])[::-1]
+        rows = [
+            (label, f"{limit:g}", percent(chance), percent(min(least, 1.0)))
+            for (limit, label), (_, chance), least in zip(
+                self.machine.classes, self.classes, reached, strict=True
+            )
+        ]
+        heads = ("class", f"from, {self.machine.scale.unit}", "probability", "of at least")
+        return Table("Class", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return classes and set-up."""
-        m = self.machine
-        anchors = [
-            (f"anchor, Rz {1e6 * rz:.0f} um", f"{reading:g}", source)
-            for rz, reading, source in m.anchors
-        ]
-        rows = [
-            ("standard", m.standard, m.source),
-            ("Shore A of the specimen", f"{m.shore_a:g}", ""),
-            ("Rq of the specimen, um", _span(m.sole_rq, 1e6), ""),
-            ("pressure, kPa", _span(m.pressure, 1e-3), ""),
-            ("speed, m/s", _span(m.speed, 1.0), m.note),
-            *([("worn edge, mm", _span(m.edge.length, 1e3), "")] if m.edge else []),
-            *(
-                [("friction of a half step", _span(m.walker, 1.0), "assumed")]
-                if m.walker[1]
-                else []
-            ),
-            ("between laboratories", m.reproducibility, ""),
-            *anchors,
-            ("from memory, not verified", "; ".join(m.memory), ""),
-        ]
-        return self.table(), Table("Set-up", ("setting", "used", "source or remark"), rows)
+        """Return classes and set-up, each setting with how sure its source is."""
+        rows = []
+        for path, leaf in self.machine.entry.values.items():
+            section, _, name = path.partition(".")
+            if section in ("method", "classes") and name != "labels":
+                continue
+            several = isinstance(leaf.given, list | tuple)
+            given = leaf.given if several else (leaf.given,)
+            between = ", " if name in ("labels", "names") else " to "
+            basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY
+            basis = Basis.ASSUMED if leaf.assumed else basis
+            setting = f"{section}: {name.replace('_', ' ')}"
+            rows.append((setting, between.join(map(str, given)), basis, leaf.source))
+        heads = ("setting", "used", "basis", "source")
+        return self.table(), Table("Set-up", heads, rows)
 
-
-def _span(ends: tuple[float, float], factor: float) -> str:
-    return " to ".join(f"{factor * end:.3g}" for end in dict.fromkeys(ends))
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return what the set-up leaves out."""
+        return {"Notes": (self.machine.entry.note,) if self.machine.entry.note else ()}
 
 
 def predicted_reading(
@@ -479,9 +538,19 @@ def predicted_reading(
             raise RangeError(
                 f"{end:g} m", where="roughness of the floor (Rq)", allowed="1 nm to 1 mm"
             )
-    joint = JointDraws(seed=seed)
-    device.learn_anchors(joint)
-    reading = device.scale.reading(device.cof(joint, "floor", rq, liquid))
+    return prediction(device, JointDraws(seed=seed), "floor", rq, liquid, floor_rq is not None)
+
+
+def prediction(
+    device: Machine,
+    joint: JointDraws,
+    floor: str,
+    floor_rq: tuple[float, float],
+    fluid: Fluid,
+    known: bool,
+) -> MachinePrediction:
+    """Return what a machine will print of a floor, by joint draws that may have learned of it."""
+    reading = device.read(joint, floor, floor_rq, fluid)
     names = np.array([device.class_of(float(x)) for x in reading])
     classes = tuple((label, float(np.mean(names == label))) for _, label in device.classes)
-    return MachinePrediction(device, liquid, rq, floor_rq is not None, *interval(reading), classes)
+    return MachinePrediction(device, fluid, floor_rq, known, *interval(reading), classes)
