@@ -145,7 +145,7 @@ class FilmBalance:
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
         moved = float((np.abs(carried) + stored)[self._film].sum()) + 1e-30
         # a gap that is pressed shut can open again: rows that did not know had no solution
-        by_gap = by_gap.columns((gap <= problem.largest_gap) * 1.0)
+        by_gap = by_gap.columns((gap <= problem.largest_gap).astype(np.float64))
         return FilmRows(
             full,
             net,
