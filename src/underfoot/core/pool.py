@@ -257,12 +257,17 @@ def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_ker
 def watch_parent(parent: int, by_kernel: bool) -> None:
     """Make this worker end with its parent; Ctrl-C, which reaches the group, is the parent's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux" and by_kernel:
-        # holds in the middle of compiled code too, where the thread below waits for its turn
+    if by_kernel:
+        kill_with(parent)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def kill_with(parent: int) -> None:
+    """Let Linux kill this process when its parent ends, in the middle of compiled code too."""
+    if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() != parent:
             os._exit(1)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _end_with_parent() -> None:
