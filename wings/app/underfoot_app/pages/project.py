@@ -15,7 +15,7 @@ from ..projects import known_projects
 from ..session import Session, address
 
 ROUTE = "/project"
-COLUMNS = ("variant", "verdict", "cof", "interval", "slips", "state")
+COLUMNS = ("variant", "state", "verdict", "cof", "interval", "slips")
 
 
 def build(session: Session) -> None:
@@ -67,11 +67,11 @@ def _rows(session: Session, verdicts: dict[str, list[str]]) -> None:
                 with ui.element("tr"):
                     with ui.element("th").props('scope="row" translate="no"'):
                         ui.link(name, address("/answer", variant=name))
+                    with ui.element("td"):
+                        ui.label(text(f"project.{state}"))
                     for cell in cells:
                         with ui.element("td").classes("" if current else "stale"):
                             ui.label(cell)
-                    with ui.element("td"):
-                        ui.label(text(f"project.{state}"))
 
 
 def _others(session: Session) -> None:
