@@ -12,6 +12,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -271,7 +272,8 @@ class Jobs:
 
     def _changed(self, task: Task) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
-        append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
+        with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
+            append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
         for number in list(self.tasks)[:-SHOWN]:
             if not self.tasks[number].open:
                 del self.tasks[number]

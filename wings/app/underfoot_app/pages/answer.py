@@ -190,7 +190,10 @@ class _Answer:
                 self.beside = ui.element("div")
                 self._beside(answer)
                 ui.label(answer["limit"]).classes("soft")
-            for caution in answer["cautions"]:
+            cautions = list(answer["cautions"])
+            if not (self.folder / "report.html").exists():
+                cautions.insert(0, self.text("answer.no_report"))
+            for caution in cautions:
                 ui.label(caution).classes("caution")
 
     def _beside(self, answer: dict[str, Any]) -> None:
