@@ -323,12 +323,12 @@ def test_too_large_a_file_is_refused_before_it_is_sent(app):
         page.evaluate(
             """() => {
               const zone = document.querySelector(".drop"), file = new File(["x"], "huge.stl");
-              Object.defineProperty(file, "size", { value: 2e9 });
+              Object.defineProperty(file, "size", { value: 5e9 });
               const drop = new Event("drop"); drop.dataTransfer = { files: [file] };
               zone.dispatchEvent(drop);
             }"""
         )
-        page.get_by_text("huge.stl has 2000 MB. Allowed: at most 300 MB").wait_for()
+        page.get_by_text("huge.stl has 5000 MB. Allowed: at most 300 MB").wait_for()
 
 
 def test_a_wrong_value_is_told_with_its_remedy(app):

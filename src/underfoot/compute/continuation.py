@@ -89,8 +89,8 @@ class Continuation:
         progress: Hears of the march.
 
     Changes may be of fluid, speed, load, shoe angle, wear, hardness and roughness; a change of the
-    plan of the tread or of the grid needs a run. So does the shoe angle of a sole without lugs: the
-    pool that a tipped facet traps at landing hangs on the whole march.
+    plan of the tread or of the grid needs a run. So do shoe angle and speed of a sole without lugs:
+    the pool that its facet traps at landing and wipes away hangs on the whole march.
 
     Raises:
         InputError: A motion that follows a history.
@@ -188,12 +188,12 @@ class Continuation:
 
     def _steps(self, case: Case) -> tuple[Prepared, SoleContact, SoleContact]:
         """Return the contact after one step and after two, on the grid of the march."""
-        angle = self.case.motion.shoe_angle
-        if case.motion.shoe_angle != angle and not treaded(case):
+        angle, speed = self.case.motion.shoe_angle, self.case.motion.speed
+        if (case.motion.shoe_angle, case.motion.speed) != (angle, speed) and not treaded(case):
             raise InputError(
-                "the shoe angle of a sole without lugs changes",
+                "the shoe angle or the speed of a sole without lugs changes",
                 where="continued",
-                allowed="fluid, speed, load, wear, hardness, roughness",
+                allowed="fluid, load, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
         level = case.replace("motion.shoe_angle", angle)  # the map keeps its angle, the sole rolls

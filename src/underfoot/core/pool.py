@@ -257,16 +257,19 @@ def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_ker
 def watch_parent(parent: int, by_kernel: bool) -> None:
     """Make this worker end with its parent; Ctrl-C, which reaches the group, is the parent's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux" and by_kernel:
-        # holds in the middle of compiled code too, where the thread below waits for its turn
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:
-            os._exit(1)
+    kill_with(parent, by_kernel)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
+def kill_with(parent: int, by_kernel: bool = True) -> None:
+    """Let Linux kill this process when its parent ends, in the middle of compiled code too."""
+    if sys.platform == "linux" and by_kernel:
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(1)
+
+
 def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    wait([parent.sentinel])
+    if parent := multiprocessing.parent_process():
+        wait([parent.sentinel])
     os._exit(1)

@@ -10,7 +10,8 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from .jobs import Task
-from .session import Session, as_json
+from .session import Session
+from .text import as_json
 from .uploads import MOST_BYTES
 
 

@@ -11,7 +11,8 @@ from underfoot.core.units import SYSTEMS
 
 from .jobs import Jobs, Task
 from .project import Project
-from .session import Exchange, Page, Session, as_json
+from .projects import Servers
+from .session import Exchange, Page, Session
 from .text import LANGUAGES, Text, chosen_language
 
 HEAD = """
@@ -29,7 +30,12 @@ LOOK = 0.5
 
 
 def open_session(
-    project: Project, jobs: Jobs, exchange: Exchange, pages: Sequence[Page], request: Request
+    project: Project,
+    jobs: Jobs,
+    exchange: Exchange,
+    pages: Sequence[Page],
+    elsewhere: Servers | None,
+    request: Request,
 ) -> Session:
     """Return the session of a page that is opened."""
     accepted = request.headers.get("accept-language", "")
@@ -38,16 +44,15 @@ def open_session(
     query = dict(request.query_params)
     chosen = request.cookies.get("units", "")
     units = chosen if chosen in SYSTEMS else SYSTEMS[0]
-    return Session(project, jobs, Text(language), query, exchange, pages, theme, units)
+    text = Text(language)
+    return Session(project, jobs, text, query, exchange, pages, theme, units, elsewhere)
 
 
 def framed(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")
-    spoken = as_json({"words": text.of_package(), "decimal": text("frame.decimal")})
-    language = f'document.documentElement.lang = "{text.language}"; const spoken = {spoken};'
-    ui.add_head_html(f"<script>{language}</script>{HEAD}")
+    ui.add_head_html(f"<script>{text.script()}</script>{HEAD}")
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
     with ui.header(fixed=False).classes("app-bar"):

@@ -12,6 +12,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -22,6 +23,7 @@ from underfoot.core.units import SYSTEMS, UNITS_VARIABLE
 from underfoot.core.worker import Job, Worker
 
 from .project import append_line, lines
+from .text import LANGUAGE_VARIABLE
 
 TICK = 0.01
 """s between two looks at a process that computes."""
@@ -158,11 +160,12 @@ class Jobs:
 
     Attributes:
         live: For questions that are answered while a person waits.
+        reading: Reads files of soles, which may take long, while sliders go on.
         tasks: Jobs by number, the oldest first.
     """
 
     def __init__(self, folder: Path, preload: Sequence[str] = ()) -> None:
-        self.live = Lane(preload)
+        self.live, self.reading = Lane(preload), Lane()
         self._preload = preload
         self._lanes: dict[str, Lane] = {}
         self._file = folder / "jobs.jsonl"
@@ -232,7 +235,7 @@ class Jobs:
         """End all processes."""
         for computing in self._computing.values():
             computing.cancel()
-        for lane in (self.live, *self._lanes.values()):
+        for lane in (self.live, self.reading, *self._lanes.values()):
             lane.close()
 
     def _lane(self, module: str) -> Lane:
@@ -269,7 +272,8 @@ class Jobs:
 
     def _changed(self, task: Task) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
-        append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
+        with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
+            append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
         for number in list(self.tasks)[:-SHOWN]:
             if not self.tasks[number].open:
                 del self.tasks[number]
@@ -298,9 +302,16 @@ def _moved(content: Any, folder: str, to: str) -> Any:
     return content
 
 
-def named(function: str, *args: Any, progress: Any, units: str = SYSTEMS[0], **options: Any) -> Any:
-    """Return what a function ("module:name") answers, with its texts in these units."""
-    os.environ[UNITS_VARIABLE] = units
+def named(
+    function: str,
+    *args: Any,
+    progress: Any,
+    units: str = SYSTEMS[0],
+    language: str = "en",
+    **options: Any,
+) -> Any:
+    """Return what a function ("module:name") answers, with its texts in units and language."""
+    os.environ[UNITS_VARIABLE], os.environ[LANGUAGE_VARIABLE] = units, language
     module, _, name = function.partition(":")
     return getattr(import_module(module), name)(*args, progress=progress, **options)
 

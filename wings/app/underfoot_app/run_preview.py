@@ -10,15 +10,16 @@ from typing import Any
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, Preview, kept_continuation
 from underfoot.compute.numerical_error import LUGS
-from underfoot.core import ConvergenceError, Progress, SourcedValue, silent
+from underfoot.compute.positions import treaded
+from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.threads import threads_limited
 
 SURE = 1.96
 """Standard deviations of a numerical error in the ± beside a whole run: 95 %."""
-DRIFT = {"shoe.wear.depth": (60.0, 50.0), "motion.shoe_angle": (0.46, 0.17)}
-"""What one position on the quick grid may miss of wear (1/m) and turning (1/rad): share of the COF,
-and of the load for the film. Chosen on 50 settings of two treaded soles; ``benchmarks/previews.py``
-counts on others."""
+DRIFT = (0.46, 0.17)
+"""What one position on the quick grid may miss of turning, 1/rad: share of the COF, and of the load
+for the film. Chosen on 50 settings of two treaded soles; ``benchmarks/previews.py`` counts on
+others."""
 MOST_UNSURE = 0.25
 """Error beside a whole run, over the COF and over the load for the film, that still says enough."""
 
@@ -31,7 +32,21 @@ def preview_of_run(
     *,
     progress: Progress = silent,
 ) -> Preview:
-    """Return the preview of a changed case as a change of the ``whole`` run of the case."""
+    """Return the preview of a changed case as a change of the ``whole`` run of the case.
+
+    Raises:
+        InputError: Wear, or a sole without lugs: both hang on the film that is trapped at landing.
+            Wear was said to raise the COF where runs lower it; of six previews of a sole without
+            lugs one held (``benchmarks/previews.py``).
+        ConvergenceError: See ``of_run``.
+    """
+    worn = case.replace(changes).shoe.wear != case.shoe.wear
+    if worn or (changes and not treaded(case)):
+        raise InputError(
+            "wear has no preview" if worn else "a sole without lugs has no preview",
+            where="continued",
+            remedy="Run the changed case",
+        )
     solved = kept_continuation(case, progress=progress)
     return of_run(solved, solved.continued(changes), whole)
 
@@ -43,7 +58,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
     the preview changes by, the load on the film by that of its odds. The errors are where 95
     of 100 whole runs of changed cases lie:
 
-        e^2 = (share x e_steps)^2 + 2 (1.96 s)^2 + sum (drift x change of the geometry)^2
+        e^2 = (share x e_steps)^2 + 2 (1.96 s)^2 + (drift x change of the angle)^2
 
     with the numerical error s of a whole run, of grid and positions: once of the run that was
     made and once of the one to come.
@@ -63,10 +78,10 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         known = whole[name].numerical
         relative = usual[True] if known is None or not run else known / run
         size = values[name] if name == "cof" else load
-        moved = {p: (case.value(p) or 0.0) - (solved.case.value(p) or 0.0) for p in DRIFT}
-        drifts = (DRIFT[path][number] * change * size for path, change in moved.items())
+        turned = case.motion.shoe_angle - solved.case.motion.shoe_angle
         repeated = math.sqrt(2.0) * SURE * relative * values[name]
-        errors[name] = math.hypot(share * seen.errors[name], repeated, *drifts)
+        drift = DRIFT[number] * turned * size
+        errors[name] = math.hypot(share * seen.errors[name], repeated, drift)
     if max(errors["cof"] / values["cof"], errors["fluid_load"] / load) > MOST_UNSURE:
         raise ConvergenceError(
             f"a preview would say COF {values['cof']:.3f} ± {errors['cof']:.3f}, film "

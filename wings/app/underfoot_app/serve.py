@@ -26,6 +26,7 @@ from .gate import UPLOADS, Gate, own_name
 from .jobs import Jobs
 from .pages import PAGES
 from .project import Project
+from .projects import Servers, remember
 from .session import Exchange, Page, problem_parts
 from .uploads import MOST_BYTES, received
 
@@ -61,7 +62,9 @@ def serve(
     token = _token()
     jobs = Jobs(project.folder, PRELOAD)
     name = own_name(token)
-    server = _server(_application(project, jobs), token, port, name)
+    elsewhere = Servers() if host in LOOPBACK else None
+    server = _server(_application(project, jobs, elsewhere), token, port, name)
+    remember(project.folder)
     shown = host if host not in ("0.0.0.0", "::") else _own_address()
     if host in LOOPBACK[:2] and _is_this_machine(name):
         shown = name
@@ -80,9 +83,11 @@ def serve(
         server.run(sockets=[listening])
     finally:
         jobs.close()
+        if elsewhere is not None:
+            elsewhere.close()
 
 
-def _application(project: Project, jobs: Jobs) -> FastAPI:
+def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> FastAPI:
     application = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
     exchange = Exchange()
     running: list[asyncio.Task[None]] = []
@@ -96,7 +101,7 @@ def _application(project: Project, jobs: Jobs) -> FastAPI:
     for route, package in (("/viewer", "underfoot.report"), ("/study", "underfoot_design_studies")):
         pages_app.add_static_files(route, str(files(package) / "templates"))
     for page in PAGES:
-        _route(page, project, jobs, exchange)
+        _route(page, project, jobs, exchange, elsewhere)
 
     @application.get("/api/content/{key}")
     async def content(key: str) -> Response:
@@ -135,10 +140,12 @@ def _application(project: Project, jobs: Jobs) -> FastAPI:
     return application
 
 
-def _route(page: Page, project: Project, jobs: Jobs, exchange: Exchange) -> None:
+def _route(
+    page: Page, project: Project, jobs: Jobs, exchange: Exchange, elsewhere: Servers | None
+) -> None:
     @ui.page(page.route)
     def show(request: Request) -> None:
-        session = open_session(project, jobs, exchange, PAGES, request)
+        session = open_session(project, jobs, exchange, PAGES, elsewhere, request)
         framed(session, page)
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from inspect import isawaitable
 from typing import Any
 from urllib.parse import urlencode
 
@@ -15,8 +15,9 @@ from nicegui import ui
 from underfoot.core.errors import Cancelled, UnderfootError, error_text
 from underfoot.core.units import SYSTEMS
 
-from .jobs import Jobs, Task
+from .jobs import Jobs, Lane, Task
 from .project import Project
+from .projects import Servers
 from .text import Text
 
 Handler = Callable[[dict[str, Any]], Awaitable[Any]]
@@ -75,6 +76,7 @@ class Session:
         pages: All pages of the app.
         theme: "light", "dark", or "" for what the system has.
         units: Units that are shown, "si" or "us".
+        elsewhere: Opens other projects; None where others of the network may ask.
         problems: Where errors are told; made by the frame.
     """
 
@@ -86,6 +88,7 @@ class Session:
     pages: Sequence[Page]
     theme: str = ""
     units: str = SYSTEMS[0]
+    elsewhere: Servers | None = None
     problems: ui.element | None = None
 
     @property
@@ -99,19 +102,22 @@ class Session:
         """Open another page."""
         ui.navigate.to(address(route, **query))
 
-    async def ask(self, function: str, *args: Any, **options: Any) -> Any:
-        """Return what a function ("module:name") answers, computed in the warm process.
+    async def ask(self, function: str, *args: Any, lane: Lane | None = None, **options: Any) -> Any:
+        """Return what a function ("module:name") answers, computed in the warm process or ``lane``.
 
         Its errors pass through; raised in a handler of a page they are told there.
         """
-        return await self.jobs.live.ask(function, *args, units=self.units, **options)
+        return await (lane or self.jobs.live).ask(function, *args, **self._shown, **options)
 
     def submit(
         self, title: str, function: str, *args: Any, about: str = "", **options: Any
     ) -> Task:
-        """Queue a long job, whose texts are in the units of the page; return its task."""
-        units = self.units
-        return self.jobs.submit(title, function, *args, about=about, units=units, **options)
+        """Queue a long job, whose texts are in units and language of the page; return its task."""
+        return self.jobs.submit(title, function, *args, about=about, **self._shown, **options)
+
+    @property
+    def _shown(self) -> dict[str, str]:
+        return {"units": self.units, "language": self.text.language}
 
     def follow(
         self, state: Callable[[], object], changed: Callable[[], object]
@@ -125,10 +131,12 @@ class Session:
         def take() -> None:
             shown[0] = state()
 
-        def look() -> None:
+        async def look() -> None:
             if state() != shown[0]:
                 take()
-                changed()
+                followed = changed()
+                if isawaitable(followed):
+                    await followed
 
         ui.timer(LOOK, look)
         return take
@@ -178,8 +186,3 @@ def problem_parts(error: BaseException) -> list[tuple[str, str]]:
             (kind, titles.get(kind, "{}").format(word)) for kind, word in parts.items() if word
         ]
     return problems
-
-
-def as_json(content: Any) -> str:
-    """Return data as JSON that may stand in a page."""
-    return json.dumps(content, ensure_ascii=False).replace("<", "\\u003c")

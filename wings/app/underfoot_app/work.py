@@ -6,7 +6,7 @@ The server names these functions and never imports this module, which brings all
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import mkdtemp
@@ -22,13 +22,12 @@ from underfoot.compute.run import run as result_of
 from underfoot.compute.sole import bottom_surface
 from underfoot.compute.summary import friction_limit
 from underfoot.core import Progress, SourcedValue
-from underfoot.core.fields import Fields, labelled
-from underfoot.core.files import checksum
+from underfoot.core.errors import UnderfootError
+from underfoot.core.fields import Fields
 from underfoot.core.presentation import Presentable, quantity_text
 from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.report import write_report
-from underfoot.report.outsole import inspected
 from underfoot.report.results import (
     DESIGNED,
     designed_surface,
@@ -36,20 +35,18 @@ from underfoot.report.results import (
     sole_fields,
     surface_of_result,
 )
-from underfoot.report.surface_mesh import SurfaceMesh, surface_mesh
+from underfoot.report.surface_mesh import SurfaceMesh
 from underfoot.report.viewer import scene_section, viewer_scene
 from underfoot.report.writing import write_text
-from underfoot.shoe.files import FileSettings
-from underfoot.shoe.tread_measures import channel_depth, tread_measures
+from underfoot.shoe.tread_measures import tread_measures
 
 from .run_preview import preview_of_run
+from .text import put_language
 
 SHAPED = 30_000
 """Cells from which the surface of a sole is made while sliders move."""
 UNREAD = {"sensor.scans": 1}
 """Spares a preview the reading of floor sensors, which it does not show: 50 ms."""
-DRAWN_SPACING = 0.75e-3
-"""m between the cells of a file's sole as it is drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,38 +98,15 @@ def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[s
         "lugs": f"{measures.lug_count}",
     }
     surface = designed_surface(case, _moving_spacing(fields) if changes else DESIGNED)
-    return {"html": _html(Drawn(case.name, fields), surface), "measures": words}
-
-
-def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
-    """Return an outsole file as it is read with ``settings``: in words and as a part of a page."""
-    inspection = inspected(Path(path), FileSettings(**settings))
-    surface = inspection.outsole.surface
-    step = max(1, round(DRAWN_SPACING / surface.spacing))
-    thinned = (slice(None, None, step), slice(None, None, step))
-    depth = np.where(surface.land, np.nan, channel_depth(surface))
-    axes = ("x", "y")
-    fields = labelled(
-        {
-            "height": (axes, surface.height[thinned], {"units": "m", "long_name": "height"}),
-            "channel_depth": (
-                axes, depth[thinned], {"units": "m", "long_name": "depth of the channels"}
-            ),
-            "inside": (axes, surface.inside[thinned]),
-            "land": (axes, surface.land[thinned]),
-        },
-        {"x": ("x", surface.x[::step]), "y": ("y", surface.y[::step])},
-    )  # fmt: skip
-    whole = surface_mesh(surface.x, surface.y, surface.height, surface.land)
-    html = _html(Drawn(inspection.file.name, fields), whole)
-    return {**presented(inspection), "html": html, "sha256": checksum(path)}
+    return {"html": sole_html(Drawn(case.name, fields), surface), "measures": words}
 
 
 def effects(path: str, folder: str, *, progress: Progress) -> None:
     """Write what each open input of a case does to its results, as ``underfoot sensitivity``."""
     case = Case.load(path)
     shown = sensitivity(case, progress=progress)
-    write_report(shown, folder, overwrite=True, further={"case-hash.txt": write_text(case.hash)})
+    further = {"case-hash.txt": write_text(case.hash)}
+    put_language(write_report(shown, folder, overwrite=True, further=further).page)
 
 
 def computed(
@@ -145,7 +119,7 @@ def computed(
 ) -> float | None:
     """Compute a case as ``underfoot run --out`` does; return its COF."""
     result = result_of(case_of(path, changes), quick=quick, progress=progress)
-    write_report(result, folder, overwrite=True)
+    put_language(write_report(result, folder, overwrite=True).page)
     return result.scalars["cof"].value if result.usable else None
 
 
@@ -154,7 +128,18 @@ def advised(path: str, folder: str, *, progress: Progress) -> None:
     result, case = Result.load(folder), Case.load(path)
     if result.usable and result.provenance.case_hash == case.hash:
         advice = risk_assessment(case, result=result, progress=progress)
-        write_report(result, folder, overwrite=True, advice=advice)
+        put_language(write_report(result, folder, overwrite=True, advice=advice).page)
+
+
+def verdicts(folders: Sequence[str], *, progress: Progress) -> list[tuple[str, str]]:
+    """Return the verdict of each stored result with its words; empty where there is none."""
+    found = []
+    for folder in folders:
+        try:
+            found.append(Result.load(folder).verdict())
+        except UnderfootError:
+            found.append(("", ""))
+    return found
 
 
 def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
@@ -170,7 +155,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "extrapolated": slip is not None and bool(slip.note),
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
-    html = _html(result, surface_of_result(result))
+    html = sole_html(result, surface_of_result(result))
     return {**presented(result), **numbers, "html": html}
 
 
@@ -208,7 +193,7 @@ def previewed(
         "slip": slip.value,
         "slip_interval": slip.interval,
         "extrapolated": bool(slip.note),
-        "html": _html(Drawn(changed.name, fields), surface),
+        "html": sole_html(Drawn(changed.name, fields), surface),
     }
 
 
@@ -240,5 +225,6 @@ def _moving_spacing(fields: Fields) -> float:
     return max(DESIGNED, float(np.sqrt(box / SHAPED)))
 
 
-def _html(drawn: Drawn | Result, surface: SurfaceMesh | None) -> str:
+def sole_html(drawn: Drawn | Result, surface: SurfaceMesh | None) -> str:
+    """Return fields on a sole as a part of a page, drawn on a surface."""
     return scene_section(viewer_scene([drawn], [surface]))

@@ -14,6 +14,7 @@ from underfoot_places.choice import chosen
 from underfoot_places.place import read_place
 from underfoot_places.report import slips_figure
 
+from .text import put_language
 from .work import presented
 
 
@@ -28,4 +29,4 @@ def chosen_shoe(file: str, folder: str, *, progress: Progress) -> None:
     address = "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode()
     shown = {**presented(choice), "picture": address}
     further = {"shown.json": write_text(json.dumps(shown))}
-    write_report(choice, folder, overwrite=True, further=further)
+    put_language(write_report(choice, folder, overwrite=True, further=further).page)

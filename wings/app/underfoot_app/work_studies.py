@@ -26,6 +26,7 @@ from underfoot_design_studies.status import study_status
 from underfoot_design_studies.study_file import flat_paths
 from underfoot_readers.sole_export import export_result
 
+from .text import put_language
 from .work import Drawn, presented
 
 COLUMNS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
@@ -58,7 +59,7 @@ def computed(file: str, folder: str, *, progress: Progress) -> None:
     study, workers = Study.load(file, folder), available_processors()
     with with_live_page(study, progress, workers) as told:
         result = study.run(workers=workers, progress=told)
-    write_study_report(study, result)
+    put_language(write_study_report(study, result).page)
 
 
 def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -> list[str]:

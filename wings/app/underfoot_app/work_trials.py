@@ -41,6 +41,7 @@ from underfoot_trial_analysis.report import (
 )
 from underfoot_trial_analysis.tables import quantity_name, scaled, shown_unit
 
+from .text import put_language
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
 
 
@@ -133,6 +134,7 @@ def written_report(asked: Mapping[str, Any], *, progress: Progress = silent) -> 
     analysis = _analysis(study, part(progress, 0.0, 0.4))
     drawing = part(progress, 0.4, 1.0)
     write_trials_report(analysis, study.report, processes=1, progress=drawing)
+    put_language(study.report / "report.html")
     return str(study.report / "report.html")
 
 

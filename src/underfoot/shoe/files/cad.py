@@ -95,7 +95,8 @@ def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
     """
     optional_module("netgen", "cad", f"Reading {kind}")
     # nothing that it calls is compiled: without Numba it starts in half the time
-    call = "import sys; sys.modules['numba'] = None; "
+    call = "import sys; sys.modules['numba'] = None; from underfoot.core.pool import kill_with; "
+    call += f"kill_with({os.getpid()}); "  # a reader that is stopped leaves no mesher behind
     call += "from underfoot.shoe.files.cad import mesh_into; mesh_into(*sys.argv[1:])"
     with tempfile.TemporaryDirectory() as folder:
         answer = Path(folder) / "mesh"

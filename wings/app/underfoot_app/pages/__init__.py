@@ -34,13 +34,14 @@ write the module and its line in ``PAGES``; nothing else names it.
 from __future__ import annotations
 
 from ..session import Page
-from . import answer, compare, design, place, start, studies, trials
+from . import answer, compare, design, place, project, start, studies, trials
 
 DESIGN, SAFETY, SCIENCE = "design", "safety", "science"
 """The doors: who comes in. Their words are ``doors.NAME`` in the text files."""
 
 PAGES = (
     Page("", "/", "start.title", "home", start.build),
+    Page("", project.ROUTE, "project.title", "summarize", project.build),
     Page(DESIGN, "/design", "design.title", "straighten", design.build, design.example),
     Page(DESIGN, "/answer", "answer.title", "query_stats", answer.build),
     Page(DESIGN, "/compare", "compare.title", "compare", compare.build),

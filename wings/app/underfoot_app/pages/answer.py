@@ -12,7 +12,7 @@ from nicegui import ui
 
 from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
-from underfoot.core.presentation import is_wide, percent
+from underfoot.core.presentation import is_wide, percent, probability_text
 
 from ..components import SoleView, scale, sentences, table, task_line, title
 from ..inputs import Input, sliders
@@ -190,7 +190,10 @@ class _Answer:
                 self.beside = ui.element("div")
                 self._beside(answer)
                 ui.label(answer["limit"]).classes("soft")
-            for caution in answer["cautions"]:
+            cautions = list(answer["cautions"])
+            if not (self.folder / "report.html").exists():
+                cautions.insert(0, self.text("answer.no_report"))
+            for caution in cautions:
                 ui.label(caution).classes("caution")
 
     def _beside(self, answer: dict[str, Any]) -> None:
@@ -233,7 +236,7 @@ class _Answer:
     def _risk(self, answer: Mapping[str, Any]) -> str:
         """Return how often a person slips, as people say it, with how unsure that is."""
         probability, interval = answer["slip"], answer["slip_interval"]
-        low, high = map(percent, interval or (0.0, 0.0))
+        low, high = map(probability_text, interval or (0.0, 0.0))
         if is_wide(interval):
             words = self.text("answer.risk_unknown", low=low, high=high)
         else:
@@ -388,8 +391,12 @@ class _Answer:
     def _chance(self, probability: float, interval: Sequence[float] | None) -> str:
         """Return a slip probability, as its interval where one number would say too much."""
         if interval and is_wide((interval[0], interval[1])):
-            return self.text("answer.between", low=percent(interval[0]), high=percent(interval[1]))
-        return percent(probability)
+            return self.text(
+                "answer.between",
+                low=probability_text(interval[0]),
+                high=probability_text(interval[1]),
+            )
+        return probability_text(probability)
 
     def _make(self, each: dict[str, Any]) -> None:
         change = self.text.get(f"changes.{each['name']}", each["name"].replace("_", " "))

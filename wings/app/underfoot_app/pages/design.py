@@ -15,7 +15,8 @@ from underfoot.core.errors import UnderfootError
 
 from ..components import SoleView, title
 from ..inputs import Input, number_field, sliders
-from ..session import Session, as_json
+from ..session import Session
+from ..text import as_json
 from ..variant_bar import new_variant, no_variant, variant_bar
 from . import assumptions, measured_file, repair, sole_file
 from .answer import begin_run

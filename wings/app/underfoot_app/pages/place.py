@@ -58,8 +58,7 @@ class _Place:
         """Queue the choice of a place."""
         file, folder = self.folder / f"{name}.toml", self.folder / name
         self.answer.clear()
-        submit = self.session.jobs.submit
-        task = submit(self.text("place.job"), WORK, str(file), str(folder), about=name)
+        task = self.session.submit(self.text("place.job"), WORK, str(file), str(folder), about=name)
         self.busy.clear()
         with self.busy:
             task_line(self.session, task, partial(self.ended, name))

@@ -9,13 +9,17 @@ from typing import Any
 from nicegui import ui
 
 from underfoot.core import InputError
+from underfoot.core.errors import Cancelled
+from underfoot.core.worker import Job
 
 from ..components import SoleView, drop_zone, sentences, table
-from ..session import Session, as_json
+from ..session import Session
+from ..text import as_json
 from ..uploads import revision, revisions
 from .repair import references
 
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
+WORK = "underfoot_app.work_sole:inspected_sole"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
 DRAWN = ("shoe.heel", "shoe.tread", "shoe.sole")
 """Parts of a case that an outsole from a file takes the place of."""
@@ -76,6 +80,7 @@ class _Inspection:
         self.session, self.name, self.path, self.view, self.used = session, name, path, view, used
         self.text = session.text
         self.settings: dict[str, Any] = {}
+        self.busy = False
         place.clear()
         with place:
             ui.label(self.text("sole_file.file", file=path.partition("/")[2])).classes("file-name")
@@ -98,21 +103,45 @@ class _Inspection:
         self._read()
 
     def _read(self) -> None:
+        if self.busy:  # with other settings
+            self.session.jobs.reading.stop()
+        self.busy = True
         self.reading.clear()
+        with self.reading, ui.element("div").classes("task").props('role="status"'):
+            self.stage = ui.label(self.text("sole_file.reading"))
+            self.bar = ui.linear_progress(0.0, show_value=False)
+            self.bar.props(f'aria-label="{self.text("sole_file.reading")}"')
+            stop = ui.button(self.text("jobs.stop"), on_click=self.session.jobs.reading.stop)
+            stop.props("flat dense no-caps")
         with self.reading:
-            ui.label(self.text("sole_file.reading")).classes("soft")
             ui.timer(0, self._show, once=True)
 
     async def _show(self) -> None:
+        def heard(job: Job) -> None:
+            self.stage.text, self.bar.value = job.stage or self.stage.text, job.fraction
+
         file = str(self.session.project.inside(self.path))
         settings = {
             key: value for key, value in self.settings.items() if value not in ("auto", None)
         }
+        read = dict(self.settings)
         try:
-            answer = await self.session.ask("underfoot_app.work:inspected_sole", file, settings)
-        except Exception:
-            self.reading.clear()
+            answer = await self.session.ask(
+                WORK, file, settings, lane=self.session.jobs.reading, heard=heard
+            )
+        except Exception as error:
+            if read == self.settings:
+                self.busy = False
+                self.reading.clear()
+                if isinstance(error, Cancelled):
+                    with self.reading:
+                        ui.label(self.text("sole_file.stopped")).classes("soft")
+                        again = ui.button(self.text("sole_file.again"), on_click=self._read)
+                        again.props("flat dense no-caps")
             raise
+        if read != self.settings:
+            return
+        self.busy = False
         self.reading.clear()
         self.view.show(answer["html"])
         values = {"measures": " ".join(answer["headline"])}

@@ -90,6 +90,7 @@ def _pack(session: Session) -> None:
             ui.download.file(task.answer)
 
     text = session.text
+    ui.link(text("project.title"), "/project")
     button = ui.button(text("start.pack"), icon="archive", on_click=packed).props("no-caps flat")
 
 

@@ -120,7 +120,7 @@ class FolderView:
                 for shown in rest:
                     _study_table(shown)
         with ui.expansion(text("trials.by_command")):
-            ui.label(self.study.command).classes("command")
+            ui.label(self.study.command).classes("command").props("translate=no")
 
     def _chip(self, verdict: str, count: int) -> None:
         def choose() -> None:

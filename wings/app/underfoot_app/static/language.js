@@ -8,14 +8,17 @@ for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const form = english.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
   const fixed = english.replaceAll("{}", "").length; // what joins any two parts comes last, as the file has it
-  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, fixed < 6 ? 0 : fixed]);
+  const joins = fixed < 6, withWords = joins && /[a-z]/.test(english.replaceAll("{}", ""));
+  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, joins ? 0 : fixed, withWords]);
 }
 sentenceForms.sort((a, b) => b[2] - a[2]);
 
 function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
-function withDecimals(text) {
-  return spoken.decimal === "." ? text : text.replace(/(?<![\d.\w])(\d+)\.(\d+)(?![\w]*\.\d)/g, `$1${spoken.decimal}$2`);
+const NUMBER = /(?<![\d.\w])([1-9]\d{0,2}(?:,\d{3})+(?!\d)|\d+)(?:\.(\d+)(?![\w]*\.\d))?/g;
+function withDecimals(text) { // 1,200.5 is 1.200,5 where the decimal sign is a comma
+  if (spoken.decimal === ".") return text;
+  return text.replace(NUMBER, (_, whole, part) => whole.replaceAll(",", ".") + (part ? spoken.decimal + part : ""));
 }
 
 function inLanguage(text, depth = 0) {
@@ -37,17 +40,23 @@ function formed(core, depth) {
   if (whole !== null) return whole;
   const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
   if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
+  if (core.endsWith(".")) return inLanguage(core.slice(0, -1), depth + 1) + ".";
   return asForm(core, small, depth, (fixed) => fixed === 0) ?? withDecimals(core);
 }
 
 function asForm(core, small, depth, wanted) {
-  for (const [form, other, fixed] of sentenceForms) {
+  for (const [form, other, fixed, withWords] of sentenceForms) {
     const as = form.test(core) ? core : small, parts = wanted(fixed) && form.exec(as);
-    if (!parts) continue;
+    if (!parts || (withWords && parts.slice(1).some((part) => !isKnown(part, depth)))) continue;
     const said = other.replace(/\{(\d)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
     return as === core ? said : capital(said);
   }
   return null;
+}
+
+// Whether the catalogue has words for a part, or it has none: "to" in a sentence that is not known joins nothing.
+function isKnown(part, depth) {
+  return !/[A-Za-z]{4}/.test(part) || inLanguage(part, depth + 1) !== withDecimals(part) || exactWords.has(part.trim());
 }
 
 function speakAll(root) {
@@ -70,9 +79,13 @@ function speakText(node) {
 
 function speakLabels(element) {
   if (element.closest(UNSPOKEN)) return;
+  if (!written.has(element)) written.set(element, {});
+  const own = written.get(element); // 1.234 is written as 1,234, which read again is a thousand
   for (const label of LABELS) {
-    const text = element.getAttribute(label), other = text && inLanguage(text);
-    if (text !== other) element.setAttribute(label, other);
+    const text = element.getAttribute(label);
+    if (!text || own[label] === text) continue;
+    own[label] = inLanguage(text);
+    if (own[label] !== text) element.setAttribute(label, own[label]);
   }
 }
 

@@ -7,15 +7,21 @@ changes, ``{0}``, ``{1}`` for these parts in the other language. The browser put
 
 from __future__ import annotations
 
+import json
+import os
 import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
+from underfoot.core.files import whole_file
 from underfoot.core.units import SYSTEMS
 
 FOLDER = files("underfoot_app.text")
+LANGUAGE_VARIABLE = "UNDERFOOT_LANGUAGE"
+"""Environment variable with the language of who asked, in the processes that compute."""
 
 
 class Text:
@@ -38,6 +44,12 @@ class Text:
         file = FOLDER.joinpath(f"{self.language}.package.toml")
         return tomllib.loads(file.read_text("utf-8")) if file.is_file() else {}
 
+    def script(self) -> str:
+        """Return the script that tells a page its language and the words of the package."""
+        words = {"words": self.of_package(), "decimal": self("frame.decimal")}
+        spoken = as_json(words)
+        return f'document.documentElement.lang = "{self.language}"; const spoken = {spoken};'
+
     def unit_systems(self) -> dict[str, str]:
         """Return the name of each system of units."""
         return {system: self(f"frame.{system}") for system in SYSTEMS}
@@ -45,6 +57,22 @@ class Text:
     def get(self, key: str, otherwise: str) -> str:
         """Return the words of a key, or ``otherwise`` where there is none."""
         return self._messages.get(key, otherwise)
+
+
+def put_language(page: Path | None) -> None:
+    """Let a report that was written speak the language of who asked, without the app too."""
+    language = os.environ.get(LANGUAGE_VARIABLE, "en")
+    if page is not None and language != "en":
+        speaker = files("underfoot_app").joinpath("static", "language.js").read_text("utf-8")
+        script = f"<head>\n<script>{Text(language).script()}</script>\n<script>{speaker}</script>"
+        spoken = page.read_text(encoding="utf-8").replace("<head>", script, 1)
+        with whole_file(page) as part:
+            part.write_text(spoken, encoding="utf-8")
+
+
+def as_json(content: Any) -> str:
+    """Return data as JSON that may stand in a page."""
+    return json.dumps(content, ensure_ascii=False).replace("<", "\\u003c")
 
 
 @cache

@@ -1,0 +1,147 @@
+"""Files that go wrong while the app takes and reads them: what a person sees."""
+
+import asyncio
+import errno
+import shutil
+import subprocess
+from pathlib import Path
+
+import psutil
+import pytest
+from tests.trial_soles import step, step_bars
+from web_app import begin, drawn, page_of, served
+
+from outsole_bodies import grooved, heel_body, triangles, write_stl
+
+pytest.importorskip("nicegui")
+
+from underfoot.core import InputError, silent
+from underfoot_app import work_sole
+from underfoot_app.project import Project
+from underfoot_app.uploads import received
+
+SOLES = "input[type=file][accept*=stl]"
+
+
+async def pieces(data, size=1000):
+    for start in range(0, len(data), size):
+        yield data[start : start + size]
+
+
+@pytest.mark.slow
+def test_a_file_that_changes_while_it_is_read_is_told(tmp_path, monkeypatch):
+    sole = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
+    read = work_sole.read_mesh
+
+    def read_then_written(*args):
+        mesh = read(*args)
+        sole.write_bytes(sole.read_bytes() + b"more")
+        return mesh
+
+    monkeypatch.setattr(work_sole, "read_mesh", read_then_written)
+    with pytest.raises(InputError, match="the file changed while it was read"):
+        work_sole.inspected_sole(str(sole), {}, progress=silent)
+
+
+def test_a_full_disk_leaves_no_part_of_a_file(tmp_path, monkeypatch):
+    project, opened = Project(tmp_path / "project"), Path.open
+
+    class Full:
+        def __init__(self, stream):
+            self.stream = stream
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            self.stream.close()
+
+        def write(self, data):
+            if self.stream.tell() + len(data) > 4000:
+                raise OSError(errno.ENOSPC, "No space left on device", self.stream.name)
+            return self.stream.write(data)
+
+    def limited(path, mode="r", *args, **options):
+        stream = opened(path, mode, *args, **options)
+        return Full(stream) if mode == "wb" else stream
+
+    monkeypatch.setattr(Path, "open", limited)
+    with pytest.raises(OSError, match="No space left"):
+        asyncio.run(received(project, "soles/big.stl", pieces(bytes(9000))))
+    assert list((project.folder / "soles").iterdir()) == []
+    asyncio.run(received(project, "soles/small.stl", pieces(bytes(3000))))
+    assert [path.name for path in (project.folder / "soles").iterdir()] == ["small.stl"]
+
+
+def test_names_of_two_hundred_letters_are_refused_before_they_are_written(tmp_path):
+    project = Project(tmp_path / "project")
+    long = "a" * 200
+    with pytest.raises(InputError, match="can't be the name of a file on every system"):
+        asyncio.run(received(project, f"soles/{long}.stl", pieces(b"x")))
+    with pytest.raises(InputError, match="is no name"):
+        project.add(long, "")
+    assert len(project.free_name(long)) <= 60
+    assert list((project.folder / "soles").iterdir()) == []
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A folder with 8 MB of room."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = ["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(folder)]
+    try:
+        subprocess.run(mounted, check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("no small disk can be mounted here")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_person_on_a_full_disk_reads_so_and_goes_on_with_room(small_disk, tmp_path):
+    big, sole = tmp_path / "big.stl", tmp_path / ("b" * 200 + ".stl")
+    big.write_bytes(bytes(9_000_000))
+    write_stl(sole, triangles(heel_body(grooved(pitch=10e-3))))
+    with served(small_disk / "project", tmp_path / "home") as app, page_of(app.link) as page:
+        begin(page, app.base)
+        page.locator(SOLES).set_input_files(big)
+        page.locator(".drop-state", has_text="no space left on the disk").wait_for()
+        page.locator(SOLES).set_input_files(sole)
+        page.locator(".drop-state", has_text="can't be the name of a file").wait_for()
+        room = small_disk / "room"
+        room.write_bytes(bytes(shutil.disk_usage(small_disk).free - 600_000))
+        page.get_by_role("button", name="Compute friction").click()
+        page.wait_for_selector(".big")  # the result fits, its page does not
+        page.get_by_text("report.html could not be written").wait_for()
+        room.unlink()
+        page.get_by_role("button", name="Compute friction").click()
+        page.get_by_text("report.html could not be written").wait_for(state="detached")
+        page.wait_for_selector(".big")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_reading_a_step_file_shows_progress_and_stops_beside_sliders(tmp_path):
+    file = step(step_bars)(tmp_path)
+    with served(tmp_path / "project", tmp_path / "home") as app, page_of(app.link) as page:
+        begin(page, app.base)
+        page.locator(SOLES).set_input_files(file)
+        line = page.locator(".task", has_text="reading the file")
+        line.wait_for()
+        assert line.get_by_role("progressbar").count() == 1
+
+        def meshers():
+            children = psutil.Process(app.process.pid).children(recursive=True)
+            return [each for each in children if "mesh_into" in " ".join(each.cmdline())]
+
+        page.wait_for_timeout(200)
+        line.get_by_role("button", name="Stop").click()
+        page.get_by_text("Reading was stopped").wait_for()
+        _, alive = psutil.wait_procs(meshers(), timeout=60)
+        assert not alive
+        page.get_by_role("button", name="Read it again").click()
+        page.get_by_role("button", name="Use this sole", exact=True).wait_for()
+        drawn(page)
+        assert page.complaints == []

@@ -1,0 +1,121 @@
+"""The page of a project: its variants on one sheet, other projects, a copy that stays by itself."""
+
+import re
+import shutil
+
+import pytest
+from web_app import drawn, page_of, served
+
+pytest.importorskip("nicegui")
+
+from underfoot.case.template import template
+from underfoot.core.catalogue import Catalogue
+from underfoot_app.project import Project
+from underfoot_app.variant_bar import USUAL
+
+pytest.importorskip("playwright.sync_api")
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+COARSE = {
+    "numerics.grid_spacing": "1.2 mm",
+    "numerics.quick_grid_spacing": "1.2 mm",
+    "numerics.tread_positions": 1,
+}
+"""Makes a run a matter of a second."""
+
+
+@pytest.fixture
+def project(tmp_path):
+    made = Project(tmp_path / "project")
+    for name in ("heel", "other"):
+        made.add(name, template(**USUAL, catalogue=Catalogue.load(), name=name))
+        made.change(name, COARSE)
+    return made
+
+
+def computed(page, app, name):
+    page.goto(f"{app.base}answer?variant={name}")
+    page.get_by_role("button", name="Compute friction").click()
+    page.wait_for_selector(".big")
+    drawn(page)
+
+
+def files(folder):
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_the_report_of_a_project_says_what_each_number_is_of(tmp_path, project):
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        computed(page, app, "heel")
+        page.goto(app.base + "project")
+        row = page.get_by_role("row", name=re.compile("^heel"))
+        row.get_by_text("of its present inputs").wait_for()
+        summary = project.summary("heel")
+        shown = row.inner_text()
+        assert f"{summary.cof:.3f}" in shown
+        assert f"{summary.low:.3f} to {summary.high:.3f}" in shown
+        assert re.search("Grips|Doubtful|Slips", shown)
+        assert "not computed yet" in page.get_by_role("row", name=re.compile("^other")).inner_text()
+        project.change("heel", {"shoe.tread.depth": "2 mm"})
+        row.get_by_text("of earlier inputs").wait_for()
+        page.emulate_media(media="print")
+        assert row.is_visible()
+        assert not page.get_by_text("Other projects").is_visible()
+        assert page.locator("table").bounding_box()["width"] <= 1366
+        assert page.complaints == []
+
+
+def test_another_project_opens_beside_this_one(tmp_path, project):
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "project")
+        page.get_by_role("button", name="Open", exact=True).click()
+        page.get_by_text("a folder is needed").wait_for()
+        page.get_by_label("Folder of another project").fill("second")
+        page.get_by_role("button", name="Open", exact=True).click()
+        page.wait_for_url(lambda url: not url.startswith(app.base))
+        second = page.url
+        page.goto(second + "project")
+        page.get_by_role("heading", name="second").wait_for()
+        assert (tmp_path / "second" / "variants").is_dir()
+        page.get_by_role("button", name=str(project.folder)).wait_for()  # the way back
+        page.goto(app.base + "project")
+        page.get_by_role("button", name=str(tmp_path / "second")).click()
+        page.wait_for_url(lambda url: url.startswith(second))  # its server runs already
+        page.goto(app.base + "project")
+        (tmp_path / "file").write_text("")
+        page.get_by_label("Folder of another project").fill("file")
+        page.get_by_role("button", name="Open", exact=True).click()
+        page.get_by_text("can't be used as a project").first.wait_for()
+
+
+def test_others_of_the_network_open_no_folder_of_this_machine(tmp_path):
+    with (
+        served(tmp_path / "project", tmp_path / "home", "--host", "0.0.0.0") as app,
+        page_of(re.sub(r"//[^:/]+", "//127.0.0.1", app.link)) as page,
+    ):
+        page.goto(re.sub(r"//[^:/]+", "//127.0.0.1", app.base) + "project")
+        page.get_by_role("heading", name="project").wait_for()
+        assert page.get_by_text("Other projects").count() == 0
+
+
+def test_a_copied_project_writes_nothing_elsewhere(tmp_path, project):
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        computed(page, app, "heel")
+    copy = tmp_path / "copy"
+    shutil.copytree(project.folder, copy)
+    before, home = files(project.folder), files(tmp_path / "home")
+    with served(copy, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(f"{app.base}design?variant=heel")
+        drawn(page)
+        slider = page.locator("input[name='shoe.tread.depth']")
+        slider.focus()
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_function("document.querySelector('[data-step=undo]').disabled === false")
+        computed(page, app, "heel")
+        page.locator(".help button").first.or_(page.get_by_text("No simulated change")).wait_for()
+    assert files(project.folder) == before
+    copied = files(copy)
+    changed = {path.relative_to(copy).parts[0] for path, data in copied.items()
+               if before.get(project.folder / path.relative_to(copy)) != data}  # fmt: skip
+    assert {"variants", "results", "history.jsonl", "jobs.jsonl"} <= changed
+    assert {path.name for path in files(tmp_path / "home").keys() - home.keys()} <= {"projects.txt"}
