@@ -544,7 +544,7 @@ def chosen(
     others = [each for each in answers if each.shoe.name != present.name]
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
-        levers.append(Lever(f"{other} for {present.name}", _left(rates[other], today)))
+        levers.append(Lever(f"{other} instead of {present.name}", _left(rates[other], today)))
     new = _sum(_slips(place, joint, states[present.name][False]))
     fluids = dict.fromkeys(place.fluids(), 1.0)
     one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())

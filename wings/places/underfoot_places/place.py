@@ -269,7 +269,7 @@ def _adds_to_one(shares: Sequence[float], where: str) -> None:
             f"the shares add to {sum(shares):.3g}",
             where=where,
             allowed="shares of all steps, which add to 1",
-            remedy="dry = takes what no fluid has",
+            remedy="A share named dry takes what no fluid has",
         )
 
 

@@ -340,7 +340,7 @@ async function startViewer(root) {
   function probes() {
     const cell = (tag, text) => Object.assign(document.createElement(tag), { textContent: text });
     find("probes").hidden = !state.probes.length;
-    find("probes-head").replaceChildren(...["", "Place", ...scene.panes.map((_, k) => (scene.panes.length > 1 ? `${LETTERS[k]} ` : "") + state.quantity.title), ""].map((text) => cell("th", text)));
+    find("probes-head").replaceChildren(...["", "Place", ...scene.panes.map((_, k) => (scene.panes.length > 1 ? `${LETTERS[k]}: ` : "") + state.quantity.title), ""].map((text) => cell("th", text)));
     find("probes-rows").replaceChildren(...state.probes.map((place, n) => {
       const row = document.createElement("tr"), away = cell("button", "Remove"), last = document.createElement("td");
       away.type = "button";
