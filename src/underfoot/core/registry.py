@@ -31,6 +31,7 @@ WINGS = {
     **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
     ("reports", "underfoot_design_studies"): "underfoot-design-studies",
     ("tread", "free"): "underfoot-design-studies",
+    ("questions", "machine_reading"): "underfoot-places",
     **{
         ("commands", name): "underfoot-places"
         for name in ("calibrate.machine", "choose", "machine", "machines")

@@ -13,14 +13,7 @@ import numpy as np
 from underfoot.compute.numbers import undetermined
 from underfoot.compute.run import run
 from underfoot.compute.summary import ranked_assumptions
-from underfoot.core import (
-    ConvergenceError,
-    Progress,
-    SourcedValue,
-    Status,
-    content_hash,
-    silent,
-)
+from underfoot.core import ConvergenceError, Progress, SourcedValue, Status, content_hash, silent
 from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import in_processes, workers

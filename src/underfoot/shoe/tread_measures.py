@@ -101,14 +101,17 @@ def tread_map(
     channel |= inside & ~channel & ~without_specks(inside & ~channel, cells)
     land = inside & ~channel
     # what only a tilted floor grazes, along the rim, is no land; a facet that lies like the land
-    # beside it is
+    # beside it, beyond the rounding of the rim, is
     numbers, _ = pieces(land)
-    away = land & ~rim(inside, max(1, round(_GRAZED[0] / spacing)))
-    deeper = numbers[away]
+    steps = max(1, round(_GRAZED[0] / spacing))
+    deeper = numbers[land & ~rim(inside, steps)]
     slopes = _slopes(rolled, spacing)
-    if away.any():
-        slopes = slopes - slopes[:, *nearest_true(away)]
     steep = np.hypot(*slopes) > _GRAZED[1]
+    if (flat := land & ~rim(inside, 2 * steps)).any():
+        beside = nearest_true(flat)
+        plane, way = slopes[:, *beside], spacing * (np.indices(height.shape) - beside)
+        off = np.abs(rolled - rolled[beside] - (plane * way).sum(axis=0))
+        steep &= (off > SHALLOWEST_CHANNEL) | (np.hypot(*(slopes - plane)) > _GRAZED[1])
     steepness = np.bincount(numbers.ravel(), steep.ravel()) / np.maximum(
         np.bincount(numbers.ravel()), 1
     )

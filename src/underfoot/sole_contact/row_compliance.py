@@ -156,12 +156,7 @@ def _stencils(cells: RowCells, land: Mask, home: Indices) -> tuple[Indices, Arra
 
 
 def _near(
-    cells: RowCells,
-    home: Indices,
-    squares: Indices,
-    weights: Array,
-    pressed: Array,
-    modulus: float,
+    cells: RowCells, home: Indices, squares: Indices, weights: Array, pressed: Array, modulus: float
 ) -> sp.csr_matrix:
     """Return N of the cells; ``pressed`` is the weight (nx, ny) of the half-space of ``modulus``.
 
