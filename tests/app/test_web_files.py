@@ -93,6 +93,7 @@ def small_disk(tmp_path):
     try:
         subprocess.run(mounted, check=True, capture_output=True)
     except (OSError, subprocess.CalledProcessError):
+        # mounting takes root, which a desk seldom gives
         pytest.skip("no small disk can be mounted here")
     yield folder
     subprocess.run(["umount", "-l", str(folder)], check=True)

@@ -4,33 +4,18 @@ import re
 import shutil
 
 import pytest
-from web_app import drawn, page_of, served
+from web_app import drawn, page_of, project_of, served
 
 pytest.importorskip("nicegui")
 
-from underfoot.case.template import template
-from underfoot.core.catalogue import Catalogue
-from underfoot_app.project import Project
-from underfoot_app.variant_bar import USUAL
 
 pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-COARSE = {
-    "numerics.grid_spacing": "1.2 mm",
-    "numerics.quick_grid_spacing": "1.2 mm",
-    "numerics.tread_positions": 1,
-}
-"""Makes a run a matter of a second."""
-
 
 @pytest.fixture
 def project(tmp_path):
-    made = Project(tmp_path / "project")
-    for name in ("heel", "other"):
-        made.add(name, template(**USUAL, catalogue=Catalogue.load(), name=name))
-        made.change(name, COARSE)
-    return made
+    return project_of(tmp_path / "project", "heel", "other")
 
 
 def computed(page, app, name):

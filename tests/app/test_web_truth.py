@@ -8,35 +8,21 @@ import re
 
 import pytest
 from test_web_pages import act, until
-from web_app import drawn, page_of, served
+from web_app import COARSE, drawn, page_of, project_of, served
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 
 pytest.importorskip("nicegui")
 
-from underfoot.case.template import template
-from underfoot.core.catalogue import Catalogue
 from underfoot_app.project import Project
-from underfoot_app.variant_bar import USUAL
 
 Error = pytest.importorskip("playwright.sync_api").Error
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-COARSE = {
-    "numerics.grid_spacing": "1.2 mm",
-    "numerics.quick_grid_spacing": "1.2 mm",
-    "numerics.tread_positions": 1,
-}
-"""Makes a run a matter of a second."""
-
 
 @pytest.fixture
 def project(tmp_path):
-    """A project with one variant that is computed in a second."""
-    made = Project(tmp_path / "project")
-    made.add("heel", template(**USUAL, catalogue=Catalogue.load(), name="heel"))
-    made.change("heel", COARSE)
-    return made
+    return project_of(tmp_path / "project", "heel")
 
 
 @pytest.fixture

@@ -148,3 +148,25 @@ def begin(page, base):
     page.get_by_role("button", name="Begin with a work shoe").click()
     page.wait_for_url("**/design?variant=*")
     drawn(page)
+
+
+def project_of(folder, *names):
+    """Return a new project whose variants are each computed in a second."""
+    from underfoot.case.template import template
+    from underfoot.core.catalogue import Catalogue
+    from underfoot_app.project import Project
+    from underfoot_app.variant_bar import USUAL
+
+    made = Project(folder)
+    for name in names:
+        made.add(name, template(**USUAL, catalogue=Catalogue.load(), name=name))
+        made.change(name, COARSE)
+    return made
+
+
+COARSE = {
+    "numerics.grid_spacing": "1.2 mm",
+    "numerics.quick_grid_spacing": "1.2 mm",
+    "numerics.tread_positions": 1,
+}
+"""Makes a run a matter of a second."""
