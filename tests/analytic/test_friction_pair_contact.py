@@ -100,7 +100,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
         for drag in drags:
             truth = np.log(cof(viscosity=drag / 0.3)) + shared + generator.normal(0, 0.08)
             rows.append(made_up(f"lab {source}", drag, float(np.exp(truth))))
-    posterior = fitted(law_named("pair"), rows, steps=400)
+    posterior = fitted(law_named("pair"), rows, steps=3000)
     film, dry = np.exp(posterior.theta[:, 0]), np.exp(posterior.theta[:, 2])
     for draws, truth in ((film, 0.10), (dry, 0.35), (posterior.spreads[:, 0], 0.3)):
         low, high = np.quantile(draws, (0.01, 0.99))

@@ -1,7 +1,7 @@
 """The named numbers of a result, each with its spread or the reason why there is none."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -116,13 +116,13 @@ def scalars(
 def with_film_spread(
     values: Mapping[str, SourcedValue],
     film_odds: Array,
-    at_places: Mapping[str, Array] | None = None,
+    drawn: Callable[[str, int], Array] | None = None,
 ) -> dict[str, SourcedValue]:
     """Return the numbers of the film with the spread of its load, and that over places.
 
     ln F / (W - F), F the load on the film, W the whole, is off by ``film_odds`` (n,); what sensors
-    read and peaks go with F. Draws take ``at_places`` (name: values at positions of the tread or
-    shoe angles) in turn, as those of COF do.
+    read and peaks go with F. ``drawn`` gives a number over positions of the tread and shoe angles,
+    in the order of the draws of COF.
     """
     load, whole = values["fluid_load"].value, values["normal_force"].value
     if not load or not whole:
@@ -134,9 +134,7 @@ def with_film_spread(
         value = values[name].value
         if not value:
             continue
-        draws, places = value * factors, (at_places or {}).get(name)
-        if places is not None:
-            draws = draws * (places / places.mean())[np.arange(draws.size) % places.size]
+        draws = (value if drawn is None else drawn(name, factors.size)) * factors
         draws = np.minimum(draws, whole) if name == "fluid_load" else draws
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
         known = values[name].uncertainty or 0.0
@@ -251,7 +249,7 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     held = "film thickness as computed"
     if "tread_position" in sampled.share:
         held = "contact and film at each position of the tread in turn"
-    if "shoe_angle" in sampled.share:
+    elif "shoe_angle" in sampled.share:
         held = "contact and film at each shoe angle in turn"
     drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; {held}"
     return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}

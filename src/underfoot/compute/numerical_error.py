@@ -14,7 +14,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import GRID_NAMES, readings
-from .positions import Place, ShoeAngles, TreadPositions
+from .positions import Place, ShoeAngles, TreadPositions, pattern_periods
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along
@@ -27,6 +27,10 @@ LUGS_PEAK = 0.3
 """The same of peaks and of what a sensor reads."""
 QUICK = {name: 0.08 if name == "cof" else 0.05 for name in GRID_NAMES}
 """The same of the quick grid without a tread, against finer ones."""
+RATES = {1: 1.0, 2: 0.75}
+"""Rate of the rule of positions by the number of periods of the tread: of what jumps with the
+place, as lugs that come to float, an even rule along one period has the error s_p / n, a lattice in
+two n^(-3/4) (docs/guide/performance.md has both measured)."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
@@ -117,11 +121,12 @@ def numerical_errors(
 
     With n positions of a tread
 
-        s^2 = (c v)^2 + s_p^2 / n + (m / (n + m) d)^2
+        s^2 = (c v)^2 + s_p^2 / n^(2 r) + (m / (n + m) d)^2
 
     c v what lies between grids under lugs (``LUGS``), s_p the standard deviation over the
-    positions, d the largest difference of one to their mean: m more that did not converge may be
-    as far off. Without a tread s is the difference to the quick grid, of a quick run ``QUICK``.
+    positions, r the rate of their rule (``RATES``), d the largest difference of one to their mean:
+    m more that did not converge may be as far off. Without a tread s is the difference to the
+    quick grid, of a quick run ``QUICK``.
     ``numerics.grid_check`` compares with the quick grid, without lugs with ``CHECKED`` cells along
     the sliding on it, and these with twice the steps in time (first order).
 
@@ -162,7 +167,8 @@ def numerical_errors(
                 * float(np.abs(values - values.mean()).max())
             )
             mean = float(values.mean())
-            grid[name] = math.hypot(share * mean, scatter / math.sqrt(count), missing)
+            rule = scatter / count ** RATES[len(pattern_periods(case))]
+            grid[name] = math.hypot(share * mean, rule, missing)
         return NumericalErrors(grid, {}, f"{count} positions, and other grids under lugs")
     return "not estimated with numerics.tread_positions = 1"
 

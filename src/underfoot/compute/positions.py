@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -24,6 +24,9 @@ from .sole import file_periods, file_surface
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
+ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
+"""Standard deviation of that band, rad."""
+GOLDEN = (math.sqrt(5) - 1) / 2
 _HELD = "spread of the friction law, its inputs and the"
 
 
@@ -43,25 +46,30 @@ class TreadPositions:
         places: Of the pattern and the shoe.
         values: Name of a result's scalar: its value at each place, SI, on the grid of the run.
         left_out: Number of positions that did not converge.
+        by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
+            case's own place; empty where that is not known or in the values.
     """
 
     origin: ClassVar[str] = "tread_position"
     held: ClassVar[str] = "position of the tread"
     several: ClassVar[str] = "positions of the tread"
-    within: ClassVar[str] = "over the positions of the tread"
 
     places: tuple[Place, ...]
     values: Mapping[str, Array]
     left_out: int
+    by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     def answer(self, name: str) -> float:
         """Return the scalar of the result: its mean over the places."""
         return float(self.values[name].mean())
 
-    def factors(self, name: str) -> Array:
-        """Return the scalar at each place over that at the case's own; 1 where that is 0."""
+    def drawn(self, name: str, count: int) -> Array:
+        """Return the scalar (count,) at each place in turn, evenly over the band of the angle."""
+        at = np.arange(count)
         values = self.values[name]
-        return values / values[0] if values[0] else np.ones_like(values)
+        slope = self.by_angle.get(name, 0.0) / values[0] if values[0] else 0.0
+        turns = math.sqrt(3) * (2 * np.mod(GOLDEN * at, 1) - 1)
+        return values[at % values.size] * np.maximum(1 + slope * turns, 0)
 
     def friction(
         self, friction: FrictionCoefficients, sampled: SampledCof | None
@@ -70,19 +78,20 @@ class TreadPositions:
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
         new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
-            law_variance, place_variance = float(np.var(sampled.cof)), float(np.var(values["cof"]))
-            at = np.arange(sampled.cof.size) % len(self.places)
-            draws = {
-                name.removeprefix("cof_"): getattr(sampled, name.removeprefix("cof_"))
-                * self.factors(name)[at]
-                for name in values
-            }
+            draws = {}
+            for name in values:
+                part = name.removeprefix("cof_")
+                own = self.values[name][0]
+                factors = self.drawn(name, sampled.cof.size) / own if own else 1.0
+                draws[part] = getattr(sampled, part) * factors
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
-            share = {
-                name: each * law_variance / (law_variance + place_variance)
-                for name, each in sampled.share.items()
-            }
-            share[self.origin] = place_variance / (law_variance + place_variance)
+            more = {self.origin: float(np.var(values["cof"]))}
+            if self.by_angle:
+                more["shoe_angle"] = self.by_angle["cof"] ** 2
+            law_variance = float(np.var(sampled.cof))
+            whole = law_variance + sum(more.values())
+            share = {name: each * law_variance / whole for name, each in sampled.share.items()}
+            share |= {name: each / whole for name, each in more.items()}
             sampled = replace(sampled, share=share, **draws)
             for name, value in new.items():
                 if value.uncertainty is not None:  # what the law leaves open stays open
@@ -110,6 +119,12 @@ class TreadPositions:
             reason="itself a standard deviation",
             note=f"{self._range('cof')} {over}",
         )
+        if self.by_angle:
+            means["cof_shoe_angle"] = SourcedValue(
+                abs(self.by_angle["cof"]),
+                source="contact and film with the shoe turned",
+                reason="itself a standard deviation",
+            )
         return means
 
     def labels(self) -> dict[str, str]:
@@ -125,19 +140,28 @@ class TreadPositions:
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average", **told}
         cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
+        angle = "the shoe could not be solved turned; its angle is taken as exact"
+        if self.by_angle:
+            up = display(math.degrees(ANGLE_DEVIATION), "1")
+            more, film = (self.by_angle[name] for name in ("cof", "fluid_load"))
+            angle = (
+                f"{up} deg toe up, one standard deviation of it, moves COF by "
+                f"{display(more, '1')} and the load on the film by {display(film, 'N')}"
+            )
         return {
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
             f"Numbers are means over them; maps and histories show the position that the case "
             f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
             + (f"; {failed}" if failed else ""),
+            "shoe_angle": angle,
             **told,
         }
 
     def assumptions(self) -> tuple[str, ...]:
         """Return the band of the shoe angle, where it was used."""
-        angle = any(place.turn for place in self.places)
-        return (f"motion.shoe_angle: ±1 deg {self.within}",) * angle
+        angle = bool(self.by_angle) or any(place.turn for place in self.places)
+        return ("motion.shoe_angle: ±1 deg",) * angle
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -146,11 +170,9 @@ class TreadPositions:
             return ("tread_position", values, {"units": unit, "long_name": name})
 
         shift = np.array([place.shift for place in self.places])
-        turn = [place.turn for place in self.places]
         return {
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
-            "position_turn": at(turn, "rad", "change of the shoe angle"),
             "position_cof": at(self.values["cof"], "1", "coefficient of friction"),
             "position_fluid_load": at(self.values["fluid_load"], "N", "load carried by the fluid"),
         }
@@ -173,7 +195,6 @@ class ShoeAngles(TreadPositions):
     origin = "shoe_angle"
     held = "shoe angle"
     several = "shoe angles"
-    within = "over the shoe angles"
 
     def labels(self) -> dict[str, str]:
         """Return what the interval holds in words."""
@@ -191,7 +212,10 @@ class ShoeAngles(TreadPositions):
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: the angles, COF and load there."""
         fields = super(ShoeAngles, self).fields()
-        return {name: each for name, each in fields.items() if "shift" not in name}
+        turn = [place.turn for place in self.places]
+        about = {"units": "rad", "long_name": "change of the shoe angle"}
+        kept = {name: each for name, each in fields.items() if "shift" not in name}
+        return {"position_turn": ("tread_position", turn, about), **kept}
 
 
 def shoe_angles() -> tuple[Place, ...]:
@@ -200,39 +224,36 @@ def shoe_angles() -> tuple[Place, ...]:
     return Place(), Place(turn=turn), Place(turn=-turn)
 
 
+TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
+"""The shoe turned toe up and toe down, the tread as it lies."""
+
+
 def places(periods: Array, count: int) -> tuple[Place, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
 
-    A lattice rule: even along the first period, in steps of a golden share along a second, and a
-    shoe angle that goes some times round its band as a sine of the same variance. A quantity that
-    is smooth in the place then has a mean with next to no error of the rule.
-
-    The film under bars is a saw-tooth along the only period: an angle that goes round with one of
-    its strong harmonics, the first two, leaves an error that more places do not mend. Three times
-    round, and below 5 places no other angle, halve the error (of eight places 3.1 to 1.9 % rms of
-    the film, of four 8.3 to 4.1 %).
+    A lattice rule: even along the first period, in steps of a golden share along a second. All at
+    the shoe angle of the case: the film under bars is a saw-tooth along their period whose teeth
+    the angle moves, and positions that have other angles leave a larger error of its mean.
     """
     step = _golden_step(count)
-    rounds = (3 if count >= 5 else 2) if len(periods) == 1 else (2 if count >= 5 else 1)
     lattice = []
     for k in range(count):
         shares = np.array([k / count, k * step % count / count])[: len(periods)]
         x, y = shares @ periods
-        turn = math.sqrt(2 / 3) * math.sin(2 * math.pi * (rounds * k % count) / count)
-        lattice.append(Place((float(x), float(y)), round(ANGLE_BAND * turn, 12)))
+        lattice.append(Place((float(x), float(y))))
     return tuple(lattice)
 
 
 def _golden_step(count: int) -> int:
     """Return the number without common divisor with ``count`` next to its golden share."""
-    golden = count * (math.sqrt(5) - 1) / 2
+    golden = count * GOLDEN
     steps = [step for step in range(1, count + 1) if math.gcd(step, count) == 1]
     return min(steps, key=lambda step: abs(step - golden))
 
 
 def tread_positions(
     case: Case,
-    case_numbers: Mapping[str, float],
+    known: Mapping[Place, Mapping[str, float]],
     at_places: Callable[[Sequence[Place], float], Iterator[tuple[int, Mapping[str, float] | None]]],
     *,
     spacing: float,
@@ -240,34 +261,49 @@ def tread_positions(
 ) -> TreadPositions:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
-    Positions are solved on the grid of the run, of ``spacing`` (m); shoe angles on the quick one,
-    whose ratios are taken.
+    Positions are solved on the grid of the run, of ``spacing`` (m); shoe angles without a tread on
+    the quick one, whose ratios are taken. What the angle adds under a tread is half the difference
+    of the shoe turned up and down, at the case's own position.
 
-    ``case_numbers`` are those at the case's own place; ``at_places`` solves places on a grid and
-    gives the index of each with its numbers as they end, None where a contact did not converge.
+    ``known`` are the numbers at the case's own place, and what is known of others on that grid;
+    ``at_places`` solves places on a grid and gives the index of each with its numbers as they end,
+    None where a contact did not converge.
     """
-    count, lugs = position_count(case, quick=quick), treaded(case)
+    lugs, case_numbers = treaded(case), known[Place()]
     if lugs:
-        tread = _tread(case)
-        all_places = places(file_periods(case) if tread is None else tread.periods, count)
+        all_places = places(pattern_periods(case), position_count(case, quick=quick))
+        angles = TURNED
     else:
-        all_places = shoe_angles()
+        all_places, angles = shoe_angles(), ()
         spacing = case.numerics.quick_grid_spacing
-    known = {Place(): case_numbers} if lugs or quick else {}
-    others = all_places[len(known) :]
+    if not lugs and not quick:
+        known = {}
+    others = [place for place in (*all_places, *angles) if place not in known]
     solved = dict(at_places(others, spacing))
-    numbers = known | {place: n for k, place in enumerate(others) if (n := solved[k])}
-    if Place() not in numbers:  # nothing to compare the angles with
+    everywhere = dict(known) | {place: n for k, place in enumerate(others) if (n := solved[k])}
+    # without the own place on the quick grid nothing to compare the angles with
+    numbers = {place: everywhere[place] for place in all_places if place in everywhere}
+    if Place() not in numbers:
         numbers = {Place(): case_numbers}
     values = {}
     for name, value in case_numbers.items():
         each = np.array([at[name] for at in numbers.values()])
         values[name] = each * (value / each[0]) if each[0] else each
     values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    left_out = count - len(numbers)
-    if lugs:
-        return TreadPositions(tuple(numbers), values, left_out)
-    return ShoeAngles(tuple(numbers), values, left_out, coarse=numbers[Place()])
+    left_out = len(all_places) - len(numbers)
+    if not lugs:
+        return ShoeAngles(tuple(numbers), values, left_out, coarse=numbers[Place()])
+    by_angle = {}
+    if all(place in everywhere for place in angles):
+        up, down = (everywhere[place] for place in angles)
+        by_angle = {name: (up[name] - down[name]) / 2 for name in case_numbers}
+    return TreadPositions(tuple(numbers), values, left_out, by_angle=by_angle)
+
+
+def pattern_periods(case: Case) -> Array:
+    """Return the shifts that bring the tread of a case onto itself, (n, 2), m."""
+    tread = _tread(case)
+    return file_periods(case) if tread is None else tread.periods
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -293,7 +329,11 @@ def treaded(case: Case) -> bool:
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
     count = position_count(case, quick=quick)
-    if quick or count == 1 or treaded(case):
+    if count == 1:
+        return 1.0
+    if treaded(case):  # a history of the motion is marched at both angles
+        return 1 / (count + len(TURNED) * (case.motion.build() is not None))
+    if quick:
         return 1 / count
     numerics = case.numerics
     return 1 / (1 + count * (numerics.grid_spacing / numerics.quick_grid_spacing) ** 2)

@@ -77,8 +77,8 @@ def readings(
     values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
-    places = positions.values if positions else None
-    values = numbers.with_film_spread(values, solution.friction.film_odds, places)
+    drawn = positions.drawn if positions else None
+    values = numbers.with_film_spread(values, solution.friction.film_odds, drawn)
     drainage = None
     if contact.fluid_load > FILM_MATTERS * contact.normal_force:
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)

@@ -22,7 +22,15 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
-from .positions import Place, TreadPositions, place_numbers, position_count, tread_positions
+from .positions import (
+    TURNED,
+    Place,
+    TreadPositions,
+    place_numbers,
+    position_count,
+    tread_positions,
+    treaded,
+)
 from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
@@ -166,13 +174,30 @@ def averaged(
             )
             return
         count = len(places)
+        last = max(total, count + 1)
         for k, place in enumerate(places):
-            name = f"Tread position {total - count + k + 1} of {total}"
+            name = f"Tread position {last - count + k + 1} of {last}"
             march = part(progress, k / count, (k + 1) / count, name)
             yield k, _numbers_at(parts, place, spacing, march)
 
-    case_numbers = place_numbers(parts, solution.contact)
-    return tread_positions(parts.case, case_numbers, at_places, spacing=parts.spacing, quick=quick)
+    known = {Place(): place_numbers(parts, solution.contact)}
+    if treaded(parts.case):
+        known |= _turned(parts, solution.contact)
+    return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
+
+
+def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, float]]:
+    """Return the numbers of a contact that goes on in two steps with the shoe turned up and down.
+
+    Empty where the steps can't be made, or the motion follows a history.
+    """
+    if parts.case.motion.build() is not None:
+        return {}
+    try:
+        ends = [continued(contact, parts, turn=place.turn)[-1] for place in TURNED]
+    except ConvergenceError:
+        return {}
+    return {place: place_numbers(parts, end) for place, end in zip(TURNED, ends, strict=True)}
 
 
 @dataclass(frozen=True)
