@@ -76,14 +76,14 @@ def from_files(folder: Path) -> Iterator[tuple[str, Case]]:
 
 
 def drawn() -> Iterator[tuple[str, Case]]:
-    """Yield cases drawn at random, with the positions of a default run."""
+    """Yield cases drawn at random, with the positions and the angle band of a default run."""
     sys.path.insert(0, str(ROOT / "tests"))
     from random_cases import drawn_case  # pyright: ignore[reportMissingImports]
 
     rng, number = np.random.default_rng(SEED), 0
     while number < DRAWN:
         try:
-            case = drawn_case(rng).replace("numerics.tread_positions", 4)
+            case = drawn_case(rng).replace("numerics.tread_positions", 6)
         except UnderfootError:
             continue
         number += 1

@@ -231,24 +231,14 @@ TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
 def places(periods: Array, count: int) -> tuple[Place, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
 
-    A lattice rule: even along the first period, in steps of a golden share along a second. All at
-    the shoe angle of the case: the film under bars is a saw-tooth along their period whose teeth
-    the angle moves, and positions that have other angles leave a larger error of its mean.
+    Even along the first period and along a second, where they follow the order of golden shares: no
+    low wave across both meets all of them in one phase, as it meets those of a lattice of 4 or 6.
+    All at the shoe angle of the case: the film under bars is a saw-tooth along their period whose
+    teeth the angle moves, and positions that have other angles leave a larger error of its mean.
     """
-    step = _golden_step(count)
-    lattice = []
-    for k in range(count):
-        shares = np.array([k / count, k * step % count / count])[: len(periods)]
-        x, y = shares @ periods
-        lattice.append(Place((float(x), float(y))))
-    return tuple(lattice)
-
-
-def _golden_step(count: int) -> int:
-    """Return the number without common divisor with ``count`` next to its golden share."""
-    golden = count * GOLDEN
-    steps = [step for step in range(1, count + 1) if math.gcd(step, count) == 1]
-    return min(steps, key=lambda step: abs(step - golden))
+    order = np.argsort(np.argsort(np.mod(GOLDEN * np.arange(count), 1)))
+    shares = np.column_stack([np.arange(count), order])[:, : len(periods)] / count
+    return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
 
 
 def tread_positions(
