@@ -79,17 +79,26 @@ def _likeness(surface: SoleSurface) -> Array:
 
 
 def _peaks(likeness: Array) -> Array:
-    """Return the lags (n, 2) in cells of the peaks of a correlation by length, forward ones."""
+    """Return the lags (n, 2) in cells of the peaks of a correlation by length, forward ones.
+
+    Between cells by a parabola along each axis, which rounding moves by next to nothing.
+    """
     from scipy.ndimage import maximum_filter
 
+    middle = np.array(likeness.shape) // 2
     highest = likeness == maximum_filter(likeness, 5)
-    lags = np.argwhere(highest & (likeness > LEAST_LIKENESS)) - np.array(likeness.shape) // 2
-    lags = lags[(lags[:, 0] > 0) | ((lags[:, 0] == 0) & (lags[:, 1] > 0))]
-    if not lags.size:
+    highest[[0, -1]] = highest[:, [0, -1]] = False
+    at = np.argwhere(highest & (likeness > LEAST_LIKENESS))
+    at = at[(at[:, 0] > middle[0]) | ((at[:, 0] == middle[0]) & (at[:, 1] > middle[1]))]
+    if not at.size:
         return np.zeros((0, 2))
-    like = likeness[tuple((lags + np.array(likeness.shape) // 2).T)]
-    lags = lags[like > like.max() - _BETWEEN / 2]
-    return lags[np.argsort(np.hypot(*lags.T), kind="stable")].astype(np.float64)
+    like = likeness[tuple(at.T)]
+    at = at[like > like.max() - _BETWEEN / 2]
+    lags = (at - middle).astype(np.float64)
+    for axis, step in enumerate(np.eye(2, dtype=int)):
+        before, here, after = (likeness[tuple((at + n * step).T)] for n in (-1, 0, 1))
+        lags[:, axis] += 0.5 * (before - after) / np.minimum(before - 2 * here + after, -1e-12)
+    return lags[np.argsort(np.round(np.hypot(*lags.T), 3), kind="stable")]
 
 
 def _differs_on_the_way(likeness: Array, lag: Array) -> bool:
@@ -130,12 +139,14 @@ def _sources(inside: Mask, shift: Array, periods: Array) -> tuple[NDArray[np.int
     """Return, for each cell, the indices of the cell of the sole that comes to it."""
     counts = np.array(list(product((0, -1, 1, -2, 2), repeat=len(periods))))
     ways = shift + counts @ periods
-    ways = ways[np.argsort(np.hypot(*ways.T), kind="stable")]
+    ways = ways[np.argsort(np.round(np.hypot(*ways.T), 6), kind="stable")]
     nearest = np.stack(nearest_true(inside))
     sources, known = nearest.copy(), np.zeros_like(inside)
     place = np.indices(inside.shape)
     for way in ways:
-        there = place - np.rint(way).astype(int)[:, None, None]
+        # a half counts as more, whatever its rounding: one processor must not move it elsewhere
+        cells = np.sign(way) * np.floor(np.abs(way) + 0.5 + 1e-6)
+        there = place - cells.astype(int)[:, None, None]
         within = np.all([(t >= 0) & (t < n) for t, n in zip(there, inside.shape, strict=True)], 0)
         there = [np.clip(t, 0, n - 1) for t, n in zip(there, inside.shape, strict=True)]
         new = ~known & within & inside[tuple(there)]
