@@ -3,14 +3,14 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-# Two workers. Quick tests: each takes over from the other when its own are done. Slow ones: a file
-# stays with one worker, since its tests share long runs.
-PYTEST := $(BIN)/pytest -n 2 --dist
+# Quick tests: two workers, each takes over from the other when its own are done. Slow ones: a file
+# stays with one worker, since its tests share long runs; three, since those of pages often wait.
+PYTEST := $(BIN)/pytest --dist
 # The tests start hundreds of processes, which begin a quarter sooner from bytecode.
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow fuzz fuzz-files test-install chromium bundle bundle-check bench validate docs manual clean help
+.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -27,17 +27,20 @@ check: $(READY)  ## ruff, pyright, import-linter (a minute)
 test: check test-quick  ## static checks, then every test that is not slow (minutes)
 
 test-quick: $(READY)  ## every test that is not slow
-	$(PYTEST) worksteal -m "not slow"
+	$(PYTEST) worksteal -n 2 -m "not slow and not study"
 
 fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repeats a run
 	@echo "make fuzz SEED=$(SEED) repeats this run; a find becomes an @example of its test"
-	$(PYTEST) worksteal -m "hypothesis and not slow" --hypothesis-profile=fuzz --hypothesis-seed=$(SEED)
+	$(PYTEST) worksteal -n 2 -m "hypothesis and not slow and not study" --hypothesis-profile=fuzz --hypothesis-seed=$(SEED)
 
 fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for fewer
 	PYTHONPATH=tests $(BIN)/python tests/fuzz_files.py $(or $(COUNT),100000) $(SEED)
 
 test-slow: $(READY)  ## the slow tests
-	$(PYTEST) loadfile -m slow
+	$(PYTEST) loadfile -n 3 -m slow
+
+test-studies: $(READY)  ## tests of a minute and more: the corpus, treads that none can tell apart
+	$(PYTEST) loadfile -n 2 -m study
 
 test-install: $(READY)  ## the wheel without the lock, on newest and lowest versions, runs the main job
 	$(BIN)/python tests/install/wheel.py

@@ -10,6 +10,7 @@ from hypothesis import settings
 from positive_bounds import bounds_below_zero
 
 CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
+QUICK = "not slow and not study"
 LONG = 3  # s of CPU, above which a test should be marked slow
 CPU = pytest.StashKey[list[float]]()
 NO_BROWSER = "no Chromium on this machine (Debian, Ubuntu: apt-get install chromium)"
@@ -65,9 +66,7 @@ def pytest_testnodedown(node):
 def pytest_terminal_summary(terminalreporter, config):
     cpu = sum(config.stash.get(CPU, [])) or cpu_seconds()
     terminalreporter.line(f"{cpu:.0f} s of CPU ({cpu / 60:.1f} min)")
-    passed = (
-        terminalreporter.stats.get("passed", []) if config.option.markexpr == "not slow" else []
-    )
+    passed = terminalreporter.stats.get("passed", []) if config.option.markexpr == QUICK else []
     long = sorted(
         ((dict(report.user_properties).get("cpu", 0.0), report.nodeid) for report in passed),
         reverse=True,

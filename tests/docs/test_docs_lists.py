@@ -122,7 +122,7 @@ def test_readme_shows_what_a_run_prints(tmp_path):
     assert held(shown.group(1), printed) >= 40
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_readme_shows_what_the_slip_tester_prints(tmp_path):
     table = re.search(r"^\| shoe \| fluid \|.*?(?=\n\n)", README, re.DOTALL | re.MULTILINE)
     assert table

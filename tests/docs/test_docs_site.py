@@ -61,7 +61,7 @@ def test_the_documentation_is_built_without_a_warning(site):
     assert (site / "index.html").is_file()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.browser
 @pytest.mark.parametrize("width", [1366, 390])
 def test_no_page_is_too_long_or_too_wide(site, width):

@@ -177,7 +177,7 @@ print(slowest, peak)
 """
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_760_damaged_files(tmp_path):
     rng = np.random.default_rng(7)
     folder = tmp_path / "bad"

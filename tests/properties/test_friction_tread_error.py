@@ -139,7 +139,7 @@ def test_the_table_of_pairs_holds_what_the_corpus_publishes():
     assert [(p.source, p.effect) for p in tread_pairs() if p.second.any()] == published
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_table_of_pairs_is_what_is_computed():
     for found, kept in zip(computed_pairs(), tread_pairs(), strict=True):
         assert found.computed == pytest.approx(kept.computed, abs=0.01), kept.effect
@@ -171,7 +171,7 @@ NEAR = (
 )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("fluid", ["glycerol_90pct", "water"])
 def test_treads_that_nobody_could_tell_apart_are_not_told_apart(fluid):
     """Twenty pairs that differ by 0.02 mm, a third of a degree, or where the pattern begins."""

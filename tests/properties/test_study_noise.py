@@ -131,12 +131,12 @@ def twenty():
     return missed, better
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_chosen_tread_is_as_good_as_stated(twenty):
     assert np.mean(twenty[0]) < 0.25 * NOISE
     assert np.quantile(twenty[0], 0.95) < 0.5 * NOISE
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_chosen_tread_is_better_than_a_grids(twenty):
     assert sum(twenty[1]) >= 19

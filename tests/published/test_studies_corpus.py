@@ -7,7 +7,7 @@ import pytest
 from underfoot.studies import Options, run_study, study
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_laboratory_left_out_is_predicted_better_than_by_its_rivals():
     result = run_study(study("corpus"), Options(quick=True))
     tables = {table.name: table for table in result.computed.tables}

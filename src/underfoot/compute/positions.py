@@ -66,10 +66,9 @@ class TreadPositions:
     def drawn(self, name: str, count: int) -> Array:
         """Return the scalar (count,) at each place in turn, evenly over the band of the angle."""
         at = np.arange(count)
-        values = self.values[name]
-        slope = self.by_angle.get(name, 0.0) / values[0] if values[0] else 0.0
         turns = math.sqrt(3) * (2 * np.mod(GOLDEN * at, 1) - 1)
-        return values[at % values.size] * np.maximum(1 + slope * turns, 0)
+        values = self.values[name][at % len(self.places)]
+        return np.maximum(values + self.by_angle.get(name, 0.0) * turns, 0)
 
     def friction(
         self, friction: FrictionCoefficients, sampled: SampledCof | None
