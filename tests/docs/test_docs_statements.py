@@ -409,8 +409,6 @@ def shift_by_storage_modulus():
 
 DEFAULTS = {
     "`numerics.cells_along = 8`, the default (`auto`)": resolved_flat_sole,
-    "and the default is eight": lambda: default("numerics.tread_positions") == "8",
-    "| four, the default,": lambda: default("numerics.tread_positions") == "8",  # half on quick
     "| Gent (default)": lambda: usual("hardness") == "gent",
     "E' decides by default": shift_by_storage_modulus,
     "ISO 21920-2:2021 (default)": lambda: of_call(

@@ -70,7 +70,7 @@ def test_the_best_are_run_again_elsewhere_and_beside_the_start(small):
     assert small.start.number == 40
     positions = "numerics.tread_positions"
     cases = [small.plan.base.replace(job.changes) for job in (small.jobs[0], again[0])]
-    assert [case.value(positions) for case in cases] == [8, 9]
+    assert [case.value(positions) for case in cases] == [6, 7]
     assert {one.number for one in small.best(3)} == {one.number for one in small.again}
     assert not list(next_batch(small.plan, small))
     table = small.to_xarray()  # of the first runs alone

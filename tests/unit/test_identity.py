@@ -82,7 +82,7 @@ CHANGES = {
     "numerics.seed": 3,
     "numerics.tolerance": 1e-5,
     "numerics.grid_check": True,
-    "numerics.tread_positions": 6,
+    "numerics.tread_positions": 5,
     "sensor.inlet_diameter": 8e-3,
     "sensor.scans": 5,
     "risk.rcof_mean": 0.22,
