@@ -3,8 +3,10 @@
 import time
 
 import pytest
-from web_app import Cost, begin, drawn, page_of, served
+from test_web_truth import computed
+from web_app import Cost, begin, drawn, page_of, project_of, served
 
+from outsole_bodies import grooved, heel_body, triangles, write_stl
 from underfoot.case import Case
 
 pytest.importorskip("nicegui")
@@ -147,3 +149,56 @@ def test_the_lug_that_floats_is_found(app, page):
         assert page.locator(".overlay .groove").count() == 1
         place = page.locator("[data-part=values-place]").inner_text()
     assert place.startswith("At x")
+
+
+def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
+    from underfoot_app.work_sole import LAND_EQUAL, _land_share
+
+    project = project_of(tmp_path / "project", "A", "B")
+    project.change("B", {"shoe.tread.pattern": "hexagons", "shoe.tread.channel_width": "4 mm"})
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        for name in ("A", "B"):
+            computed(page, app, name)
+        page.goto(app.base + "compare?variants=A|B")
+        drawn(page)
+        with Task(page, "compare at equal land") as task:
+            task.click(page.get_by_role("button", name="At equal land"))
+            page.get_by_role("cell", name="B, land of A", exact=True).wait_for()
+            drawn(page)
+        assert page.locator(".stage").count() == 2
+        page.get_by_text("give B the land of A").wait_for()
+        a, b = (project.case(name) for name in ("A", "B, land of A"))
+        assert abs(_land_share(a) - _land_share(b)) <= LAND_EQUAL
+        assert b.replace("shoe.tread.channel_width", "4 mm").shoe == project.case("B").shoe
+        page.locator("[data-step=undo]").click()
+        page.get_by_role("cell", name="B", exact=True).first.wait_for()
+        assert set(project.variants()) == {"A", "B"}
+        page.get_by_role("button", name="At equal land").click()
+        page.get_by_role("cell", name="B, land of A 2", exact=True).wait_for()
+        page.goto(app.base + "design?variant=B, land of A 2")
+        drawn(page)
+        page.locator("[data-step=undo]").click()
+        until(lambda: project.case("B, land of A 2").shoe == project.case("B").shoe)
+        assert page.complaints == []
+
+
+def test_land_that_no_channel_width_gives_is_refused_with_a_remedy(tmp_path):
+    from underfoot.core import InputError, silent
+    from underfoot_app.work_sole import equal_land
+
+    body = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
+    project = project_of(tmp_path / "project", "A", "B", "file")
+    project.change("file", {"shoe.outsole.file": str(body)})
+    files = {name: str(project.path(name)) for name in ("A", "B", "file")}
+    for pair in (("A", "file"), ("file", "A")):
+        with pytest.raises(InputError, match=r"comes from a file.*Compare at equal land two"):
+            equal_land(*(files[name] for name in pair), progress=silent)
+    assert equal_land(files["A"], files["B"], progress=silent)[0] == {}
+    for changes, remedy in (
+        ({"shoe.tread.pattern": "none"}, "Choose a pattern of lugs"),
+        ({"shoe.tread.lug_width": "2.5 mm"}, "Change shoe.tread.lug_width"),
+    ):
+        project.change("B", changes)
+        with pytest.raises(InputError, match=remedy):
+            equal_land(files["A"], files["B"], progress=silent)
+        project.undo("B")
