@@ -124,9 +124,7 @@ def scene(
 
 
 def listed_quantity(
-    quantity: Quantity,
-    fields: Sequence[NDArray[np.float64]],
-    loads: Sequence[float | None] = (),
+    quantity: Quantity, fields: Sequence[NDArray[np.float64]], loads: Sequence[float | None] = ()
 ) -> dict[str, Any]:
     """Return a quantity for the viewer with the colour scale of all its ``fields``.
 

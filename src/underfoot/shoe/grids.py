@@ -231,15 +231,16 @@ def _cut(
 def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     """Return what the grid resolves with too few cells; refuse what it cannot show at all."""
     features: list[tuple[str, str, float]] = []
-    if heel.tread is not None and heel.tread.depth > 0:
-        features.append(("tread.channel_width", "channel", heel.tread.channel_width))
-        features.append(("tread.lug_width", "lug", heel.tread.smallest_lug))
+    unresolved: list[Breach] = []
+    tread = heel.tread
+    if tread is not None and tread.depth > 0:
+        features.append(("tread.channel_width", "channel", tread.channel_width))
+        features.append(("tread.lug_width", "lug", tread.smallest_lug))
+        features += [("tread.grooves", "groove", each.width) for each in tread.grooves]
+        if tread.sipes is not None and _shown(tread.sipes, spacing):
+            features.append(("tread.sipes.width", "sipe", tread.sipes.width))
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
-    unresolved: list[Breach] = []
-    sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
-    if sipes is not None and _shown(sipes, spacing):
-        features.append(("tread.sipes.width", "sipe", sipes.width))
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):

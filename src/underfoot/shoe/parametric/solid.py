@@ -18,6 +18,7 @@ from .modelling import (
     MM,
     Outline,
     arc_edge,
+    groove_outlines,
     hollow_outlines,
     kernel,
     lug_outlines,
@@ -74,6 +75,9 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         hollows = hollow_outlines(lugs, tread)
         if hollows:
             body = body - _prisms(hollows) * _layer(lower, tread.depth)
+        if tread.grooves:
+            cuts = groove_outlines(shape, tread.grooves)
+            body = body - _prisms(cuts) * _layer(lower, tread.depth)
         edge = tread.edge_radius or tread.edge_chamfer
         if edge > 0:
             edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
@@ -107,6 +111,7 @@ def check_printable(shape: SoleShape) -> None:
     if tread is not None and tread.depth > 0:
         fine += [("tread.lug_width", "lug", tread.smallest_lug)]
         fine += [("tread.channel_width", "channel", tread.channel_width)]
+        fine += [("tread.grooves", "groove", each.width) for each in tread.grooves]
         if tread.sipes is not None:
             fine += [("sipes.width", "sipe", tread.sipes.width)]
             left = tread.sipes.spacing - tread.sipes.width
