@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.compute.sole import new_sole
+from underfoot.compute.result import Result
+from underfoot.compute.sole import new_sole, sole_shape
 from underfoot.core import InputError, Progress
 from underfoot.core.fields import labelled
 from underfoot.core.files import checksum
@@ -17,8 +18,11 @@ from underfoot.report.outsole import OutsoleInspection
 from underfoot.report.surface_mesh import surface_mesh
 from underfoot.shoe import heel_map
 from underfoot.shoe.files import FileSettings, outsole_from_mesh, read_mesh
+from underfoot.shoe.geometry import CELLS_REFUSED
+from underfoot.shoe.lug_drainage import GROOVE
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
 
+from .inputs import GROOVES, grooves_of
 from .work import Drawn, presented, sole_html
 
 DRAWN_SPACING = 0.75e-3
@@ -140,6 +144,41 @@ def equal_land(
             remedy="Change shoe.tread.lug_width a little, then compare again",
         )
     return {CHANNEL: found}, {**words, "after": found}
+
+
+WAYS = ((1, 0), (-1, 0), (0, 1), (0, -1))
+"""Directions (x, y) of the sides of a lug as ``lug_groove_side`` counts them."""
+
+
+def advised_groove(path: str, folder: str, lug: int, *, progress: Progress) -> dict[str, Any]:
+    """Return the change that cuts the groove that a case's result advises for a lug.
+
+    From half its width behind the peak of the fluid's pressure to one cell beyond the lug's wall,
+    as wide as those that were compared and two cells at least; on the sole as it lay at the case's
+    own place and angle.
+    """
+    case, data = Case.load(path), Result.load(folder).data
+    x, y, length, side = (
+        float(data[f"lug_{name}"].values[lug]) for name in ("x", "y", "groove", "groove_side")
+    )
+    cells = case.numerics.grid_spacing, case.numerics.quick_grid_spacing
+    width, step = max(GROOVE, CELLS_REFUSED * max(cells)), float(np.ptp(data["x"].values[:2]))
+    u, v = WAYS[int(side)]
+    shape, angle = sole_shape(case), case.motion.shoe_angle
+    line = np.linspace(0.0, shape.length, 4001)
+    height_there = shape.land_height(line, np.full_like(line, y))
+    rear = float(shape.land_height(np.zeros(1), np.zeros(1))[0]) * np.sin(angle)
+    on_floor = line * np.cos(angle) - height_there * np.sin(angle) + rear
+    ends = np.array([-width / 2, length + step])
+    along, across = np.interp(x + u * ends, on_floor, line), y + v * ends
+    new = {
+        "along": _written(along.mean()),
+        "across": _written(across.mean()),
+        "width": _written(width),
+        "length": _written(np.ptp(along) + np.ptp(across)),
+        "angle": "90 deg" if u else "0 deg",
+    }
+    return {GROOVES: [*grooves_of(case), new]}
 
 
 def _written(width: float) -> str:

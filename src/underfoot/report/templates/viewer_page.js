@@ -273,7 +273,7 @@ async function startViewer(root) {
   document.addEventListener("click", (e) => { const row = rowOf(e); if (row) chooseLug(Number(row.dataset.lug)); });
   document.addEventListener("keydown", (e) => {
     const row = rowOf(e);
-    if (row && (e.key === "Enter" || e.key === " ")) { e.preventDefault(); chooseLug(Number(row.dataset.lug)); }
+    if (row === e.target && (e.key === "Enter" || e.key === " ")) { e.preventDefault(); chooseLug(Number(row.dataset.lug)); }
   });
 
   // What is drawn over a sole: the lug that is chosen with its best groove, places kept, the section.

@@ -89,7 +89,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
-                    "they meet the rim or the end of the bevel"
+                    "they meet the rim, a groove or the end of the bevel"
                 )
         if tread.sipes is not None:
             sipes = tread.sipes
@@ -215,7 +215,7 @@ def _on_lug(edge: Any, shape: SoleShape) -> bool:
 
 
 def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
-    """Return the lugs that keep clear of the rounded rim and of kinks of the profile.
+    """Return the lugs that keep clear of rounded rim, grooves and kinks of the profile.
 
     The kernel cannot roll a fillet over those.
     """
@@ -227,6 +227,9 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
         low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
         around = np.array([[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], high])
         if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
+            continue
+        (x, y), reach = (low + high) / 2, math.hypot(*(high - low)) / 2 + clear
+        if any(each.channel_distance(x, y) > -reach for each in shape.tread.grooves):
             continue
         if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
             continue
