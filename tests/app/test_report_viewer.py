@@ -320,6 +320,7 @@ def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
     result = dataclasses.replace(worn_shoe_result, data=from_xarray(fields))
     path.write_text(page_text(result, {}), encoding="utf-8")
     with opened(path) as tab:
+        choose(tab, "Film thickness")
         assert tab.value("document.querySelector('[data-part=time-row]').hidden")
         choose(tab, "Fluid pressure")
         assert not tab.value("document.querySelector('[data-part=time-row]').hidden")

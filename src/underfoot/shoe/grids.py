@@ -111,7 +111,6 @@ def _heel_slits(
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
 
-    angle = tread.sipes.angle
     return slits_of(
         tread.slit_distance(x, y) > -1.5 * spacing,
         land,
@@ -120,7 +119,7 @@ def _heel_slits(
         level_at,
         depth=np.maximum(sipes.depth - heel.worn_off(x, y), 0.0),
         width=np.full(x.shape, sipes.width),
-        tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
+        tangent=(np.full(x.shape, math.sin(sipes.angle)), np.full(x.shape, math.cos(sipes.angle))),
     )
 
 
@@ -176,9 +175,7 @@ def cut_heel(
     """
     unworn = heel.unworn_height(x, y)
     base = heel.land_height(x, y)
-    height = base.copy()
-    land = np.ones(x.shape, dtype=bool)
-    lug = np.zeros_like(x)
+    height, land, lug = base.copy(), np.ones(x.shape, dtype=bool), np.zeros_like(x)
     tread = heel.tread
     if tread is not None and tread.depth > 0:
         into = tread.channel_distance(x, y)
@@ -205,8 +202,7 @@ def cut_heel(
 
 def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> Array:
     """Return the distance (m) into the open channels of ``cut_heel``: 0 or less on land."""
-    depth = -heel.worn_off(x, y)
-    level = np.full(x.shape, -_FAR)
+    depth, level = -heel.worn_off(x, y), np.full(x.shape, -_FAR)
     tread, arc = heel.tread, heel.arc_channel
     if tread is not None and tread.depth > 0:
         sipes = tread.sipes
