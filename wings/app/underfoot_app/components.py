@@ -94,10 +94,10 @@ def table(
                             ui.label(cell.strip())
                         if not number:
                             made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
-                    if action and place in rows:
-                        with made_cell:
-                            button = ui.button(action[0], on_click=partial(action[1], place))
-                            button.props("no-caps flat dense")
+                        if action and place in rows and number == len(row) - 1:
+                            with made_cell:
+                                button = ui.button(action[0], on_click=partial(action[1], place))
+                                button.props("no-caps flat dense")
     return made
 
 
