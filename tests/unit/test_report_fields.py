@@ -152,8 +152,9 @@ def test_a_history_of_a_field_becomes_frames_and_a_long_one_is_thinned(worn_shoe
 
 
 def test_a_run_keeps_a_few_instants_of_its_march_and_shows_them_of_one_sole(
-    worn_shoe_case, worn_shoe_result, tmp_path
+    worn_shoe_case, worn_shoe_result, tmp_path, monkeypatch
 ):
+    from underfoot.compute import histories
     from underfoot.compute.run import run
 
     settled = run(worn_shoe_case.replace("motion.steady", True))
@@ -182,6 +183,10 @@ def test_a_run_keeps_a_few_instants_of_its_march_and_shows_them_of_one_sole(
         assert set(pane["histories"]) == {"contact_pressure", "fluid_pressure"}
         assert len(pane["histories"]["fluid_pressure"]["labels"]) == times.size
     assert not any(pane["histories"] for pane in viewer_scene([settled, settled])["panes"])
+    monkeypatch.setattr(histories, "PICTURED_CELLS", 5 * data["clearance"].values.size)
+    fewer = run(worn_shoe_case.replace("motion.steady", True)).data["march_time"].values
+    assert 2 <= fewer.size <= 5
+    assert (fewer[0], fewer[-1]) == (times[0], times[-1])
 
 
 def cof(value, spread):

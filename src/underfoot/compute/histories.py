@@ -24,8 +24,8 @@ READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
 PICTURED = {"contact_pressure": "asperity contact pressure", "fluid_pressure": "fluid pressure"}
 """Maps that are kept, to 100 Pa: of a motion history at the same number of instants."""
-STEADY_PICTURES, MARCH = 12, "march_time"
-"""Instants at most, the last one too, that any other run keeps of its way; the axis of these."""
+STEADY_PICTURES, PICTURED_CELLS, MARCH = 12, 1_200_000, "march_time"
+"""Instants, the last one too, and cells of all at most that another run keeps; their axis."""
 COF_WORDS = {
     "cof": "coefficient of friction",
     "cof_adhesion": "adhesion part of COF",
@@ -98,7 +98,8 @@ class Recorder:
             self.pictures.pop()  # the newest is always the last
         maps = {name: np.round(getattr(state, name), -2).astype(np.float32) for name in PICTURED}
         self.pictures.append((state.time, maps))
-        if not follows and len(self.pictures) > STEADY_PICTURES:
+        most = min(STEADY_PICTURES, PICTURED_CELLS // state.fluid_pressure.size)
+        if not follows and len(self.pictures) > most:
             del self.pictures[1:-1:2]
 
     def array(self) -> ArrayReading | None:
