@@ -166,7 +166,7 @@ def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
             task.click(page.get_by_role("button", name="At equal land"))
             page.get_by_role("cell", name="B, land of A", exact=True).wait_for()
             drawn(page)
-        assert page.locator(".stage").count() == 2
+        assert page.locator(".pane-name").all_inner_texts() == ["A A", "B B, land of A"]
         page.get_by_text("give B the land of A").wait_for()
         a, b = (project.case(name) for name in ("A", "B, land of A"))
         assert abs(_land_share(a) - _land_share(b)) <= LAND_EQUAL

@@ -610,6 +610,8 @@ async function startViewer(root) {
       const chosen = scene.quantities.indexOf(state.quantity);
       scene.panes.forEach((pane, k) => {
         Object.assign(pane, fresh.panes[k]);
+        const name = stages[k].querySelector(".pane-name");
+        if (name) name.lastChild.textContent = ` ${pane.name}`;
         drawings[k].shape();
       });
       scene.quantities = fresh.quantities;
