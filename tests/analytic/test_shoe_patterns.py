@@ -9,6 +9,7 @@ from scipy.ndimage import distance_transform_edt
 from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_map, heel_surface
 from underfoot.shoe.parametric import ShoeOutline, ToeSpring, WholeSole
+from underfoot.shoe.tread import Groove
 
 KINDS = {
     "blocks": {"lug_length": 7e-3},
@@ -38,6 +39,39 @@ def test_distance_is_that_to_the_nearest_wall(pattern):
         return  # its share is a mean over its length: below
     # 15 periods or more: the share of land is that of an endless tread but for the border
     assert (found <= 0).mean() == pytest.approx(tread.land_ratio, abs=0.04)
+
+
+@pytest.mark.parametrize("pattern", KINDS)
+def test_distance_beside_grooves_is_that_to_the_nearest_wall(pattern):
+    grooves = (Groove((2e-3, 1e-3), 1.6e-3, 8e-3, 0.5), Groove((-5e-3, 0.0), 2e-3, angle=-0.2))
+    tread = Tread(pattern, 5e-3, 2e-3, 2e-3, **KINDS[pattern], grooves=grooves)
+    line = np.arange(-15e-3, 15e-3, SPACING)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    found = tread.channel_distance(x, y)
+    middle = (np.abs(x) < 1e-2) & (np.abs(y) < 1e-2) & (found <= 0)
+    brute = -distance_transform_edt(found <= 0)[middle] * SPACING
+    assert np.abs(found[middle] - brute).max() < 1.5 * SPACING
+
+
+def test_a_groove_takes_its_area_and_the_tread_s_depth_at_any_angle():
+    kind = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.02}
+    plain = Heel(**kind, tread=Tread("bars", 24e-3, 3e-3, 2e-3))
+    for angle in (0.0, 0.4, math.pi / 2):
+        groove = Groove((39e-3, 4e-3), 2e-3, 12e-3, angle)  # within the second bar
+        cut = Heel(**kind, tread=Tread("bars", 24e-3, 3e-3, 2e-3, grooves=(groove,)))
+        for spacing in (1e-3, 0.6e-3, 0.25e-3):
+            maps = [heel_map(each, shoe_angle=0.0, spacing=spacing) for each in (plain, cut)]
+            lost = maps[0].land_area - maps[1].land_area
+            assert lost == pytest.approx(24e-6, rel=0.04 if spacing > 0.5e-3 else 5e-3)
+        before, after = (heel_surface(each, spacing=2e-4) for each in (plain, cut))
+        assert np.allclose(after.height[before.land & ~after.land], 2e-3)
+
+
+def test_grooves_move_with_the_lugs_that_they_part():
+    tread = Tread("hexagons", 6e-3, 2e-3, 2e-3, grooves=(Groove((3e-3, 0.0), 1e-3, 7e-3, 0.3),))
+    x, y = np.meshgrid(np.linspace(-0.02, 0.02, 81), np.linspace(-0.02, 0.02, 81))
+    moved = tread.moved((2e-3, -3e-3)).channel_distance(x + 2e-3, y - 3e-3)
+    assert moved == pytest.approx(tread.channel_distance(x, y), abs=1e-12)
 
 
 @pytest.mark.parametrize("pattern", KINDS)

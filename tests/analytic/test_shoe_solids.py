@@ -13,6 +13,7 @@ from underfoot.shoe import Facet, Heel, Sipes, Tread, heel_surface
 from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.parametric import sole_solid, write_sole
 from underfoot.shoe.parametric.modelling import lug_outlines
+from underfoot.shoe.tread import Groove
 
 OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 KIND = {"length": 0.06, "width": 0.06, "rear_radius": 0.028, "outsole_thickness": 0.025}
@@ -55,8 +56,15 @@ def test_rounded_rim_takes_what_a_fillet_takes():
         ),
         Tread("rings", 14e-3, 4e-3, 2.5e-3, ring_width=3e-3),
         Tread("graded_circles", 12e-3, 3e-3, 2e-3, front_lug_width=6e-3, graded_length=50e-3),
+        Tread(
+            "hexagons",
+            12e-3,
+            3e-3,
+            2e-3,
+            grooves=(Groove((30e-3, 5e-3), 2e-3, 15e-3, 0.4), Groove((40e-3, 0.0), 3e-3)),
+        ),
     ],
-    ids=["chevrons", "bars and sipes", "circles", "waves", "rings", "graded circles"],
+    ids=["chevrons", "bars and sipes", "circles", "waves", "rings", "graded circles", "grooves"],
 )
 def test_solid_and_map_are_one_description(tread):
     heel = Heel(**KIND, tread=tread)

@@ -320,6 +320,7 @@ def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
     result = dataclasses.replace(worn_shoe_result, data=from_xarray(fields))
     path.write_text(page_text(result, {}), encoding="utf-8")
     with opened(path) as tab:
+        choose(tab, "Film thickness")
         assert tab.value("document.querySelector('[data-part=time-row]').hidden")
         choose(tab, "Fluid pressure")
         assert not tab.value("document.querySelector('[data-part=time-row]').hidden")
@@ -336,6 +337,18 @@ def test_a_history_can_be_walked_through(worn_shoe_result, tmp_path):
         assert changed(first, last) > 0.02
         at = f"{float(fields.time[0]) * 1e3:.3g} ms"
         assert tab.value("document.querySelector('[data-part=time-value]').textContent") == at
+        # nothing of the end stands beside an earlier instant without a word
+        tab.value("document.querySelector('canvas').dispatchEvent("
+                  "new KeyboardEvent('keydown', {key: 'Enter'}))")  # fmt: skip
+        tab.settle()
+        place = tab.value("document.querySelector('[data-part=values-place]').textContent")
+        assert place.endswith(f"; Fluid pressure after {at}, the rest at the end")
+        note = "document.querySelector('[data-part=bar-note]').textContent"
+        assert "in all" not in tab.value(note)
+        choose(tab, "Film thickness")
+        tab.settle()
+        place = tab.value("document.querySelector('[data-part=values-place]').textContent")
+        assert "after" not in place
         assert tab.complaints == []
 
 

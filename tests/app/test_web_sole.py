@@ -2,9 +2,12 @@
 
 import time
 
+import numpy as np
 import pytest
-from web_app import Cost, begin, drawn, page_of, served
+from test_web_truth import computed
+from web_app import Cost, begin, drawn, page_of, project_of, served
 
+from outsole_bodies import grooved, heel_body, triangles, write_stl
 from underfoot.case import Case
 
 pytest.importorskip("nicegui")
@@ -147,3 +150,134 @@ def test_the_lug_that_floats_is_found(app, page):
         assert page.locator(".overlay .groove").count() == 1
         place = page.locator("[data-part=values-place]").inner_text()
     assert place.startswith("At x")
+
+
+def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
+    from underfoot_app.work_sole import LAND_EQUAL, _land_share
+
+    project = project_of(tmp_path / "project", "A", "B")
+    project.change("B", {"shoe.tread.pattern": "hexagons", "shoe.tread.channel_width": "4 mm"})
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        for name in ("A", "B"):
+            computed(page, app, name)
+        page.goto(app.base + "compare?variants=A|B")
+        drawn(page)
+        with Task(page, "compare at equal land") as task:
+            task.click(page.get_by_role("button", name="At equal land"))
+            page.get_by_role("cell", name="B, land of A", exact=True).wait_for()
+            drawn(page)
+        assert page.locator(".pane-name").all_inner_texts() == ["A A", "B B, land of A"]
+        page.get_by_text("give B the land of A").wait_for()
+        a, b = (project.case(name) for name in ("A", "B, land of A"))
+        assert abs(_land_share(a) - _land_share(b)) <= LAND_EQUAL
+        assert b.replace("shoe.tread.channel_width", "4 mm").shoe == project.case("B").shoe
+        page.locator("[data-step=undo]").click()
+        page.get_by_role("cell", name="B", exact=True).first.wait_for()
+        assert set(project.variants()) == {"A", "B"}
+        page.get_by_role("button", name="At equal land").click()
+        page.get_by_role("cell", name="B, land of A 2", exact=True).wait_for()
+        page.goto(app.base + "design?variant=B, land of A 2")
+        drawn(page)
+        page.locator("[data-step=undo]").click()
+        until(lambda: project.case("B, land of A 2").shoe == project.case("B").shoe)
+        assert page.complaints == []
+
+
+def test_land_that_no_channel_width_gives_is_refused_with_a_remedy(tmp_path):
+    from underfoot.core import InputError, silent
+    from underfoot_app.work_sole import equal_land
+
+    body = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
+    project = project_of(tmp_path / "project", "A", "B", "file")
+    project.change("file", {"shoe.outsole.file": str(body)})
+    files = {name: str(project.path(name)) for name in ("A", "B", "file")}
+    for pair in (("A", "file"), ("file", "A")):
+        with pytest.raises(InputError, match=r"comes from a file.*Compare at equal land two"):
+            equal_land(*(files[name] for name in pair), progress=silent)
+    assert equal_land(files["A"], files["B"], progress=silent)[0] == {}
+    for changes, remedy in (
+        ({"shoe.tread.pattern": "none"}, "Choose a pattern of lugs"),
+        ({"shoe.tread.lug_width": "2.5 mm"}, "Change shoe.tread.lug_width"),
+    ):
+        project.change("B", changes)
+        with pytest.raises(InputError, match=remedy):
+            equal_land(files["A"], files["B"], progress=silent)
+        project.undo("B")
+
+
+LARGE_LUGS = {"shoe.tread.lug_width": "20 mm", "shoe.tread.channel_width": "4 mm"}
+GROOVES = "shoe.tread.grooves"
+
+
+def fewest_edges(page):
+    """Return of how many lines the lug of the drainage with the fewest is drawn: the middle one."""
+    counts = []
+    for row in page.locator("tr[data-lug] th").all():
+        row.click()
+        drawn(page)
+        counts.append(page.locator(".overlay .lug").count())
+    return min(counts)
+
+
+def test_the_advised_groove_is_cut_by_its_row_and_taken_out_again(tmp_path):
+    project = project_of(tmp_path / "project", "A")
+    project.change("A", LARGE_LUGS)
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        computed(page, app, "A")
+        page.wait_for_selector("tr[data-lug]")
+        before, plain = project.summary("A"), fewest_edges(page)
+        with Task(page, "cut the advised groove") as task:
+            task.click(page.get_by_role("button", name="Cut this groove").first)
+            until(lambda: project.summary("A") != before and project.is_current("A"))
+            page.wait_for_selector(".verdict-place:not(.stale) .verdict")
+            drawn(page)
+        assert project.summary("A").cof > before.cof
+        page.wait_for_selector("tr[data-lug]")
+        assert fewest_edges(page) > plain
+        page.goto(app.base + "design?variant=A")
+        drawn(page)
+        page.get_by_role("button", name="Take out the last groove (1 in all)").click()
+        until(lambda: value(app, GROOVES) is None)
+        for step, there in (("undo", True), ("undo", False), ("redo", True)):
+            page.locator(f"[data-step={step}]").click()
+            until(lambda there=there: (value(app, GROOVES) is not None) == there)
+        assert page.complaints == []
+
+
+def test_the_advised_groove_lies_where_the_advice_was(tmp_path):
+    from underfoot.compute.run import run
+    from underfoot.core import silent
+    from underfoot.report import write_report
+    from underfoot_app.work_sole import advised_groove
+
+    project = project_of(tmp_path / "project", "A")
+    case = project.change("A", LARGE_LUGS)
+    before = run(case)
+    write_report(before, tmp_path / "result")
+    arguments = str(project.path("A")), str(tmp_path / "result"), 0
+    cut = project.change("A", advised_groove(*arguments, progress=silent))
+    after = run(cut)
+    assert after.scalars["fluid_load"].value < before.scalars["fluid_load"].value
+    x, y, length, side = (
+        float(before.data[f"lug_{name}"].values[0]) for name in ("x", "y", "groove", "groove_side")
+    )
+    along = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)][int(side)])
+    land = [each.data["land"].values.astype(bool) for each in (before, after)]
+    assert not (land[1] & ~land[0]).any()
+    for share in (0.0, 0.5, 0.95):  # from the peak to the lug's wall
+        place = np.array([x, y]) + share * length * along
+        i, j = (
+            int(np.abs(before.data[a].values - c).argmin())
+            for a, c in zip("xy", place, strict=True)
+        )
+        assert land[0][i, j]
+        assert not land[1][i, j]
+    width = cut.value(GROOVES)[0].width
+    beside = np.argwhere(land[0] & ~land[1])
+    places = np.column_stack(
+        [before.data[a].values[k] for a, k in zip("xy", beside.T, strict=True)]
+    ) - (x, y)
+    assert np.abs(places @ along[::-1]).max() <= width / 2 + 0.6e-3  # half a cell
+    two = advised_groove(*arguments, progress=silent)[GROOVES]  # a second one goes beside it
+    assert case.replace(GROOVES, two[:1]).hash == cut.hash
+    assert len(two) == 2

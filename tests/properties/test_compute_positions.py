@@ -166,6 +166,28 @@ def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
     assert back == pytest.approx(tread.slit_distance(x, y), abs=1e-12)
 
 
+def test_grooves_are_in_case_and_hash_and_stay_in_their_lugs(bars):
+    groove = {"along": "20 mm", "across": "5 mm", "width": "2 mm", "length": "9 mm"}
+    cut = bars.replace("shoe.tread.grooves", [groove])
+    assert cut.hash not in (bars.hash, bars.replace("shoe.tread.grooves", [groove] * 2).hash)
+    for text in (cut.to_toml(), cut.to_toml(complete=True)):
+        assert Case.from_text(text).hash == cut.hash
+    further = cut.replace("shoe.tread.channel_width", "5 mm")  # beside it in its file
+    assert Case.from_text(further.to_toml()).hash == further.hash
+    assert cut.replace("shoe.tread.grooves", None).to_toml() == bars.to_toml()
+    shift = (4 * MM, 1 * MM)
+    there = cut.replace({
+        "shoe.tread.offset_along": "4 mm", "shoe.tread.offset_across": "1 mm",
+        "shoe.tread.grooves": [{**groove, "along": "24 mm", "across": "6 mm"}],
+    })  # fmt: skip
+    land = sole_map(cut, 1 * MM, shift=shift).land
+    assert np.array_equal(land, sole_map(there, 1 * MM).land)
+    assert np.count_nonzero(land) < np.count_nonzero(sole_map(bars, 1 * MM, shift=shift).land)
+    for wrong, where in (("width", "0.5 mm"), ("along", "300 mm"), ("angle", "200 deg")):
+        with pytest.raises(CaseError, match=r"grooves.0.?.*"):
+            bars.replace("shoe.tread.grooves", [{**groove, wrong: where}])
+
+
 def test_the_number_of_positions_is_a_field_with_a_range(bars):
     assert position_count(bars, quick=False) == 6
     assert position_count(bars, quick=True) == 3

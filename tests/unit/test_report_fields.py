@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import SourcedValue, Status
-from underfoot.core.fields import from_xarray
+from underfoot.core.fields import Fields, from_xarray
 from underfoot.questions.comparison import compare
 from underfoot.report import figures
 from underfoot.report.common_grid import common_grid, difference, on_grid, sole_on_grid
@@ -149,6 +149,44 @@ def test_a_history_of_a_field_becomes_frames_and_a_long_one_is_thinned(worn_shoe
     now = unpacked(pane["fields"]["contact_pressure"], (pane["nx"], pane["ny"]))
     np.testing.assert_allclose(last, 30 * now, rtol=2e-3)
     assert scene["quantities"][0]["peak"] >= np.nanmax(last) * 0.999
+
+
+def test_a_run_keeps_a_few_instants_of_its_march_and_shows_them_of_one_sole(
+    worn_shoe_case, worn_shoe_result, tmp_path, monkeypatch
+):
+    from underfoot.compute import histories
+    from underfoot.compute.run import run
+
+    settled = run(worn_shoe_case.replace("motion.steady", True))
+    for result in (worn_shoe_result, settled):
+        data = result.data
+        times, load = data["march_time"].values, data["load_history"].values
+        assert 4 <= times.size <= 12
+        assert (np.diff(times) > 0).all()
+        assert times[-1] == data["time"].values[-1]
+        total = 0.0
+        for name in ("contact_pressure", "fluid_pressure"):
+            frames = data[f"{name}_history"].values
+            assert frames.dtype == np.float32
+            assert np.abs(frames[-1] - data[name].values).max() <= 50.1  # to 100 Pa
+            total = total + frames.sum(axis=(1, 2), dtype=float)
+        at = np.interp(times, data["time"].values, load)
+        share = total / total[-1] * load[-1] / at
+        assert share[1:] == pytest.approx(1.0, abs=0.02)  # at each instant they carry its load
+        without = {k: v for k, v in data.data_vars.items() if data[k].dims[0] != "march_time"}
+        sizes = []
+        for number, fields in enumerate((data, Fields(without, data.coords))):
+            fields.to_netcdf(tmp_path / f"{number}.nc")
+            sizes.append((tmp_path / f"{number}.nc").stat().st_size)
+        assert sizes[0] - sizes[1] < 100_000
+        (pane,) = viewer_scene([result])["panes"]
+        assert set(pane["histories"]) == {"contact_pressure", "fluid_pressure"}
+        assert len(pane["histories"]["fluid_pressure"]["labels"]) == times.size
+    assert not any(pane["histories"] for pane in viewer_scene([settled, settled])["panes"])
+    monkeypatch.setattr(histories, "PICTURED_CELLS", 5 * data["clearance"].values.size)
+    fewer = run(worn_shoe_case.replace("motion.steady", True)).data["march_time"].values
+    assert 2 <= fewer.size <= 5
+    assert (fewer[0], fewer[-1]) == (times[0], times[-1])
 
 
 def cof(value, spread):

@@ -26,9 +26,7 @@ class Parameter:
     def __post_init__(self) -> None:
         if not (self.low < self.start < self.high):
             raise InputError(
-                f"{self.start:g}",
-                where="start",
-                allowed=f"within {self.low:g} to {self.high:g}",
+                f"{self.start:g}", where="start", allowed=f"within {self.low:g} to {self.high:g}"
             )
         if self.logarithmic and not self.low > 0:
             raise InputError(f"{self.low:g}", where="low", allowed="above 0 when logarithmic")

@@ -28,14 +28,7 @@ from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import sole_map
 from underfoot.compute.solve import averaged, solved
-from underfoot.core import (
-    ConvergenceError,
-    DataError,
-    InputError,
-    Progress,
-    silent,
-    unknown_name,
-)
+from underfoot.core import ConvergenceError, DataError, InputError, Progress, silent, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part

@@ -224,6 +224,16 @@ class SipeCuts(Section):
     angle: Turn = default(0.0, "0 deg", "across the shoe")
 
 
+class GrooveCut(Section):
+    """One straight groove through the lugs, as deep as the channels."""
+
+    along: Shift = Field(description="of its middle, from the rear end")
+    across: Shift = Field(description="of its middle, to the left seen from above")
+    width: Length
+    length: Length | None = optional("right across the sole where nothing is said")
+    angle: Turn = default(0.0, "0 deg", "across the shoe")
+
+
 class TreadPattern(Option):
     """Tread of one pattern; an arc channel may be added."""
 
@@ -267,6 +277,7 @@ class Lugs(TreadPattern):
         0.0, "0 mm", "no chamfer; 45 deg, width on the land; its film is that of a sharp edge"
     )
     sipes: SipeCuts | None = None
+    grooves: tuple[GrooveCut, ...] | None = optional("straight grooves through the lugs")
     kind: ClassVar[str] = ""  # of ``Tread`` where it is not the name
 
     def letters(self) -> Lettering | None:
@@ -275,7 +286,7 @@ class Lugs(TreadPattern):
 
     def build(self) -> Tread | None:
         from underfoot.shoe import Sipes, Tread
-        from underfoot.shoe.tread import FURTHER_LENGTHS
+        from underfoot.shoe.tread import FURTHER_LENGTHS, Groove
 
         cuts = self.sipes
         return Tread(
@@ -290,6 +301,10 @@ class Lugs(TreadPattern):
             letters=self.letters(),
             edge_chamfer=self.edge_chamfer,
             sipes=cuts and Sipes(cuts.width, cuts.depth, cuts.spacing, cuts.angle),
+            grooves=tuple(
+                Groove((each.along, each.across), each.width, each.length or math.inf, each.angle)
+                for each in self.grooves or ()
+            ),
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
@@ -320,6 +335,13 @@ class Lugs(TreadPattern):
             )
         if self.sipes is not None:
             yield from self._sipe_problems(self.sipes, f"{where}.sipes")
+        plan = case.shoe.heel
+        for number, each in enumerate(self.grooves or ()):
+            yield from _resolved(case, f"{where}.grooves[{number}].width", each.width)
+            if not 0 <= each.along <= plan.length or abs(each.across) > plan.widest / 2:
+                limits = f"0 to {display(plan.length, 'm')}, {display(plan.widest / 2, 'm')} aside"
+                what = "the middle of the groove lies beside the sole"
+                yield RangeError(what, where=f"{where}.grooves[{number}]", allowed=limits)
 
     def _sipe_problems(self, cuts: SipeCuts, where: str) -> Iterator[InputError]:
         if cuts.depth > self.depth * (1 + 1e-9):

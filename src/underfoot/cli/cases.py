@@ -98,12 +98,10 @@ def slip(
     shared: Shared,
     case: CasePath,
     subjects: Annotated[
-        int | None,
-        typer.Option("--subjects", min=1, help="Number of walkers.", show_default=False),
+        int | None, typer.Option("--subjects", min=1, help="Number of walkers.", show_default=False)
     ] = None,
     full_model: Annotated[
-        bool,
-        typer.Option("--full-model", help="Full model for every walker: seconds each."),
+        bool, typer.Option("--full-model", help="Full model for every walker: seconds each.")
     ] = False,
     history: Annotated[
         list[Path] | None,
@@ -214,8 +212,7 @@ def wear(
     ] = None,
     steps: Annotated[int, typer.Option("--steps", help="Worn states to compute.", min=2)] = 6,
     limit: Annotated[
-        str,
-        typer.Option("--limit", help='Fluid load that counts as worn out: "5 N" or "20 %".'),
+        str, typer.Option("--limit", help='Fluid load that counts as worn out: "5 N" or "20 %".')
     ] = "5 N",
     to: Annotated[
         str | None,

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 def contact(
     shared: Shared,
     surface: Annotated[
-        Path | None,
-        typer.Argument(help="Measured profile or height map.", show_default=False),
+        Path | None, typer.Argument(help="Measured profile or height map.", show_default=False)
     ] = None,
     sole: Annotated[
         Path | None, optional("Scan of the sole, for a table of both surfaces (--table).")
@@ -38,12 +37,10 @@ def contact(
         float | None, typer.Option("--shore", help="Shore A hardness: elastic, by Gent.")
     ] = None,
     spectrum: Annotated[
-        Path | None,
-        typer.Option("--spectrum", help="Prony series or dynamic sweep: viscoelastic."),
+        Path | None, typer.Option("--spectrum", help="Prony series or dynamic sweep: viscoelastic.")
     ] = None,
     material: Annotated[
-        str | None,
-        typer.Option("--material", help="Measured material: neolite or rubber."),
+        str | None, typer.Option("--material", help="Measured material: neolite or rubber.")
     ] = None,
     poisson: Annotated[float, typer.Option("--poisson", help="Poisson's ratio.")] = 0.5,
     rms: Annotated[

@@ -21,7 +21,7 @@ RENAMED = {
 """New name of each old option, by command."""
 NOTES = {
     ("slip", "--full"): "--full now selects the fine grid; --full-model simulates every walker "
-    "with the full model.",
+    "with the full model."
 }
 """What to know of an option whose meaning has changed."""
 

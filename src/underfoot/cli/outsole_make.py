@@ -44,8 +44,7 @@ PATTERNS = (
 
 def make(
     spec: Annotated[
-        Path | None,
-        typer.Argument(help="Outsole file or case file (TOML).", show_default=False),
+        Path | None, typer.Argument(help="Outsole file or case file (TOML).", show_default=False)
     ] = None,
     pattern: Annotated[str | None, _given(PATTERNS)] = None,
     lug: Annotated[str | None, _given('Width of a lug, as "6 mm".')] = None,

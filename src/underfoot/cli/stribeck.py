@@ -35,8 +35,7 @@ def stribeck(
     slowest: Annotated[str, typer.Option("--slowest", help="Lowest speed.")] = "0.01 m/s",
     fastest: Annotated[str, typer.Option("--fastest", help="Highest speed.")] = "1 m/s",
     out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for figure and table.", show_default=False),
+        Path | None, typer.Option("--out", help="Folder for figure and table.", show_default=False)
     ] = None,
     settings: Settings = None,
     json: AsJson = False,

@@ -82,10 +82,7 @@ def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Bre
 
 
 def _provenance(
-    parts: Prepared,
-    reading: Reading,
-    objects: Mapping[str, str],
-    timings: Mapping[str, float],
+    parts: Prepared, reading: Reading, objects: Mapping[str, str], timings: Mapping[str, float]
 ) -> Provenance:
     case, modulus = parts.case, parts.context.modulus
     cited = (parts.law, parts.asperities, modulus, reading.values["slip_probability"])

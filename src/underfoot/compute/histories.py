@@ -23,7 +23,9 @@ from .sensors import scanned
 READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
 PICTURED = {"contact_pressure": "asperity contact pressure", "fluid_pressure": "fluid pressure"}
-"""Maps that a motion history keeps at the same number of instants."""
+"""Maps that are kept, to 100 Pa: of a motion history at the same number of instants."""
+STEADY_PICTURES, PICTURED_CELLS, MARCH = 12, 1_200_000, "march_time"
+"""Instants, the last one too, and cells of all at most that another run keeps; their axis."""
 COF_WORDS = {
     "cof": "coefficient of friction",
     "cof_adhesion": "adhesion part of COF",
@@ -89,11 +91,16 @@ class Recorder:
             self.array_frames.append(tuple(each.astype(np.float32) for each in maps))
 
     def _picture(self, state: SoleState) -> None:
-        last = self.pictures[-1][0] if self.pictures else -math.inf
-        every = self.case.motion.duration / READ_STEPS
-        if self.case.motion.build() is not None and state.time >= last + every:
-            maps = {name: getattr(state, name).astype(np.float32) for name in PICTURED}
-            self.pictures.append((state.time, maps))
+        follows = self.case.motion.build() is not None
+        every = self.case.motion.duration / (READ_STEPS if follows else STEADY_PICTURES)
+        times = [time for time, _ in self.pictures[-2:]]
+        if len(times) == 2 and times[1] < times[0] + every:
+            self.pictures.pop()  # the newest is always the last
+        maps = {name: np.round(getattr(state, name), -2).astype(np.float32) for name in PICTURED}
+        self.pictures.append((state.time, maps))
+        most = min(STEADY_PICTURES, PICTURED_CELLS // state.fluid_pressure.size)
+        if not follows and len(self.pictures) > most:
+            del self.pictures[1:-1:2]
 
     def array(self) -> ArrayReading | None:
         """Return what the array in the floor saw; None where the case has none."""
@@ -160,10 +167,11 @@ def history_fields(
     coordinates: dict[str, Any] = {"time": in_time(history.time, "s", "time")}
     if recorder.pictures:
         times, maps = zip(*recorder.pictures, strict=True)
-        coordinates["picture_time"] = (("picture_time",), np.array(times), {"units": "s"})
+        axis = MARCH if recorder.case.motion.build() is None else "picture_time"
+        coordinates[axis] = ((axis,), np.array(times), {"units": "s"})
         for name, title in PICTURED.items():
             variables[f"{name}_history"] = (
-                ("picture_time", "x", "y"),
+                (axis, "x", "y"),
                 np.stack([each[name] for each in maps]),
                 {"units": "Pa", "long_name": title},
             )

@@ -153,10 +153,7 @@ def with_film_spread(
 
 
 def slip_probability(
-    case: Case,
-    acof: SourcedValue,
-    draws: ArrayLike | None = None,
-    model: SlipModel | None = None,
+    case: Case, acof: SourcedValue, draws: ArrayLike | None = None, model: SlipModel | None = None
 ) -> tuple[SourcedValue, SlipRisk]:
     """Return the slip probability at an available friction, and the risk behind it.
 

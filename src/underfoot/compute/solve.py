@@ -130,12 +130,7 @@ def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
 
 
 def solved_at(
-    parts: Prepared,
-    place: Place,
-    spacing: float,
-    *,
-    finer: float = 1,
-    progress: Progress = silent,
+    parts: Prepared, place: Place, spacing: float, *, finer: float = 1, progress: Progress = silent
 ) -> tuple[Prepared, SoleContact]:
     """Return case and contact with the tread at a place, on cells of ``spacing`` (m).
 

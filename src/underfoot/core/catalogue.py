@@ -267,11 +267,7 @@ def _clash(kind: str, name: str, place: str, first_place: str) -> InputError:
 
 
 def _resolve(
-    kind: str,
-    name: str,
-    raw: _Tables,
-    done: dict[tuple[str, str], Entry],
-    chain: tuple[str, ...],
+    kind: str, name: str, raw: _Tables, done: dict[tuple[str, str], Entry], chain: tuple[str, ...]
 ) -> Entry:
     if (kind, name) in done:
         return done[kind, name]

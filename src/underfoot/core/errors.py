@@ -68,13 +68,7 @@ class ConvergenceError(UnderfootError):
 
     exit_code = 4
 
-    def __init__(
-        self,
-        what: str,
-        *,
-        history: Sequence[float] = (),
-        **parts: str | None,
-    ) -> None:
+    def __init__(self, what: str, *, history: Sequence[float] = (), **parts: str | None) -> None:
         super().__init__(what, **parts)
         self.history = tuple(float(value) for value in history)
 

@@ -40,9 +40,7 @@ def decoded(data: bytes, where: str, remedy: str = "Export it again as text") ->
         text = data.decode("latin-1")
     if "\0" in text or not text.strip():
         raise DataError(
-            "binary, not a text file" if "\0" in text else "empty",
-            where=where,
-            remedy=remedy,
+            "binary, not a text file" if "\0" in text else "empty", where=where, remedy=remedy
         )
     return text
 

@@ -252,9 +252,7 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
         return float(quantity.to(target).magnitude)
     except pint.DimensionalityError as error:
         raise InputError(
-            f'"{given}" is not a value in {unit}',
-            where=where,
-            allowed=f'for example "{example}"',
+            f'"{given}" is not a value in {unit}', where=where, allowed=f'for example "{example}"'
         ) from error
 
 

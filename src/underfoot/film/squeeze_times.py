@@ -13,12 +13,7 @@ _TERMS = 60
 
 
 def squeeze_time_disc(
-    *,
-    viscosity: ArrayLike,
-    radius: float,
-    load: ArrayLike,
-    start_gap: float,
-    end_gap: ArrayLike,
+    *, viscosity: ArrayLike, radius: float, load: ArrayLike, start_gap: float, end_gap: ArrayLike
 ) -> Array:
     """Return the time (s) a flat disc takes to sink from one gap to another under a constant load.
 

@@ -97,10 +97,7 @@ def self_affine_scale(
         return 2 * hurst * rq**2 * q0 ** (2 * hurst) * (q1**power - q0**power) / power
 
     return AsperityScale(
-        wavelength,
-        _radius(0.375 * moment(4)),
-        math.sqrt(moment(2)),
-        rq * (q1 / q0) ** -hurst,
+        wavelength, _radius(0.375 * moment(4)), math.sqrt(moment(2)), rq * (q1 / q0) ** -hurst
     )
 
 

@@ -72,11 +72,7 @@ def cof(
     contact = np.asarray(contact_pressure, dtype=float)
     fluid = np.asarray(fluid_pressure, dtype=float)
     mask = np.ones(contact.shape, dtype=bool) if wet is None else np.asarray(wet, dtype=bool)
-    shears = {
-        "adhesion": parts.adhesion,
-        "hysteresis": parts.hysteresis,
-        "viscous": parts.viscous,
-    }
+    shears = {"adhesion": parts.adhesion, "hysteresis": parts.hysteresis, "viscous": parts.viscous}
     for name, array in {**shears, "fluid_pressure": fluid, "wet": mask}.items():
         if np.shape(array) != contact.shape:
             raise InputError(f"shape {np.shape(array)}", where=name, allowed=f"{contact.shape}")

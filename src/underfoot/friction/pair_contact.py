@@ -337,9 +337,7 @@ class Pair:
     def drawn(self, draws: PairDraws, seed: int) -> dict[str, Array]:
         """Return draws (draws,) of the inputs of ``PairContactLaw``, by name."""
         apart = ndtri(named_shares(seed, f"hardness {self.polymer}", draws.count))
-        numbers: dict[str, ArrayLike] = {
-            "shore_a": self.shore_a + self.shore_a_deviation * apart,
-        }
+        numbers: dict[str, ArrayLike] = {"shore_a": self.shore_a + self.shore_a_deviation * apart}
         spans = {"sole_rq": self.sole_rq, "floor_rq": self.floor_rq}
         for name, (low, high) in (spans | {"loss_tangent": self.loss_tangent}).items():
             owner = f" of {self.polymer}" if name == "loss_tangent" and self.polymer else ""

@@ -171,11 +171,9 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     for reading, ln_cof in zip(known.readings, each, strict=True):
         repeat = READING if reading.sd is None else reading.sd / reading.cof
         rest = (ln_cof - np.log(reading.cof)) / np.hypot(repeat, wide.sd_reading)
-        log_weight += {
-            "lower": log_ndtr(rest),
-            "upper": log_ndtr(-rest),
-            "value": -0.5 * rest**2,
-        }[reading.kind]
+        log_weight += {"lower": log_ndtr(rest), "upper": log_ndtr(-rest), "value": -0.5 * rest**2}[
+            reading.kind
+        ]
     if known.fails:
         log_weight = np.log(np.maximum(-np.expm1(log_weight), 1e-12))
     weight = np.exp(log_weight - log_weight.max())

@@ -43,10 +43,7 @@ REPORT_SOURCE = "Grant report G.1.1, Eq. 7 and Table 2"
 POISSON_RATIO = 0.499
 
 SHEAR_CONSTANTS: Mapping[str, tuple[float, float, float]] = MappingProxyType(
-    {
-        "neolite": (30.24e6, 18.66e6, 0.013),
-        "rubber": (0.59e6, 0.44e6, 0.025),
-    }
+    {"neolite": (30.24e6, 18.66e6, 0.013), "rubber": (0.59e6, 0.44e6, 0.025)}
 )
 """G_0 (Pa), G_inf (Pa), beta (1/s) of Table 2."""
 

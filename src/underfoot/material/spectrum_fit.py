@@ -345,10 +345,7 @@ class ReducedSpectrum:
 
 
 def reduced(
-    spectrum: RelaxationSpectrum,
-    frequency_range: tuple[float, float],
-    *,
-    terms_per_decade: int = 1,
+    spectrum: RelaxationSpectrum, frequency_range: tuple[float, float], *, terms_per_decade: int = 1
 ) -> ReducedSpectrum:
     """Return the spectrum with evenly spread terms that follow it over ``frequency_range`` only.
 

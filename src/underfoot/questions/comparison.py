@@ -15,12 +15,7 @@ from underfoot.compute import summary
 from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
-from underfoot.core.presentation import (
-    Presentable,
-    Table,
-    drawn_probability_text,
-    value_text,
-)
+from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
 from underfoot.friction.propagation import probability_higher
 from underfoot.friction.tread_error import READING

@@ -12,12 +12,7 @@ from underfoot.core import Cache, DataError, InputError, Progress, display, sile
 from underfoot.core.checks import exactly_one
 from underfoot.core.files import read_toml
 from underfoot.core.presentation import Presentable, Table
-from underfoot.rough_contact import (
-    ContactTable,
-    SteadySliding,
-    steady_sliding,
-    table_over_scales,
-)
+from underfoot.rough_contact import ContactTable, SteadySliding, steady_sliding, table_over_scales
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
 from underfoot.surface import HeightMap, Profile, levelled, read_scan

@@ -10,12 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
-from underfoot.core.presentation import (
-    Presentable,
-    Table,
-    drawn_probability_text,
-    value_text,
-)
+from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
 
 from .ask import ask

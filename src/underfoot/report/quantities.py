@@ -22,10 +22,7 @@ _TITLES = {
     "shear_stress": "Local shear",
     "clearance": "Height above the floor",
 }
-_COLOURS = {
-    "film_thickness": "YlGnBu_r",
-    **dict.fromkeys(HEIGHT_NAMES, "cividis"),
-}
+_COLOURS = {"film_thickness": "YlGnBu_r", **dict.fromkeys(HEIGHT_NAMES, "cividis")}
 _LOGARITHMIC = ("film_thickness",)
 _LOADS = {
     "contact_pressure": "the load per area that the touching rubber carries",

@@ -26,7 +26,7 @@ from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_f
 from .page import Picture, Section, page, remark_sections, table_sections
 from .quantities import quantities
 from .surface_mesh import SurfaceMesh, surface_mesh
-from .viewer import viewer_script, viewer_section
+from .viewer import scene_section, viewer_scene, viewer_script
 from .writing import Writer, Written, data_writers
 
 if TYPE_CHECKING:
@@ -155,7 +155,8 @@ def _comparison_sections(
 
 
 def _viewer(results: Sequence[Result]) -> str:
-    return viewer_section(results, [surface_of_result(result) for result in results])
+    surfaces = [surface_of_result(result) for result in results]
+    return scene_section(viewer_scene(results, surfaces))
 
 
 def surface_of_result(result: Result) -> SurfaceMesh | None:

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.compute.histories import MARCH
 from underfoot.core.fields import Fields
 from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
@@ -43,16 +44,11 @@ class OnSole(Protocol):
         ...
 
 
-def viewer_section(results: Sequence[OnSole], surfaces: Sequence[SurfaceMesh | None] = ()) -> str:
-    """Return the viewer of one result, or of several side by side, as a part of a page.
+def scene_section(scene: dict[str, Any]) -> str:
+    """Return the viewer of a scene as a part of a page.
 
     The page needs ``viewer_script`` once, after its sections, and the style sheets of this room.
     """
-    return scene_section(viewer_scene(results, surfaces))
-
-
-def scene_section(scene: dict[str, Any]) -> str:
-    """Return the viewer of a scene as a part of a page."""
     # "<" would let a name in the data end the script element
     data = json.dumps(scene, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
     template = environment().get_template("viewer.html")
@@ -82,7 +78,8 @@ def viewer_scene(
     datasets = [result.data for result in results]
     shown = quantities(datasets)
     fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in shown}
-    histories = {q.name: [_history(dataset, q) for dataset in datasets] for q in shown}
+    alone = len(results) == 1
+    histories = {q.name: [_history(dataset, q, alone) for dataset in datasets] for q in shown}
     panes = []
     designed = [*surfaces, *[None] * (len(results) - len(surfaces))]
     for number, result in enumerate(results):
@@ -124,9 +121,7 @@ def scene(
 
 
 def listed_quantity(
-    quantity: Quantity,
-    fields: Sequence[NDArray[np.float64]],
-    loads: Sequence[float | None] = (),
+    quantity: Quantity, fields: Sequence[NDArray[np.float64]], loads: Sequence[float | None] = ()
 ) -> dict[str, Any]:
     """Return a quantity for the viewer with the colour scale of all its ``fields``.
 
@@ -207,21 +202,23 @@ def _lugs(dataset: Fields) -> list[list[float]]:
 
 
 def _history(
-    dataset: Fields, quantity: Quantity
+    dataset: Fields, quantity: Quantity, alone: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long."""
-    name = f"{quantity.name}_history"
-    if name not in dataset or dataset[name].ndim != 3:
+    """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long.
+
+    Of a march only where a sole is ``alone``: others have other instants.
+    """
+    field = dataset.get(f"{quantity.name}_history")
+    if field is None or field.ndim != 3 or not {"x", "y"} <= set(field.dims):
         return None
-    field = dataset[name]
-    instants = [dim for dim in field.dims if dim not in ("x", "y")]
-    if len(instants) != 1 or not {"x", "y"} <= set(field.dims):
+    (axis,) = set(field.dims) - {"x", "y"}
+    if axis == MARCH and not alone:
         return None
-    values = field.transpose(instants[0], "x", "y").values
+    values = field.transpose(axis, "x", "y").values
     count = values.shape[0]
     most = max(2, _MOST_HISTORY_CELLS // (values.shape[1] * values.shape[2]))
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
-    time = np.asarray(dataset[instants[0]].values if instants[0] in dataset else range(count))
+    time = np.asarray(dataset[axis].values if axis in dataset else range(count))
     frames = [
         drawn(dataset.assign({quantity.name: (("x", "y"), values[number], field.attrs)}), quantity)
         for number in chosen

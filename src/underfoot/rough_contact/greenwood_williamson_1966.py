@@ -20,15 +20,12 @@ SOURCE = (
 TESTED = {
     "real_contact_fraction": Range(
         0.0, 0.05, "1", "area and gap 5 to 15 % low against half-space solutions up to here"
-    ),
+    )
 }
 
 
 def greenwood_williamson(
-    pressure: ArrayLike,
-    moments: SpectralMoments,
-    modulus: float,
-    poisson_ratio: float = 0.5,
+    pressure: ArrayLike, moments: SpectralMoments, modulus: float, poisson_ratio: float = 0.5
 ) -> TheoryContact:
     """Return area, mean gap and contacts at nominal pressures (Pa, > 0).
 

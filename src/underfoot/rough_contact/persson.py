@@ -19,7 +19,7 @@ FRICTION_SOURCE = (
 TESTED = {
     "real_contact_fraction": Range(
         0.15, 1.0, "1", "within 25 % of half-space solutions; area 25 to 30 % low below"
-    ),
+    )
 }
 GAP_GAMMA = 0.45
 """Reduction of stored energy in partial contact, fitted to simulations in the source."""

@@ -111,7 +111,6 @@ def _heel_slits(
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
 
-    angle = tread.sipes.angle
     return slits_of(
         tread.slit_distance(x, y) > -1.5 * spacing,
         land,
@@ -120,7 +119,7 @@ def _heel_slits(
         level_at,
         depth=np.maximum(sipes.depth - heel.worn_off(x, y), 0.0),
         width=np.full(x.shape, sipes.width),
-        tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
+        tangent=(np.full(x.shape, math.sin(sipes.angle)), np.full(x.shape, math.cos(sipes.angle))),
     )
 
 
@@ -176,9 +175,7 @@ def cut_heel(
     """
     unworn = heel.unworn_height(x, y)
     base = heel.land_height(x, y)
-    height = base.copy()
-    land = np.ones(x.shape, dtype=bool)
-    lug = np.zeros_like(x)
+    height, land, lug = base.copy(), np.ones(x.shape, dtype=bool), np.zeros_like(x)
     tread = heel.tread
     if tread is not None and tread.depth > 0:
         into = tread.channel_distance(x, y)
@@ -205,8 +202,7 @@ def cut_heel(
 
 def channel_level(heel: SoleShape, x: Array, y: Array, spacing: float = 0.0) -> Array:
     """Return the distance (m) into the open channels of ``cut_heel``: 0 or less on land."""
-    depth = -heel.worn_off(x, y)
-    level = np.full(x.shape, -_FAR)
+    depth, level = -heel.worn_off(x, y), np.full(x.shape, -_FAR)
     tread, arc = heel.tread, heel.arc_channel
     if tread is not None and tread.depth > 0:
         sipes = tread.sipes
@@ -231,15 +227,16 @@ def _cut(
 def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     """Return what the grid resolves with too few cells; refuse what it cannot show at all."""
     features: list[tuple[str, str, float]] = []
-    if heel.tread is not None and heel.tread.depth > 0:
-        features.append(("tread.channel_width", "channel", heel.tread.channel_width))
-        features.append(("tread.lug_width", "lug", heel.tread.smallest_lug))
+    unresolved: list[Breach] = []
+    tread = heel.tread
+    if tread is not None and tread.depth > 0:
+        features.append(("tread.channel_width", "channel", tread.channel_width))
+        features.append(("tread.lug_width", "lug", tread.smallest_lug))
+        features += [("tread.grooves", "groove", each.width) for each in tread.grooves]
+        if tread.sipes is not None and _shown(tread.sipes, spacing):
+            features.append(("tread.sipes.width", "sipe", tread.sipes.width))
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:
         features.append(("arc_channel.width", "arc channel", heel.arc_channel.width))
-    unresolved: list[Breach] = []
-    sipes = heel.tread.sipes if heel.tread is not None and heel.tread.depth > 0 else None
-    if sipes is not None and _shown(sipes, spacing):
-        features.append(("tread.sipes.width", "sipe", sipes.width))
     for where, name, width in features:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):

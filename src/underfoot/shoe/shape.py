@@ -184,7 +184,8 @@ class SoleShape(ABC):
 
 
 def check_depths(shape: SoleShape) -> None:
-    """Refuse channels, arc channels and wear that go through the outsole."""
+    """Refuse channels, arc channels and wear that go through the outsole, and a crown of 0."""
+    positive(1.0 if shape.crown_radius is None else shape.crown_radius, "heel.crown_radius")
     for name in ("tread", "arc_channel", "wear"):
         part = getattr(shape, name)
         if part is not None and part.depth >= shape.outsole_thickness:
@@ -238,8 +239,6 @@ class Heel(SoleShape):
                     where=f"heel.{name}",
                     allowed=f"at most {limit * 1e3:g} mm (half its width and half its length)",
                 )
-        if self.crown_radius is not None:
-            positive(self.crown_radius, "heel.crown_radius")
         check_depths(self)
 
     @property

@@ -68,21 +68,41 @@ class Sipes:
                 allowed=f"below {self.spacing / 2e-3:g} mm (half of sipes.spacing)",
             )
 
-    def check_within(self, tread_depth: float) -> None:
-        """Refuse slits that go deeper than the lugs stand."""
-        if self.depth > tread_depth * (1 + 1e-9):
-            raise InputError(
-                f"sipes of {self.depth * 1e3:g} mm are deeper than the tread",
-                where="sipes.depth",
-                allowed=f"at most {tread_depth * 1e3:g} mm (tread.depth)",
-            )
-
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into a slit: positive in it, negative beside it."""
         first = self.spacing / 2 if self.offset is None else self.offset
         across, _ = tread_pattern.rotated(x, y, self.angle)
         place = np.mod(across - first + self.spacing / 2, self.spacing) - self.spacing / 2
         return self.width / 2 - np.abs(place)
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """One straight groove through the lugs, as deep as the channels.
+
+    Parameters:
+        place: Of its middle (x, y) in the frame of the sole, m.
+        width: m.
+        length: m; right across the sole where nothing is said.
+        angle: Against the transverse direction, rad, anticlockwise seen from above.
+    """
+
+    place: tuple[float, float]
+    width: float
+    length: float = math.inf
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive(self.width, "groove.width")
+        if not self.length > 0:
+            raise InputError(f"{self.length} m is no length", where="groove.length")
+
+    def channel_distance(self, x: Array, y: Array) -> Array:
+        """Return the distance (m) into the groove: positive in it, negative beside it."""
+        across, along = tread_pattern.rotated(x - self.place[0], y - self.place[1], self.angle)
+        aside, ahead = np.abs(across) - self.width / 2, np.abs(along) - self.length / 2
+        beyond = np.hypot(np.maximum(aside, 0.0), np.maximum(ahead, 0.0))
+        return -beyond - np.minimum(np.maximum(aside, ahead), 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +134,7 @@ class Tread:
             from the first lug, and beyond; ``lug_width`` is that of the first.
         letters: Of "lettering".
         sipes: Fine slits in the lugs.
+        grooves: Where the sole lies as made; shifted with the pattern, whose lugs they part.
     """
 
     pattern: str
@@ -133,6 +154,7 @@ class Tread:
     letters: Lettering | None = None
     edge_chamfer: float = 0.0
     sipes: Sipes | None = None
+    grooves: tuple[Groove, ...] = ()
 
     def __post_init__(self) -> None:
         if self.pattern not in PATTERNS:
@@ -141,21 +163,20 @@ class Tread:
         positive(self.channel_width, "tread.channel_width")
         not_negative(self.depth, "tread.depth")
         not_negative(self.edge_radius, "tread.edge_radius")
-        needed = FURTHER_LENGTHS.get(self.pattern, ())
-        for name in (each for names in FURTHER_LENGTHS.values() for each in names):
+        needed = (
+            *FURTHER_LENGTHS.get(self.pattern, ()),
+            *["letters"][: self.pattern == "lettering"],
+        )
+        lengths = [each for names in FURTHER_LENGTHS.values() for each in names]
+        for name in (*lengths, "letters"):
             value = getattr(self, name)
             if (value is None) == (name in needed):
                 raise InputError(
                     f"is {'missing' if value is None else 'not used'} for {self.pattern}",
                     where=f"tread.{name}",
                 )
-            if value is not None:
+            if value is not None and name in lengths:
                 positive(value, f"tread.{name}")
-        if (self.letters is None) == (self.pattern == "lettering"):
-            raise InputError(
-                f"is {'missing' if self.letters is None else 'not used'} for {self.pattern}",
-                where="tread.letters",
-            )
         most = math.radians(75 if self.pattern == "chevrons" else 180)
         between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
         if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
@@ -176,8 +197,12 @@ class Tread:
                     where=f"tread.{name}",
                     allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
                 )
-        if self.sipes is not None and self.depth > 0:
-            self.sipes.check_within(self.depth)
+        if self.sipes is not None and self.sipes.depth > self.depth * (1 + 1e-9) > 0:
+            raise InputError(
+                f"sipes of {self.sipes.depth * 1e3:g} mm are deeper than the tread",
+                where="sipes.depth",
+                allowed=f"at most {self.depth * 1e3:g} mm (tread.depth)",
+            )
 
     @property
     def smallest_lug(self) -> float:
@@ -194,7 +219,7 @@ class Tread:
 
     @property
     def land_ratio(self) -> float:
-        """Share of an endless tread that is lug, sipes left aside.
+        """Share of an endless tread that is lug, sipes and grooves left aside.
 
         w / (w + c) = s for bars and waves, s^2 for a grid and hexagons, the product of both
         directions for blocks, pi / (2 sqrt 3) s^2 for circles, less the hollow for rings, and with
@@ -248,9 +273,13 @@ class Tread:
         return None
 
     def moved(self, shift: tuple[float, float]) -> Self:
-        """Return the pattern shifted by (x, y), m."""
-        x, y = self.offset
-        return replace(self, offset=(x + shift[0], y + shift[1]))
+        """Return the pattern with its grooves shifted by (x, y), m."""
+
+        def new(place: tuple[float, float]) -> tuple[float, float]:
+            return place[0] + shift[0], place[1] + shift[1]
+
+        grooves = tuple(replace(each, place=new(each.place)) for each in self.grooves)
+        return replace(self, offset=new(self.offset), grooves=grooves)
 
     def slit_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the sipes, positive in one."""
@@ -262,6 +291,10 @@ class Tread:
 
         On a lug the value is minus the distance to its nearest edge.
         """
+        grooves = (each.channel_distance(x, y) for each in self.grooves)
+        return np.maximum.reduce([self._pattern_distance(x, y), *grooves])
+
+    def _pattern_distance(self, x: Array, y: Array) -> Array:
         lug, channel = self.lug_width, self.channel_width
         x, y = x - self.offset[0], y - self.offset[1]
         line = self.wall_line
@@ -274,8 +307,7 @@ class Tread:
         if self.letters is not None:
             return self.letters.channel_distance(x, y)
         if self.ring_width is not None:
-            wall = self.ring_width
-            return tread_pattern.ring_distance(x - lug / 2, y, lug, channel, wall)
+            return tread_pattern.ring_distance(x - lug / 2, y, lug, channel, self.ring_width)
         if self.front_lug_width is not None and self.graded_length is not None:
             both = (lug, self.front_lug_width)
             length = self.graded_length

@@ -146,10 +146,7 @@ def slip_risk(
 
 
 def needed_acof(
-    risk: float,
-    *,
-    rcof: RcofPopulation = ADULTS_LEVEL_WALKING,
-    model: SlipModel | None = None,
+    risk: float, *, rcof: RcofPopulation = ADULTS_LEVEL_WALKING, model: SlipModel | None = None
 ) -> float:
     """Return the ACOF at which a step of the population slips with probability ``risk``.
 

@@ -203,11 +203,7 @@ def profile_roughness(
 
 
 def _check(
-    profile: Profile,
-    long_cutoff: float,
-    short_cutoff: float | None,
-    sections: int,
-    standard: str,
+    profile: Profile, long_cutoff: float, short_cutoff: float | None, sections: int, standard: str
 ) -> None:
     if standard not in STANDARDS:
         raise InputError(f'"{standard}"', where="standard", allowed=", ".join(STANDARDS))

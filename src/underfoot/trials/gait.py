@@ -282,10 +282,7 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
 
 
 def _curves(
-    plate: Plate,
-    stance: Stance,
-    definition: RcofDefinition,
-    surface: tuple[np.ndarray, np.ndarray],
+    plate: Plate, stance: Stance, definition: RcofDefinition, surface: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return normal force, ratio and shear along the walk over the stance, (n,) each.
 

@@ -17,14 +17,7 @@ from .events import Stance
 from .likelihood import unlikely_flags
 from .measurement import Flag, remark
 from .plates import plate_contacts
-from .signals import (
-    CONTACT_FORCE,
-    LowPass,
-    longest_run,
-    low_passed,
-    low_passed_part,
-    runs,
-)
+from .signals import CONTACT_FORCE, LowPass, longest_run, low_passed, low_passed_part, runs
 from .slips import contact_from_heel, heel_motion, marker_jumps
 from .step_features import VERTICAL, step_features
 from .trial import MADE_UP, Plate

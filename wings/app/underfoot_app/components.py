@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+from functools import partial
 from html import escape
 from typing import Any
 
@@ -65,8 +66,15 @@ def scale(marks: Sequence[tuple[str, str, float]], interval: Sequence[float] | N
                 ui.label(f"{name}: {cof:.3f}")
 
 
-def table(shown: Mapping[str, Any]) -> ui.element:
-    """Return a table of text: ``title``, ``columns``, ``rows``; what of the sole its rows show."""
+def table(
+    shown: Mapping[str, Any],
+    action: tuple[str, Callable[[int], object]] | None = None,
+    rows: Sequence[int] = (),
+) -> ui.element:
+    """Return a table of text: ``title``, ``columns``, ``rows``; what of the sole its rows show.
+
+    ``action``: name of a button at the end of ``rows``, and what is called with a row's number.
+    """
     with ui.element("div").classes("wide") as made, ui.element("table"):
         if shown["title"]:
             with ui.element("caption"):
@@ -86,6 +94,10 @@ def table(shown: Mapping[str, Any]) -> ui.element:
                             ui.label(cell.strip())
                         if not number:
                             made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
+                        if action and place in rows and number == len(row) - 1:
+                            with made_cell:
+                                button = ui.button(action[0], on_click=partial(action[1], place))
+                                button.props("no-caps flat dense")
     return made
 
 

@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import count
-from math import log10
+from math import degrees, log10
 from typing import Any
 
 from nicegui import ui
@@ -26,6 +26,7 @@ CUSTOMARY = {
     "N": (4.4482216152605, "lbf"),
 }
 """Size and sign of the US unit that is shown in place of one of a case."""
+GROOVES = "shoe.tread.grooves"
 _numbers = count()
 
 
@@ -66,6 +67,16 @@ def changes(inputs: Sequence[Input], values: Mapping[str, Any]) -> dict[str, Any
     """Return values of sliders as changes of a case; unknown names are left out."""
     known = {each.path: each for each in inputs}
     return {path: known[path].written(float(v)) for path, v in values.items() if path in known}
+
+
+def grooves_of(case: Case) -> list[dict[str, str]]:
+    """Return the grooves of a case's tread as its file writes them, in mm and degrees."""
+    grooves = []
+    for each in case.value(GROOVES) or ():
+        values = {name: getattr(each, name) for name in ("along", "across", "width", "length")}
+        written = {name: f"{1e3 * v:.9g} mm" for name, v in values.items() if v is not None}
+        grooves.append({**written, "angle": f"{degrees(each.angle):.9g} deg"})
+    return grooves
 
 
 def sliders(

@@ -155,8 +155,13 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
         "extrapolated": slip is not None and bool(slip.note),
         "limit": str(friction_limit(result.scalars)) if result.usable else "",
     }
+    advised: list[int] = []
+    if "lug_way" in result.data:  # thinner parts than high bend over
+        advised = np.flatnonzero(
+            result.data["lug_way"].values > result.data["lug_height"].values
+        ).tolist()
     html = sole_html(result, surface_of_result(result))
-    return {**presented(result), **numbers, "html": html}
+    return {**presented(result), **numbers, "advised": advised, "html": html}
 
 
 def previewed(

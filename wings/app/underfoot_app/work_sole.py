@@ -8,18 +8,31 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.case import Case
+from underfoot.compute.result import Result
+from underfoot.compute.sole import new_sole, sole_shape
 from underfoot.core import InputError, Progress
 from underfoot.core.fields import labelled
 from underfoot.core.files import checksum
 from underfoot.report.outsole import OutsoleInspection
 from underfoot.report.surface_mesh import surface_mesh
+from underfoot.shoe import heel_map
 from underfoot.shoe.files import FileSettings, outsole_from_mesh, read_mesh
+from underfoot.shoe.geometry import CELLS_REFUSED
+from underfoot.shoe.lug_drainage import GROOVE
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
 
+from .inputs import GROOVES, grooves_of
 from .work import Drawn, presented, sole_html
 
 DRAWN_SPACING = 0.75e-3
 """m between the cells of a file's sole as it is drawn."""
+LAND_SPACING, LAND_EQUAL = 0.25e-3, 0.005
+"""m between the cells on which land is measured, and the difference of equal shares of land."""
+CHANNEL = "shoe.tread.channel_width"
+STEP, WIDEST, HALVINGS = 1.1, 60e-3, 10
+"""Ratio of the channel widths (m) tried one after the other until one lies beyond what is sought,
+the widest of them, and how often what lies between is halved."""
 
 
 def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
@@ -62,3 +75,120 @@ def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress
     whole = surface_mesh(surface.x, surface.y, surface.height, surface.land)
     html = sole_html(Drawn(inspection.file.name, fields), whole)
     return {**presented(inspection), "html": html, "sha256": before}
+
+
+def equal_land(
+    path: str, other: str, *, progress: Progress
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the changes of the case ``other`` that give it the share of land of ``path``.
+
+    That is another channel width, found by bisection from the present one; none where the shares
+    are within ``LAND_EQUAL``. Then both shares, and the widths before and after, in words. Land is
+    that of the new sole, over all of its plan form, sipes narrower than two cells left aside.
+
+    Raises:
+        InputError: A sole from a file or a tread without channel width; no width gives that share.
+    """
+    one, case = Case.load(path), Case.load(other)
+    for each in (one, case):
+        if each.shoe.outsole is not None:
+            raise InputError(
+                f"the sole of {each.name} comes from a file: its channels have no width to set",
+                where="shoe.outsole.file",
+                remedy="Compare at equal land two soles with a tread of the app's own, or change "
+                "the file in CAD and compute it again",
+            )
+    width = case.value(CHANNEL)
+    if width is None or case.value("shoe.tread.land") is not None:
+        raise InputError(
+            f"no channel width sets the share of land of {case.name}",
+            where="shoe.tread.pattern",
+            remedy="Choose a pattern of lugs and channels"
+            + (", or set shoe.tread.land" if width else ""),
+        )
+    sought, before = _land_share(one), _land_share(case)
+    words = {"before": _written(width), "land": _percent(sought), "had": _percent(before)}
+    if abs(before - sought) <= LAND_EQUAL:
+        return {}, words
+
+    def off(wide: float) -> float:
+        """Return by how much the share of land is too large with channels of a width (m)."""
+        progress("finding the channel width", 0.5)
+        return _land_share(case.replace(CHANNEL, _written(wide))) - sought
+
+    more = before > sought  # wider channels leave less land
+    near = far = width
+    least = 2 * max(case.numerics.grid_spacing, case.numerics.quick_grid_spacing)
+    while (off(far) > 0) == more:
+        near, last = far, far
+        far = float(np.clip(far * (STEP if more else 1 / STEP), least, WIDEST))
+        if far == last:
+            reached = _percent(sought + off(far))
+            raise InputError(
+                f"channels of {_written(far)} leave {case.name} {reached} of land, "
+                f"{one.name} has {_percent(sought)}",
+                where=CHANNEL,
+                allowed=f"{_written(least)} (two cells of the grid) to {_written(WIDEST)}",
+                remedy="Change shoe.tread.lug_width of one of them, then compare again",
+            )
+    for _ in range(HALVINGS):
+        middle = (near + far) / 2
+        near, far = (middle, far) if (off(middle) > 0) == more else (near, middle)
+    found = _written((near + far) / 2)
+    share = _land_share(case.replace(CHANNEL, found))
+    if abs(share - sought) > LAND_EQUAL:  # a row of lugs came onto the sole or left it
+        raise InputError(
+            f"no channel width near {found} gives {case.name} {_percent(sought)} of land, the "
+            f"nearest {_percent(share)}",
+            where=CHANNEL,
+            remedy="Change shoe.tread.lug_width a little, then compare again",
+        )
+    return {CHANNEL: found}, {**words, "after": found}
+
+
+WAYS = ((1, 0), (-1, 0), (0, 1), (0, -1))
+"""Directions (x, y) of the sides of a lug as ``lug_groove_side`` counts them."""
+
+
+def advised_groove(path: str, folder: str, lug: int, *, progress: Progress) -> dict[str, Any]:
+    """Return the change that cuts the groove that a case's result advises for a lug.
+
+    From half its width behind the peak of the fluid's pressure to one cell beyond the lug's wall,
+    as wide as those that were compared and two cells at least; on the sole as it lay at the case's
+    own place and angle.
+    """
+    case, data = Case.load(path), Result.load(folder).data
+    x, y, length, side = (
+        float(data[f"lug_{name}"].values[lug]) for name in ("x", "y", "groove", "groove_side")
+    )
+    cells = case.numerics.grid_spacing, case.numerics.quick_grid_spacing
+    width, step = max(GROOVE, CELLS_REFUSED * max(cells)), float(np.ptp(data["x"].values[:2]))
+    u, v = WAYS[int(side)]
+    shape, angle = sole_shape(case), case.motion.shoe_angle
+    line = np.linspace(0.0, shape.length, 4001)
+    height_there = shape.land_height(line, np.full_like(line, y))
+    rear = float(shape.land_height(np.zeros(1), np.zeros(1))[0]) * np.sin(angle)
+    on_floor = line * np.cos(angle) - height_there * np.sin(angle) + rear
+    ends = np.array([-width / 2, length + step])
+    along, across = np.interp(x + u * ends, on_floor, line), y + v * ends
+    new = {
+        "along": _written(along.mean()),
+        "across": _written(across.mean()),
+        "width": _written(width),
+        "length": _written(np.ptp(along) + np.ptp(across)),
+        "angle": "90 deg" if u else "0 deg",
+    }
+    return {GROOVES: [*grooves_of(case), new]}
+
+
+def _written(width: float) -> str:
+    return f"{1e3 * width:.4g} mm"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"
+
+
+def _land_share(case: Case) -> float:
+    """Return land / plan form of a case's new sole."""
+    return heel_map(new_sole(case), shoe_angle=0.0, spacing=LAND_SPACING).land_ratio

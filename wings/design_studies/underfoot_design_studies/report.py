@@ -22,7 +22,7 @@ from underfoot.report.dispatch import FigureMakers, figures, page_text, sections
 from underfoot.report.html import embedded, environment, new_figure, png
 from underfoot.report.page import Picture, Section, remark_sections, table_sections
 from underfoot.report.results import sole_fields
-from underfoot.report.viewer import viewer_script, viewer_section
+from underfoot.report.viewer import scene_section, viewer_scene, viewer_script
 from underfoot.report.writing import Written
 
 from . import Study, StudyResult
@@ -205,7 +205,7 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     if isinstance(result, ShownStudy):
         for number, fields in result.soles.items():
             sole: Any = SimpleNamespace(name=f"design {number}", data=fields)
-            soles[number] = viewer_section([sole])
+            soles[number] = scene_section(viewer_scene([sole]))
     return template("design_study.html").render(data=data.replace("<", "\\u003c"), soles=soles)
 
 

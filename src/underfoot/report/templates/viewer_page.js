@@ -152,6 +152,12 @@ async function startViewer(root) {
     redraw();
   }
 
+  // The instant that is shown, in words, where it is not the last one of a run.
+  function early(q) {
+    const past = scene.panes[0].histories[q.name];
+    return !scene.steps && past && state.frame >= 0 && state.frame < past.frames.length - 1 ? past.labels[state.frame] : "";
+  }
+
   function legend(q) {
     const table = colours[q.colours], stops = [];
     for (let k = 0; k <= 255; k += 15) stops.push(`rgb(${table[3 * k]},${table[3 * k + 1]},${table[3 * k + 2]})`);
@@ -165,7 +171,7 @@ async function startViewer(root) {
     const none = drawings.some(({ values, pane }) => values.some((v, k) => Number.isNaN(v) && !Number.isNaN(pane.height[k])));
     const unit = q.unit ? ` ${q.unit}` : "", letter = (k) => (q.loads.length > 1 ? `${LETTERS[k]} ` : "");
     find("bar-note").textContent = [
-      q.meaning && `${q.meaning[0].toUpperCase()}${q.meaning.slice(1)}, ${q.loads.map((load, k) => letter(k) + load).join(", ")} in all.`,
+      q.meaning && !early(q) && `${q.meaning[0].toUpperCase()}${q.meaning.slice(1)}, ${q.loads.map((load, k) => letter(k) + load).join(", ")} in all.`,
       none && (state.difference ? "Plain rubber: none in either." : "Plain rubber: none."),
       scene.panes.some((pane) => pane.computed) && "Faint: outside the part that was computed.",
       q.cut && `A few cells are above the scale, up to ${shortNumber(q.peak)}${unit}.`,
@@ -212,7 +218,8 @@ async function startViewer(root) {
         return p + f > 0 ? `${shortNumber(100 * f / (p + f))} %` : "no load";
       })]));
     }
-    find("values-place").textContent = `At x ${x.toFixed(1)} mm, y ${y.toFixed(1)} mm`;
+    const then = early(state.quantity), also = then && `; ${state.quantity.title} after ${then}, the rest at the end`;
+    find("values-place").textContent = `At x ${x.toFixed(1)} mm, y ${y.toFixed(1)} mm${also}`;
     find("values-table").replaceChildren(...rows);
   }
 
@@ -273,7 +280,7 @@ async function startViewer(root) {
   document.addEventListener("click", (e) => { const row = rowOf(e); if (row) chooseLug(Number(row.dataset.lug)); });
   document.addEventListener("keydown", (e) => {
     const row = rowOf(e);
-    if (row && (e.key === "Enter" || e.key === " ")) { e.preventDefault(); chooseLug(Number(row.dataset.lug)); }
+    if (row === e.target && (e.key === "Enter" || e.key === " ")) { e.preventDefault(); chooseLug(Number(row.dataset.lug)); }
   });
 
   // What is drawn over a sole: the lug that is chosen with its best groove, places kept, the section.
@@ -603,6 +610,8 @@ async function startViewer(root) {
       const chosen = scene.quantities.indexOf(state.quantity);
       scene.panes.forEach((pane, k) => {
         Object.assign(pane, fresh.panes[k]);
+        const name = stages[k].querySelector(".pane-name");
+        if (name) name.lastChild.textContent = ` ${pane.name}`;
         drawings[k].shape();
       });
       scene.quantities = fresh.quantities;

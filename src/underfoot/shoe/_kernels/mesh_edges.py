@@ -53,10 +53,7 @@ def soup_keys(
         if not np.isfinite(size):
             counts[1] += 1
             continue
-        longest = max(
-            ux * ux + uy * uy + uz * uz,
-            vx * vx + vy * vy + vz * vz,
-        )
+        longest = max(ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz)
         if size <= 1e-14 * longest * longest:
             counts[0] += 1
             continue

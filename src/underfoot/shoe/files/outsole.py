@@ -133,11 +133,7 @@ def _outsole(
     size = high - low
     stated = None if chosen.unit != "auto" else mesh.unit
     unit, _ = length_unit(
-        float(max(size[:2])),
-        float(min(size[:2])),
-        chosen=chosen.unit,
-        in_file=stated,
-        where=where,
+        float(max(size[:2])), float(min(size[:2])), chosen=chosen.unit, in_file=stated, where=where
     )
     axes, side_remarks = _sides(mesh, axes, unit, chosen, down)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)

@@ -99,10 +99,7 @@ class Soundness:
         """Return the tolerated defects, a sentence each."""
         inward = int(self.closed and not self.turned_edges and self.volume < 0)
         counted = (
-            (
-                self.open_edges,
-                "{} open edges were tolerated: the height map needs no closed body.",
-            ),
+            (self.open_edges, "{} open edges were tolerated: the height map needs no closed body."),
             (inward, "The normals point inward; tolerated, heights do not depend on them."),
             (
                 self.turned_edges,

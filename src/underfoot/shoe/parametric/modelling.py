@@ -1,7 +1,7 @@
 """Outlines, wires, faces and prisms of the modelling kernel from arrays in m; it counts in mm."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from underfoot.core.optional import optional_module
 
 from .._kernels.tread_pattern import graded_diameter
 from ..shape import SoleShape
-from ..tread import LATTICES, Tread
+from ..tread import LATTICES, Groove, Tread
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +50,24 @@ def slit_outlines(
     shape: SoleShape, width: float, spacing: float, angle: float, first: float
 ) -> list[Outline]:
     """Return rectangles of ``width`` (m) every ``spacing`` across the whole sole."""
-    reach = math.hypot(shape.length, shape.width)
-    cosine, sine = math.cos(angle), math.sin(angle)
-    back = np.array([[cosine, -sine], [sine, cosine]])
-    centre = np.array([shape.length / 2, 0.0]) @ back
-    begin = math.floor((centre[0] - reach / 2 - first) / spacing)
-    end = math.ceil((centre[0] + reach / 2 - first) / spacing)
+    reach, cosine, sine = math.hypot(shape.length, shape.width), math.cos(angle), math.sin(angle)
+    centre = shape.length / 2 * cosine
+    begin = math.floor((centre - reach / 2 - first) / spacing)
+    end = math.ceil((centre + reach / 2 - first) / spacing)
+    middles = [first + k * spacing for k in range(begin, end + 1)]
+    slits = [Groove((at * cosine, at * sine), width, angle=angle) for at in middles]
+    return groove_outlines(shape, slits)
+
+
+def groove_outlines(shape: SoleShape, grooves: Sequence[Groove]) -> list[Outline]:
+    """Return the rectangles of grooves; what goes right across ends beyond the sole."""
     outlines = []
-    for k in range(begin, end + 1):
-        middle = first + k * spacing
-        low, high = middle - width / 2, middle + width / 2
-        side = reach / 2 + abs(centre[1])
-        outlines.append(Outline(_rectangle(low, -side, high, side) @ back.T))
+    for each in grooves:
+        cosine, sine = math.cos(each.angle), math.sin(each.angle)
+        half = min(each.length, 4 * (shape.length + shape.width)) / 2
+        corners = _rectangle(-each.width / 2, -half, each.width / 2, half)
+        turned = corners @ np.array([[cosine, sine], [-sine, cosine]])
+        outlines.append(Outline(turned + each.place))
     return outlines
 
 

@@ -181,8 +181,6 @@ class WholeSole(SoleShape):
                 where="heel.edge_radius",
                 allowed=f"at most {limit * 1e3:g} mm (half of the waist)",
             )
-        if self.crown_radius is not None:
-            positive(self.crown_radius, "heel.crown_radius")
         check_depths(self)
 
     @property

@@ -18,6 +18,7 @@ from .modelling import (
     MM,
     Outline,
     arc_edge,
+    groove_outlines,
     hollow_outlines,
     kernel,
     lug_outlines,
@@ -74,6 +75,9 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
         hollows = hollow_outlines(lugs, tread)
         if hollows:
             body = body - _prisms(hollows) * _layer(lower, tread.depth)
+        if tread.grooves:
+            cuts = groove_outlines(shape, tread.grooves)
+            body = body - _prisms(cuts) * _layer(lower, tread.depth)
         edge = tread.edge_radius or tread.edge_chamfer
         if edge > 0:
             edges = [(i, edge) for i, edge in enumerate(body.edges) if _on_lug(edge, shape)]
@@ -85,7 +89,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
-                    "they meet the rim or the end of the bevel"
+                    "they meet the rim, a groove or the end of the bevel"
                 )
         if tread.sipes is not None:
             sipes = tread.sipes
@@ -107,6 +111,7 @@ def check_printable(shape: SoleShape) -> None:
     if tread is not None and tread.depth > 0:
         fine += [("tread.lug_width", "lug", tread.smallest_lug)]
         fine += [("tread.channel_width", "channel", tread.channel_width)]
+        fine += [("tread.grooves", "groove", each.width) for each in tread.grooves]
         if tread.sipes is not None:
             fine += [("sipes.width", "sipe", tread.sipes.width)]
             left = tread.sipes.spacing - tread.sipes.width
@@ -210,7 +215,7 @@ def _on_lug(edge: Any, shape: SoleShape) -> bool:
 
 
 def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
-    """Return the lugs that keep clear of the rounded rim and of kinks of the profile.
+    """Return the lugs that keep clear of rounded rim, grooves and kinks of the profile.
 
     The kernel cannot roll a fillet over those.
     """
@@ -222,6 +227,9 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
         low, high = lug.points.min(axis=0) - lug.radius, lug.points.max(axis=0) + lug.radius
         around = np.array([[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], high])
         if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
+            continue
+        (x, y), reach = (low + high) / 2, math.hypot(*(high - low)) / 2 + clear
+        if any(each.channel_distance(x, y) > -reach for each in shape.tread.grooves):
             continue
         if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
             continue

@@ -53,11 +53,7 @@ def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[G
 
 
 def step_history(
-    recording: Trial | Walkway,
-    step: RequiredFriction,
-    *,
-    mass: float | None = None,
-    name: str = "",
+    recording: Trial | Walkway, step: RequiredFriction, *, mass: float | None = None, name: str = ""
 ) -> GaitHistory:
     """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
 

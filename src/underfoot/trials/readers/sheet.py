@@ -216,9 +216,7 @@ def workbook_rows(data: bytes, where: str, sheet: str | None = None) -> list[lis
         raise
     except Exception as error:  # both packages raise whatever their parsers meet
         raise DataError(
-            "the workbook is damaged",
-            where=where,
-            remedy="Save it again, or export it as CSV",
+            "the workbook is damaged", where=where, remedy="Save it again, or export it as CSV"
         ) from error
     while rows and not any(rows[-1]):
         rows.pop()

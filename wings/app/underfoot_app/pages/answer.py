@@ -35,6 +35,7 @@ LIVE = (
 )
 """Values that a preview follows while they move; of another tread the full run answers."""
 RUN, ADVICE = "underfoot_app.work:computed", "underfoot_app.work:advised"
+GROOVE = "underfoot_app.work_sole:advised_groove"
 TRIED = ".tried"
 """Folder of results that holds full runs behind previews until they are kept as a variant."""
 
@@ -163,7 +164,7 @@ class _Answer:
         self.view.show(answer["html"])
         self._headline(answer)
         with self.tables:
-            self._tables(answer)
+            self._tables(answer, current)
         if current:  # the march from which previews go on
             path = str(self.session.project.path(self.name))
             await self.session.ask("underfoot_app.work:previewed", path, str(self.folder), {})
@@ -223,15 +224,23 @@ class _Answer:
                 pair = address("/compare", variants=f"{known}|{self.name}")
                 ui.link(self.text("answer.how_sure"), pair)
 
-    def _tables(self, answer: dict[str, Any]) -> None:
+    def _tables(self, answer: dict[str, Any], current: bool) -> None:
         sentences(answer["headline"])
+        cut = (self.text("answer.cut"), self._cut) if current and self.case.shoe.tread else None
         for shown in answer["tables"]:
-            table(shown)
+            table(shown, cut, answer["advised"] if shown["shows"] == "lug" else ())
         for heading, lines in answer["remarks"].items():
             with ui.expansion(heading).classes("plain"):
                 sentences(lines, "soft")
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")
+
+    async def _cut(self, lug: int) -> None:
+        """Cut the groove that is advised for a lug into the file, and compute anew."""
+        path = str(self.session.project.path(self.name))
+        changes = await self.session.ask(GROOVE, path, str(self.folder), lug)
+        self.session.project.change(self.name, changes)
+        self.run()
 
     def _risk(self, answer: Mapping[str, Any]) -> str:
         """Return how often a person slips, as people say it, with how unsure that is."""

@@ -8,11 +8,15 @@ from typing import Any
 
 from nicegui import ui
 
-from ..components import SoleView, sentences, table, title
+from underfoot.core import InputError
+
+from ..components import SoleView, sentences, table, task_line, title
+from ..jobs import DONE, Task
 from ..session import Session
+from .answer import begin_run
 
 ROUTE = "/compare"
-WORK = "underfoot_app.work_studies"
+WORK, EQUAL = "underfoot_app.work_studies", "underfoot_app.work_sole:equal_land"
 MOST = 12
 COLUMNS = ("letter", "name", "cof", "slip_probability", "fluid_load", "peak_fluid_pressure",
            "contact_area")  # fmt: skip
@@ -41,10 +45,12 @@ class _Compare:
             for key, icon, action in (
                 ("csv", "table_view", self._csv),
                 ("glb", "view_in_ar", self._glb),
+                ("equal", "balance", self._equal_land),
                 ("pdf", "print", lambda: ui.run_javascript("window.print()")),
             ):
                 button = ui.button(self.text(f"compare.{key}"), icon=icon, on_click=action)
                 button.props("flat no-caps dense")
+        self.equal = ui.element("div").props('role="status"')
         self.summary = ui.element("div").props('role="status"')
         self.sole = SoleView(session)
         self.rest = ui.element("div")
@@ -79,6 +85,49 @@ class _Compare:
             table({"title": self.text("compare.chances"), "columns": ["", *letters], "rows": rows})
             for each in comparison["tables"][-1:]:
                 table(each)
+
+    async def _equal_land(self) -> None:
+        """Make a variant of the second with the land of the first, compute and compare it."""
+        project, chosen = self.session.project, list(self.choice.value)
+        if len(chosen) != 2:
+            remedy = self.text("compare.equal_two")
+            raise InputError(self.text("compare.equal_which"), where="compare", remedy=remedy)
+        first, second = chosen
+        for name in chosen:
+            if not project.is_current(name):
+                remedy = self.text("compare.equal_anew", name=name)
+                raise InputError(
+                    self.text("compare.changed", name=name), where="compare", remedy=remedy
+                )
+        files = (str(project.path(name)) for name in chosen)
+        changes, words = await self.session.ask(EQUAL, *files)
+        self.equal.clear()
+        if not changes:
+            with self.equal:
+                ui.label(self.text("compare.equal_already", a=first, b=second, **words))
+            return
+        new = project.copy(second, self.text("compare.equal_name", a=first, b=second))
+        project.change(new, changes)  # a state of its own: undone, it is the second again
+
+        def show(names: list[str]) -> None:
+            self.choice.set_options([r.name for r in project.results()], value=names)
+
+        def undo() -> None:
+            self.session.jobs.cancel(task)
+            project.remove(new)
+            self.equal.clear()
+            show(chosen)
+
+        async def ended(done: Task) -> None:
+            if done.state == DONE and new in project.variants():
+                show([first, new])
+
+        with self.equal:
+            ui.label(self.text("compare.equal_made", a=first, b=second, name=new, **words))
+            button = ui.button(self.text("variant.undo"), icon="undo", on_click=undo)
+            button.props("flat no-caps dense data-step=undo")
+            task = begin_run(self.session, new)
+            task_line(self.session, task, ended)
 
     def _sortable(self) -> None:
         columns = [

@@ -14,7 +14,7 @@ from underfoot.case.sole import TreadPattern, usual_tread
 from underfoot.core.errors import UnderfootError
 
 from ..components import SoleView, title
-from ..inputs import Input, number_field, sliders
+from ..inputs import GROOVES, Input, grooves_of, number_field, sliders
 from ..session import Session
 from ..text import as_json
 from ..variant_bar import new_variant, no_variant, variant_bar
@@ -168,6 +168,11 @@ class _Design:
         if case.value("shoe.tread.depth") and case.value("shoe.tread.sipes.width") is None:
             sipes = ui.button(self.text("sole.sipes"), on_click=lambda: self.change(_sipes(case)))
             sipes.props("no-caps flat dense")
+        if grooves := grooves_of(case):
+            fewer = {GROOVES: grooves[:-1] or None}
+            label = self.text("sole.grooves", count=len(grooves))
+            last = ui.button(label, on_click=lambda: self.change(fewer))
+            last.props("no-caps flat dense")
         sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
