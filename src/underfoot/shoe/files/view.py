@@ -53,7 +53,8 @@ def view(triangles: NDArray[np.float32], axes: Array, spacing: float) -> View:
     """
     axes = np.ascontiguousarray(axes, dtype=np.float64)
     low, high = extents(triangles, axes)
-    shape = tuple(max(1, math.ceil(float(high[n] - low[n]) / spacing)) for n in range(2))
+    # a file's rounding must not add a cell, which would move all others by half of one
+    shape = tuple(max(1, math.ceil(float(high[n] - low[n]) / spacing - 0.02)) for n in range(2))
     if shape[0] * shape[1] > _MOST_CELLS:
         raise InputError(
             f"{shape[0]} x {shape[1]} cells of {spacing * 1e3:g} mm are too many",
