@@ -178,12 +178,13 @@ def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
         for width, height in ((390, 844), (1366, 768), (3840, 2160)):
             page.set_viewport_size({"width": width, "height": height})
             page.wait_for_timeout(300)
-            verdict, sole, table = (
-                page.evaluate(places, each) for each in (".verdict", "canvas", ".whole")
+            verdict, sole, table, head = (
+                page.evaluate(places, each) for each in (".verdict", "canvas", ".whole", ".brand")
             )
             assert verdict["bottom"] < height
             assert sole["bottom"] < height
             assert verdict["left"] == pytest.approx(table["left"], abs=1)
+            assert verdict["left"] == pytest.approx(head["left"], abs=1)
             page.evaluate("scrollTo(0, 0)")
         assert sole["right"] - verdict["left"] > 0.7 * 3840
         report = next((app.folder / "results").glob("*/report.html"))

@@ -123,6 +123,7 @@ def test_a_refused_preview_leaves_no_number_and_the_full_run_answers(app):
         assert page.locator(".sole-view.unanswered").count() == 1
         page.get_by_text("Full run: COF").wait_for()
         page.wait_for_selector(".sole-view:not(.unanswered)")
+        page.get_by_text("No preview of this setting").wait_for(state="hidden")
         page.get_by_role("button", name="Keep it as a variant").click()
         page.wait_for_url(re.compile(r"variant=heel.2$"))
         page.wait_for_selector(".big")

@@ -1,11 +1,15 @@
 """A solved case answers changes of it: against the march of the changed case, with its error."""
 
+import numpy as np
 import pytest
+from scipy.interpolate import griddata
 
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, preview
 from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
+from underfoot.report.results import designed_surface
 from underfoot_app.run_preview import of_run, preview_of_run
+from underfoot_app.work import rolled_surface
 
 CASE = Case.load("examples/work_shoe_full_tread_glycerol.toml")
 
@@ -110,3 +114,17 @@ def test_the_shoe_angle_and_the_speed_of_a_flat_sole_are_refused():
     whole = {name: SourcedValue(value) for name, value in solved.values.items()}
     with pytest.raises(InputError, match="without lugs"):
         preview_of_run(case, {"motion.normal_force": "480 N"}, whole)
+
+
+def test_the_drawn_sole_of_a_preview_is_rolled_as_one_that_is_made_at_its_angle():
+    made, kept = (
+        designed_surface(CASE.replace("motion.shoe_angle", f"{angle} deg")) for angle in (8, 10)
+    )
+    rolled, lugs = rolled_surface(kept, np.radians(-2.0), None), made.points[made.land]
+    x, y, _ = rolled.points[rolled.land].T
+    x = x + lugs[lugs[:, 2].argmin(), 0] - rolled.points[rolled.points[:, 2].argmin(), 0]
+    there = griddata(lugs[:, :2], lugs[:, 2], (x, y))
+    off, before = (
+        np.nanmedian(np.abs(each.points[each.land, 2] - there)) for each in (rolled, kept)
+    )
+    assert off < 0.1e-3 < 0.2 * before  # m, at places found to a tenth of a millimetre

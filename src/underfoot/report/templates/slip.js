@@ -39,7 +39,7 @@
     shoe(at + d.distance[i] * mm, floor, d.angle[i]);
     const heel = at + d.distance[i] * mm;
     arrow(heel + 0.10 * mm, 22, d.speed[i] * 60, ink("--accent"));
-    text(`${d.speed[i].toFixed(2)} m/s`, heel + 0.10 * mm - 6, 27, ink("--ink"), "right");
+    text(`${d.speed[i].toFixed(2)} m/s`, W - 30, 27, ink("--accent"), "right"); // clear of the shoe
     text(`${(1000 * d.distance[i]).toFixed(0)} mm`, heel, floor + 20, ink("--soft"), "left", 12);
     if (d.wet) text("sensors", at + d.sensors[d.sensors.length - 1] * mm + 10, floor + 20, ink("--accent"), "left", 11);
   }

@@ -323,6 +323,8 @@ class _Answer:
             self.view.show(answer["html"])
             self.behind.clear()
             with self.behind:
+                if not self.preview_cof:  # what waited for this run waits no more
+                    ui.run_javascript('showTexts({preview: "", preview_note: ""})')
                 cof, before = f"{done.answer:.3f}", f"{self.preview_cof:.3f}"
                 message = self.text("answer.full_run", cof=cof)
                 if self.preview_cof:
