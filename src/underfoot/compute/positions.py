@@ -264,9 +264,7 @@ def tread_positions(
         angles = TURNED
     else:
         all_places, angles = shoe_angles(), ()
-        spacing = case.numerics.quick_grid_spacing
-    if not lugs and not quick:
-        known = {}
+        spacing, known = case.numerics.quick_grid_spacing, known if quick else {}
     others = [place for place in (*all_places, *angles) if place not in known]
     solved = dict(at_places(others, spacing))
     everywhere = dict(known) | {place: n for k, place in enumerate(others) if (n := solved[k])}
@@ -317,15 +315,12 @@ def treaded(case: Case) -> bool:
 
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
-    count = position_count(case, quick=quick)
-    if count == 1:
-        return 1.0
-    if treaded(case):  # a history of the motion is marched at both angles
-        return 1 / (count + len(TURNED) * (case.motion.build() is not None))
-    if quick:
-        return 1 / count
-    numerics = case.numerics
-    return 1 / (1 + count * (numerics.grid_spacing / numerics.quick_grid_spacing) ** 2)
+    marches = float(position_count(case, quick=quick))
+    if marches > 1 and treaded(case):  # a history of the motion is marched at both angles
+        marches += len(TURNED) * (case.motion.build() is not None)
+    elif marches > 1 and not quick:
+        marches = 1 + marches * (case.numerics.grid_spacing / case.numerics.quick_grid_spacing) ** 2
+    return 1 / marches
 
 
 def run_cost(case: Case, *, quick: bool) -> Cost:

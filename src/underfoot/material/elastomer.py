@@ -117,11 +117,6 @@ class Elastomer:
         return RelaxationSpectrum(self.modulus, source=self.source, assumed=self.assumed)
 
     @property
-    def viscoelastic(self) -> bool:
-        """True when the modulus depends on time."""
-        return bool(self.spectrum.term_moduli.sum() > 0.0)
-
-    @property
     def equilibrium_modulus(self) -> float:
         """Young's modulus after infinite time, Pa."""
         return self.spectrum.equilibrium_modulus

@@ -35,11 +35,6 @@ class FlowFactors:
         """Return the mean of both directions, the factor of an isotropic film equation."""
         return 0.5 * (self.along + self.across)
 
-    @property
-    def seals(self) -> bool:
-        """True when fluid can't cross the cell in either direction: no open path is left."""
-        return self.along == 0.0 and self.across == 0.0
-
 
 def flow_factors(
     gap: ArrayLike, spacing: float | tuple[float, float] = 1.0, *, closed: float = 0.0
