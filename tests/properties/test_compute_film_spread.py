@@ -119,8 +119,11 @@ def test_the_load_on_the_film_never_leaves_the_load():
     assert (low, high) == pytest.approx([500 * each for each in turned], rel=0.01)
     low, high = ends(with_film_spread(values, 20 * draws)["fluid_load"])
     assert 0 < low < high <= 500
-    places = {"fluid_load": np.array([200.0, 400.0])}
-    low, high = ends(with_film_spread(values, np.zeros(500), places)["fluid_load"])
+
+    def drawn(_: str, count: int) -> np.ndarray:
+        return np.resize([200.0, 400.0], count)
+
+    low, high = ends(with_film_spread(values, np.zeros(500), drawn)["fluid_load"])
     assert (low, high) == pytest.approx((200, 400))
 
 
