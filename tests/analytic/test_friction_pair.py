@@ -383,7 +383,7 @@ def test_packaged_draws_lie_on_the_safe_side_of_the_fit_to_every_reading():
 
     In 90 % glycerol they lie above, by a fifth: the readings that came later are lower there.
     """
-    posterior = fitted(law_named("pair"), readings(), steps=1000, seed=5)
+    posterior = fitted(law_named("pair"), readings(), steps=1500, seed=5)
     assert posterior.effective > 500
     again = posterior.draws(1000, seed=1)
     assert isinstance(again, PairDraws)
