@@ -30,7 +30,7 @@ QUICK = {name: 0.08 if name == "cof" else 0.05 for name in GRID_NAMES}
 RATES = {1: 1.0, 2: 0.75}
 """Rate of the rule of positions by the number of periods of the tread: of what jumps with the
 place, as lugs that come to float, an even rule along one period has the error s_p / n, a lattice in
-two n^(-3/4) (docs/guide/performance.md has both measured)."""
+two n^(-3/4) (docs/physics/coupled_contact.md has both measured)."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
