@@ -17,6 +17,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot_design_studies import plan as plan_module
 from underfoot_design_studies import proposals, records, study
+from underfoot_design_studies.claims import Round, begin_round, latest_round
 from underfoot_design_studies.record import Ending, Record
 from underfoot_design_studies.store import Store
 from underfoot_design_studies.study import Study
@@ -240,6 +241,42 @@ def test_an_optimisation_with_a_larger_budget_goes_on_from_what_is_finished(made
     shorter = Study(made_up, tmp_path)
     shorter.run(workers=1)
     assert len(answers(tmp_path)) == 12  # anything else is another study
+
+
+def test_a_process_that_begins_as_another_takes_the_lead_computes_none_of_its_cases(
+    made_up, tmp_path, monkeypatch
+):
+    for at in range(40, 200):  # killed with the first cases open
+        folder = tmp_path / str(at)
+        calls(made_up, folder, True, at)
+        helper = Store.made(folder)
+        if helper.round is not None:
+            break
+    taken, real = [], Round.other
+
+    def other(self, alive):
+        alone = real(self, alive)
+        taken.extend(helper.take(in_order=False) or [])  # between the look and the next round
+        return alone
+
+    monkeypatch.setattr(Round, "other", other)
+    Study(made_up, folder).run(workers=1)
+    assert len(answers(folder)) == 12
+    assert not taken
+
+
+def test_a_block_that_is_finished_as_a_leader_looks_counts_as_finished(tmp_path):
+    leader = begin_round(tmp_path, np.arange(2), 2, "leader")
+    helper = latest_round(tmp_path, "helper", None)
+    block, _, _ = helper.claim(lambda *_: True, in_order=True)
+
+    def alive(owner, path):
+        helper.finish(block)
+        return True
+
+    assert not leader.over(alive)
+    helper.claim(alive, in_order=True)
+    assert (leader.folder / f"{block}.done").exists()
 
 
 @pytest.mark.slow

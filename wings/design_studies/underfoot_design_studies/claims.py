@@ -58,6 +58,7 @@ class Round:
         self._edges = block_edges(len(self.places))
         self._done: set[int] = set()
         self._free: list[int] = []
+        self._unsaid: set[int] = set()
 
     @property
     def share(self) -> float:
@@ -75,6 +76,8 @@ class Round:
 
         ``in_order`` takes the first open one; many processes begin at places of their own instead.
         """
+        for block in list(self._unsaid):
+            self.finish(block)
         block = self._free_block(in_order)
         if block is not None:
             return block, self._jobs(block), []
@@ -131,9 +134,27 @@ class Round:
 
     def finish(self, block: int) -> None:
         """Say that every job of a block has a record."""
-        with suppress(FileNotFoundError):  # the round is over: a leader began another
+        try:
             os.close(os.open(self.folder / f"{block}{DONE}", os.O_WRONLY | os.O_CREAT, 0o644))
-            self._done.add(block)
+        except FileNotFoundError:  # the round is over, or a leader looks whether it is
+            self._unsaid.add(block)
+            return
+        self._unsaid.discard(block)
+        self._done.add(block)
+
+    def over(self, alive: Alive) -> bool:
+        """Return whether no other living process computes a block of it; then it is gone.
+
+        It is set aside while it is looked at, so that nobody claims a block that was free.
+        """
+        place, aside = self.folder, self.folder.with_name(f".{self.number}-{uuid4().hex}")
+        os.rename(place, aside)
+        self.folder = aside
+        if not self.other(alive):
+            return True
+        os.rename(aside, place)
+        self.folder = place
+        return False
 
     def other(self, alive: Alive) -> str:
         """Return another living process that computes a block of it; "" without."""

@@ -396,8 +396,9 @@ class Store:
 
     def take(self, *, in_order: bool) -> list[Job] | None:
         """Return jobs that this process is to compute now, [] where they are; None without any."""
-        latest = self.round
-        claimed = latest and latest.claim(self._alive, in_order=in_order)
+        latest, claimed = self.round, None
+        with suppress(FileNotFoundError):  # the round ended, or a leader looks whether it did
+            claimed = latest and latest.claim(self._alive, in_order=in_order)
         if latest is None or claimed is None:
             return None
         number, places, owners = claimed
@@ -417,6 +418,14 @@ class Store:
     def holds(self) -> bool:
         """Whether jobs that this process took have no record yet."""
         return bool(self._held)
+
+    def end_round(self) -> bool:
+        """Return whether no other living process computes cases of the round; then it is over.
+
+        Only the leading process does.
+        """
+        latest = self.round
+        return latest is None or latest.over(self._alive)
 
     @property
     def other(self) -> str:

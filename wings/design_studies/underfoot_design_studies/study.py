@@ -159,7 +159,7 @@ class Study:
 
     def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[Job | None]:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
-        if leads and not self.store.other:
+        if leads and self.store.end_round():
             self._begin_next()
         pause, waited, looked = PAUSE, 0.0, -math.inf
         while not self.store.stopped:
