@@ -27,7 +27,7 @@ FINE = {"numerics.grid_spacing": "0.25 mm", "numerics.tread_positions": 8}
 FINE_WITHOUT_LUGS = {"numerics.grid_spacing": "0.45 mm", "numerics.cells_along": 16}
 COF_WITHIN, LOAD_WITHIN, LOAD_LEAST = 0.02, 0.05, 2.0  # relative, relative, N
 FILES = ("heel_blocks", "heel_hexagons", "heel_chevrons")
-DRAWN, SEED = 10, 23
+DRAWN, SEED = 20, 2026
 
 
 class Numbers(NamedTuple):

@@ -12,8 +12,7 @@ from underfoot.rough_contact.greenwood_williamson_1966 import greenwood_williams
 from underfoot.rough_contact.persson import (
     GAP_GAMMA,
     persson,
-    persson_contact_fractions,
-    persson_cumulative_friction,
+    persson_growth,
     yang_persson_decay_length,
     yang_persson_mean_gap,
 )
@@ -23,7 +22,11 @@ HURST = 0.8
 
 
 def persson_friction(*args, **options):
-    return persson_cumulative_friction(*args, **options)[:, -1]
+    return persson_growth(*args, **options)[1][:, -1]
+
+
+def persson_fractions(*args):
+    return persson_growth(*args)[0][0]
 
 
 def spectrum(rms=5e-6, first=2e4, last=2e6, count=400):
@@ -53,7 +56,7 @@ def test_persson_elastic_area_is_the_error_function():
     q, c = spectrum()
     gradient = rms_gradient(q, c)
     for pressure in (1e3, 1e5, 3e6):
-        fractions = persson_contact_fractions(pressure, q, c, 2e6)
+        fractions = persson_fractions(pressure, q, c, 2e6)
         stiffness = 2e6 / 0.75
         assert fractions[-1] == pytest.approx(
             erf(np.sqrt(2) * pressure / (stiffness * gradient)), rel=1e-9
@@ -66,16 +69,16 @@ def test_persson_light_load_slope():
     q, c = spectrum()
     gradient = rms_gradient(q, c)
     pressure = 1e-4 * 2e6 / 0.75 * gradient
-    kappa = persson_contact_fractions(pressure, q, c, 2e6)[-1] / 1e-4
+    kappa = persson_fractions(pressure, q, c, 2e6)[-1] / 1e-4
     assert kappa == pytest.approx(np.sqrt(8 / np.pi), rel=1e-6)
 
 
 def test_sliding_area_lies_between_the_relaxed_and_the_glassy_one():
     q, c = spectrum()
-    at = {v: persson_contact_fractions(2e5, q, c, rubber, v)[-1] for v in (0.0, 0.01, 1.0, 1e9)}
+    at = {v: persson_fractions(2e5, q, c, rubber, v)[-1] for v in (0.0, 0.01, 1.0, 1e9)}
     assert at[0.0] > at[0.01] > at[1.0] > at[1e9]
     stiff = float(rubber(np.array([1e20]))[0].real)
-    assert at[1e9] == pytest.approx(persson_contact_fractions(2e5, q, c, stiff)[-1], rel=1e-2)
+    assert at[1e9] == pytest.approx(persson_fractions(2e5, q, c, stiff)[-1], rel=1e-2)
 
 
 def test_persson_friction_in_full_contact_is_the_sum_over_waves():
@@ -116,7 +119,7 @@ def test_friction_is_odd_in_speed_and_zero_without_loss():
     np.testing.assert_allclose(persson_friction([1e5, 1e6], q, c, rubber, -0.5), -forth)
     assert np.all(persson_friction([1e5], q, c, 2e6, 0.5) == 0.0)
     assert np.all(persson_friction([1e5], q, c, rubber, 0.0) == 0.0)
-    growing = persson_cumulative_friction(1e5, q, c, rubber, 0.5)[0]
+    growing = persson_growth(1e5, q, c, rubber, 0.5)[1][0]
     assert np.all(np.diff(growing) >= 0)
     bare = persson_friction([1e5, 1e6], q, c, rubber, 0.5, gamma=1.0)
     assert np.all(bare > forth)

@@ -13,24 +13,22 @@ from underfoot.friction.propagation import normal_draws
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
-from .numbers import GRID_NAMES, readings
-from .positions import Place, ShoeAngles, TreadPositions, pattern_periods
+from .numbers import readings
+from .positions import RATES, Place, ShoeAngles, TreadPositions, pattern_periods
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along
 from .solve import Solution, solved_at
 
-LUGS = {"cof": (0.01, 0.02), "fluid_load": (0.1, 0.15)}
-"""Relative standard deviation under lugs, of the grid of a run and of the quick one: cells of 0.6
-and 1 mm against 0.3 mm, three treads in glycerol (docs/guide/performance.md)."""
-LUGS_PEAK = 0.3
-"""The same of peaks and of what a sensor reads."""
-QUICK = {name: 0.08 if name == "cof" else 0.05 for name in GRID_NAMES}
-"""The same of the quick grid without a tread, against finer ones."""
-RATES = {1: 1.0, 2: 0.75}
-"""Rate of the rule of positions by the number of periods of the tread: of what jumps with the
-place, as lugs that come to float, an even rule along one period has the error s_p / n, a lattice in
-two n^(-3/4) (docs/physics/coupled_contact.md has both measured)."""
+BETWEEN_GRIDS = {
+    True: {"fluid_load": (0.05, 0.2), "cof_viscous": (0.01, 0.02), "cof": (0.002, 0.004)},
+    False: {"fluid_load": (0.03, 0.1), "cof_viscous": (0.01, 0.02), "cof": (0.002, 0.004)},
+}
+"""Standard deviations with lugs and without, of the grid of a run and of the quick one: of
+ln F / (W - F), of the relative viscous friction, of what else moves COF
+(docs/guide/performance.md)."""
+PEAKS = {True: 0.3, False: 0.05}
+"""Relative standard deviation of peaks and of what a sensor reads."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
@@ -121,12 +119,14 @@ def numerical_errors(
 
     With n positions of a tread
 
-        s^2 = (c v)^2 + s_p^2 / n^(2 r) + (m / (n + m) d)^2
+        s^2 = g^2 + d^2 + s_p^2 / n^(2 r) + (m / (n + m) l)^2
 
-    c v what lies between grids under lugs (``LUGS``), s_p the standard deviation over the
-    positions, r the rate of their rule (``RATES``), d the largest difference of one to their mean:
-    m more that did not converge may be as far off. Without a tread s is the difference to the
-    quick grid, of a quick run ``QUICK``.
+    s_p the standard deviation over the positions, r the rate of their rule (``RATES``), d what the
+    difference of the two grids leaves open, l the largest difference of a position to their mean: m
+    more that did not converge may be as far off. Without a tread d is the difference to the quick
+    grid. g lies between the grid of the run and endlessly fine ones (``BETWEEN_GRIDS``):
+    c F (1 - F / W) of the load F on the film of W; of COF, since contact loses what the film gains,
+    (c F / W) (adhesion + hysteresis) + c_v viscous, and a share of all.
     ``numerics.grid_check`` compares with the quick grid, without lugs with ``CHECKED`` cells along
     the sliding on it, and these with twice the steps in time (first order).
 
@@ -148,29 +148,31 @@ def numerical_errors(
         # cells along the sliding give the rims of lugs a peak that they don't have
         finer = columns if parts.sole.tread_depth.any() else max(CHECKED, columns)
         return _compared(_with_cells(parts, finer), numbers, progress)
-    if isinstance(positions, ShoeAngles):
-        if quick:
-            grid = {name: QUICK[name] * value for name, value in numbers.items()}
-            return NumericalErrors(grid, {}, "finer grids under other soles")
-        grid = {name: abs(value - positions.coarse[name]) for name, value in numbers.items()}
-        return NumericalErrors(grid, {}, f"difference to {_cells(parts, columns)}")
-    if positions is not None:
-        count = len(positions.places)
-        grid = {}
-        for name in numbers:
-            values = positions.values[name]
-            scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
-            share = LUGS[name][quick] if name in LUGS else LUGS_PEAK
-            missing = (
-                positions.left_out
-                / (count + positions.left_out)
-                * float(np.abs(values - values.mean()).max())
-            )
-            mean = float(values.mean())
-            rule = scatter / count ** RATES[len(pattern_periods(case))]
-            grid[name] = math.hypot(share * mean, rule, missing)
-        return NumericalErrors(grid, {}, f"{count} positions, and other grids under lugs")
-    return "not estimated with numerics.tread_positions = 1"
+    if positions is None:
+        return "not estimated with numerics.tread_positions = 1"
+    grid, count, lost = {}, len(positions.places), positions.left_out
+    lugs, force = not isinstance(positions, ShoeAngles), solution.contact.normal_force
+    at, share = positions.values, BETWEEN_GRIDS[lugs]
+    film = np.clip(at["fluid_load"] / force, 0.0, 1.0)
+    moved = share["fluid_load"][quick] * film
+    moved_cof = moved * (at["cof_adhesion"] + at["cof_hysteresis"])
+    moved_cof += share["cof_viscous"][quick] * at["cof_viscous"]
+    finer = {name: PEAKS[lugs] * positions.answer(name) for name in numbers}
+    finer["fluid_load"] = float((moved * (1 - film)).mean()) * force
+    finer["cof"] = math.hypot(share["cof"][quick] * positions.answer("cof"), moved_cof.mean())
+    for name, error in finer.items():
+        values = at[name]
+        if isinstance(positions, ShoeAngles):
+            grid[name] = math.hypot(error, numbers[name] - positions.coarse[name])
+            continue
+        scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
+        rule = scatter / count ** RATES[len(pattern_periods(case))]
+        missing = lost / (count + lost) * float(np.abs(values - values.mean()).max())
+        grid[name] = math.hypot(error, positions.between.get(name, 0.0), rule, missing)
+    origin = f"{count} {positions.several}"
+    if not (lugs or quick):
+        origin = f"difference to {_cells(parts, columns)}"
+    return NumericalErrors(grid, {}, f"{origin}, and finer grids")
 
 
 def _compared(

@@ -27,6 +27,14 @@ ANGLE_BAND = math.radians(1)
 ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
 GOLDEN = (math.sqrt(5) - 1) / 2
+FINEST = 0.25e-3
+"""Cells that numbers under lugs are carried on to, m: the finest they were compared with
+(docs/guide/performance.md)."""
+CARRIED = ("fluid_load", "cof_adhesion", "cof_hysteresis", "cof_viscous")
+RATES = {1: 1.0, 2: 0.75}
+"""Rate of the rule of positions by the number of periods of the tread: of what jumps with the
+place, as lugs that come to float, an even rule along one period has the error s_p / n, a lattice in
+two n^(-3/4) (docs/physics/coupled_contact.md has both measured)."""
 _HELD = "spread of the friction law, its inputs and the"
 
 
@@ -44,8 +52,10 @@ class TreadPositions:
 
     Attributes:
         places: Of the pattern and the shoe.
-        values: Name of a result's scalar: its value at each place, SI, on the grid of the run.
+        values: Name of a result's scalar: its value at each place, SI.
         left_out: Number of positions that did not converge.
+        own: The scalars at the case's own place, on the grid of the run.
+        between: Name of a scalar: what the difference of two grids leaves unknown of its mean.
         by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
             case's own place; empty where that is not known or in the values.
     """
@@ -57,6 +67,8 @@ class TreadPositions:
     places: tuple[Place, ...]
     values: Mapping[str, Array]
     left_out: int
+    own: Mapping[str, float]
+    between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
     def answer(self, name: str) -> float:
@@ -80,7 +92,7 @@ class TreadPositions:
             draws = {}
             for name in values:
                 part = name.removeprefix("cof_")
-                own = self.values[name][0]
+                own = self.own[name]
                 factors = self.drawn(name, sampled.cof.size) / own if own else 1.0
                 draws[part] = getattr(sampled, part) * factors
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
@@ -138,12 +150,16 @@ class TreadPositions:
             )
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average", **told}
-        cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
-        angle = "the shoe could not be solved turned; its angle is taken as exact"
-        if self.by_angle:
+        cof, load = self.own["cof"], self.own["fluid_load"]
+        if not self.by_angle:
+            told["angle_as_exact"] = (
+                "The shoe could not be solved turned: its angle counts as exact, and the interval "
+                "is too narrow."
+            )
+        else:
             up = display(math.degrees(ANGLE_DEVIATION), "1")
             more, film = (self.by_angle[name] for name in ("cof", "fluid_load"))
-            angle = (
+            told["shoe_angle"] = (
                 f"{up} deg toe up, one standard deviation of it, moves COF by "
                 f"{display(more, '1')} and the load on the film by {display(film, 'N')}"
             )
@@ -153,7 +169,6 @@ class TreadPositions:
             f"Numbers are means over them; maps and histories show the position that the case "
             f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
             + (f"; {failed}" if failed else ""),
-            "shoe_angle": angle,
             **told,
         }
 
@@ -200,7 +215,7 @@ class ShoeAngles(TreadPositions):
         if len(self.places) == 1:
             return {}
         least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
-        cof, load = (float(self.values[name][0]) for name in ("cof", "fluid_load"))
+        cof, load = self.own["cof"], self.own["fluid_load"]
         return {
             "shoe_angle": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
@@ -240,51 +255,103 @@ def places(periods: Array, count: int) -> tuple[Place, ...]:
     return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
 
 
+AtPlaces = Callable[
+    [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
+]
+"""Solves places, each on a grid (m), and gives the index of each with its numbers as they end, None
+where a contact did not converge."""
+
+
 def tread_positions(
     case: Case,
     known: Mapping[Place, Mapping[str, float]],
-    at_places: Callable[[Sequence[Place], float], Iterator[tuple[int, Mapping[str, float] | None]]],
+    at_places: AtPlaces,
     *,
     spacing: float,
     quick: bool,
 ) -> TreadPositions:
     """Return the numbers of a run at more positions of its tread, or shoe angles without a tread.
 
-    Positions are solved on the grid of the run, of ``spacing`` (m); shoe angles without a tread on
-    the quick one, whose ratios are taken. What the angle adds under a tread is half the difference
-    of the shoe turned up and down, at the case's own position.
+    All places are solved on the quick grid, every other one, of shoe angles the own, on the grid of
+    the run too. The ratio of the means on both takes all to the grid of the run, and under lugs on
+    to that of ``FINEST``, where numbers move by the first order of the cells (``carried``).
+    What the angle adds under a tread is half the difference of the shoe turned up and down, at the
+    case's own position.
 
-    ``known`` are the numbers at the case's own place, and what is known of others on that grid;
-    ``at_places`` solves places on a grid and gives the index of each with its numbers as they end,
-    None where a contact did not converge.
+    ``known`` are the numbers at the case's own place, and what is known of others, on the grid of
+    the run, of ``spacing`` (m).
     """
-    lugs, case_numbers = treaded(case), known[Place()]
-    if lugs:
-        all_places = places(pattern_periods(case), position_count(case, quick=quick))
-        angles = TURNED
-    else:
-        all_places, angles = shoe_angles(), ()
-        spacing, known = case.numerics.quick_grid_spacing, known if quick else {}
-    others = [place for place in (*all_places, *angles) if place not in known]
-    solved = dict(at_places(others, spacing))
-    everywhere = dict(known) | {place: n for k, place in enumerate(others) if (n := solved[k])}
-    # without the own place on the quick grid nothing to compare the angles with
-    numbers = {place: everywhere[place] for place in all_places if place in everywhere}
-    if Place() not in numbers:
-        numbers = {Place(): case_numbers}
-    values = {}
-    for name, value in case_numbers.items():
-        each = np.array([at[name] for at in numbers.values()])
-        values[name] = each * (value / each[0]) if each[0] else each
-    values["cof"] = sum(values[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    left_out = len(all_places) - len(numbers)
+    lugs, own = treaded(case), known[Place()]
+    all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
+    angles = TURNED if lugs else ()
+    asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
+    asked += [(place, coarse) for place in all_places if coarse != spacing]
+    ended = dict(at_places(asked))
+    at = {(place, spacing): numbers for place, numbers in known.items()}
+    at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
+    pairs = [p for p in on_run_grid if (p, spacing) in at and (p, coarse) in at]
+    if not pairs:  # nothing compares the grids
+        pairs = [place for place in on_run_grid if (place, spacing) in at]
+        coarse = spacing
+    answers = {place: at[place, coarse] for place in all_places if (place, coarse) in at}
+    failed = {p for p in all_places if p not in answers}
+    failed |= {place for place in on_run_grid if (place, spacing) not in at}
+    onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and coarse > spacing else 0.0
+    rate = RATES[len(pattern_periods(case))] if lugs else 1.0
+    values, between = {}, {}
+    for name in own:
+        each = np.array([numbers[name] for numbers in answers.values()])
+        before, after = (np.array([at[p, h][name] for p in pairs]) for h in (coarse, spacing))
+        limit = case.motion.normal_force if name == "fluid_load" else math.inf
+        order = onward if name in CARRIED else 0.0
+        values[name] = carried(each, before, after, order, limit)
+        further = float((values[name] - carried(each, before, after, 0.0, limit)).mean())
+        apart = after - before
+        scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
+        between[name] = math.hypot(further / 2, (1 + order) * scatter / len(pairs) ** rate)
+    parts = [f"cof_{part}" for part in ("adhesion", "hysteresis", "viscous")]
+    values["cof"] = sum(values[name] for name in parts)
+    between["cof"] = sum(between[name] for name in parts)
     if not lugs:
-        return ShoeAngles(tuple(numbers), values, left_out, coarse=numbers[Place()])
+        return ShoeAngles(
+            tuple(answers), values, len(failed), own, coarse=answers.get(Place(), own)
+        )
     by_angle = {}
-    if all(place in everywhere for place in angles):
-        up, down = (everywhere[place] for place in angles)
-        by_angle = {name: (up[name] - down[name]) / 2 for name in case_numbers}
-    return TreadPositions(tuple(numbers), values, left_out, by_angle=by_angle)
+    if all((place, spacing) in at for place in angles):
+        up, down = (at[place, spacing] for place in angles)
+        by_angle = {name: (up[name] - down[name]) / 2 for name in own}
+    return TreadPositions(
+        tuple(answers), values, len(failed), own, between=between, by_angle=by_angle
+    )
+
+
+def carried(each: Array, coarse: Array, fine: Array, onward: float, limit: float) -> Array:
+    """Return numbers (n,) of a coarse grid on a finer one, by some of both (m,).
+
+    The odds v / (limit - v), v without a limit, are scaled so that those of the mean over the m
+    move as from ``coarse`` to ``fine`` and ``onward`` times as far again. What grows with finer
+    cells grows evenly, of what shrinks the inverse does.
+    """
+    before, after = (float(one.mean()) for one in (coarse, fine))
+    if not (0 < before < limit and 0 < after < limit):
+        return each if before == after else np.full_like(each, after)
+    step = after / before * (1 - before / limit) / (1 - after / limit)
+    factor = step + onward * (step - 1) if step > 1 else step / (1 + onward * (1 / step - 1))
+    share = np.minimum(each / limit, 1.0)
+    return each * factor / (1 - share + factor * share)
+
+
+def _places_on_grids(
+    case: Case, spacing: float, *, quick: bool
+) -> tuple[tuple[Place, ...], tuple[Place, ...], float]:
+    """Return the places of a run, those that the grid of the run solves, and that of all, m."""
+    coarse = case.numerics.quick_grid_spacing
+    if treaded(case):
+        all_places = places(pattern_periods(case), position_count(case, quick=quick))
+        if quick or coarse <= spacing:
+            return all_places, all_places, spacing
+        return all_places, all_places[::2], coarse
+    return shoe_angles(), shoe_angles()[: 3 if quick else 1], spacing if quick else coarse
 
 
 def pattern_periods(case: Case) -> Array:
@@ -315,11 +382,13 @@ def treaded(case: Case) -> bool:
 
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
-    marches = float(position_count(case, quick=quick))
-    if marches > 1 and treaded(case):  # a history of the motion is marched at both angles
+    if position_count(case, quick=quick) == 1:
+        return 1.0
+    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
+    all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
+    marches = len(on_run_grid) + (coarse != spacing) * len(all_places) * (spacing / coarse) ** 2
+    if treaded(case):  # a history of the motion is marched at both angles
         marches += len(TURNED) * (case.motion.build() is not None)
-    elif marches > 1 and not quick:
-        marches = 1 + marches * (case.numerics.grid_spacing / case.numerics.quick_grid_spacing) ** 2
     return 1 / marches
 
 

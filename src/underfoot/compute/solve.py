@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from underfoot.case import Case
 from underfoot.core import ConvergenceError, Progress, silent
 from underfoot.core.pool import in_processes
@@ -155,25 +157,29 @@ def averaged(
     Up to ``processes`` positions are solved at the same time, each on one thread: the digits are
     those of one process. A compliance that was given holds for the position of the run alone.
     """
-    total = position_count(parts.case, quick=quick)
-    if total == 1 or "compliance" in parts.objects or not solution.contact.status.usable:
+    if (
+        position_count(parts.case, quick=quick) == 1
+        or "compliance" in parts.objects
+        or not solution.contact.status.usable
+    ):
         return None
 
     def at_places(
-        places: Sequence[Place], spacing: float
+        asked: Sequence[tuple[Place, float]],
     ) -> Iterator[tuple[int, Mapping[str, float] | None]]:
         if processes > 1 and not parts.objects:
-            numbers_at = _PlaceNumbers(parts.case, parts.spacing, spacing)
             yield from in_processes(
-                numbers_at, places, processes, progress=progress, stage="Tread positions"
+                _PlaceNumbers(parts.case, parts.spacing),
+                asked,
+                processes,
+                progress=progress,
+                stage="Tread positions",
             )
             return
-        count = len(places)
-        last = max(total, count + 1)
-        for k, place in enumerate(places):
-            name = f"Tread position {last - count + k + 1} of {last}"
-            march = part(progress, k / count, (k + 1) / count, name)
-            yield k, _numbers_at(parts, place, spacing, march)
+        ends = np.cumsum([0.0, *(spacing**-2 for _, spacing in asked)])
+        for k, (place, spacing) in enumerate(asked):
+            name, begin, end = f"Position {k + 2} of {len(asked) + 1}", *ends[k : k + 2] / ends[-1]
+            yield k, _numbers_at(parts, place, spacing, part(progress, begin, end, name))
 
     known = {Place(): place_numbers(parts, solution.contact)}
     if treaded(parts.case):
@@ -201,14 +207,13 @@ class _PlaceNumbers:
 
     case: Case
     own_spacing: float
-    spacing: float
 
     @cached_property
     def _parts(self) -> Prepared:
         return prepared(self.case, self.own_spacing)
 
-    def __call__(self, place: Place) -> Mapping[str, float] | None:
-        return _numbers_at(self._parts, place, self.spacing)
+    def __call__(self, asked: tuple[Place, float]) -> Mapping[str, float] | None:
+        return _numbers_at(self._parts, *asked)
 
 
 def _numbers_at(

@@ -204,7 +204,7 @@ def cautions(
     """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
     if not status.usable:
         return ()
-    reasons = [labels["positions_left_out"]] if "positions_left_out" in labels else []
+    reasons = [labels[name] for name in ("positions_left_out", "angle_as_exact") if name in labels]
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
         reasons.append(f"Slip probability {slip.note}.")

@@ -38,12 +38,12 @@ def persson(
 ) -> TheoryContact:
     """Return area, mean gap (elastic case) and hysteresis COF at nominal pressures (Pa, > 0).
 
-    The arguments are those of ``persson_contact_fractions``. The mean gap is given for speed 0
-    or a constant modulus; otherwise None with the reason.
+    The arguments are those of ``persson_growth``. The mean gap is given for speed 0 or a constant
+    modulus; otherwise None with the reason.
     """
     q, c = checked_spectrum(wavenumber, spectrum)
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
-    fractions, friction = _area_and_friction(p, q, c, modulus, speed, poisson_ratio)
+    fractions, friction = persson_growth(p, q, c, modulus, speed, poisson_ratio)
     area = fractions[:, -1]
     gap, reason = None, "mean gap: the theory derives it from stored energy, which sliding loses"
     source = FRICTION_SOURCE
@@ -63,69 +63,38 @@ def persson(
     )
 
 
-def persson_contact_fractions(
-    pressure: float,
+def persson_growth(
+    pressure: ArrayLike,
     wavenumber: ArrayLike,
     spectrum: ArrayLike,
     modulus: Modulus,
     speed: float = 0.0,
     poisson_ratio: float = 0.5,
-) -> np.ndarray:
-    """Return the real contact fraction P(q) seen when roughness up to each q is resolved.
+    gamma: float = FRICTION_GAMMA,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return real contact fraction P and hysteresis COF from roughness up to each wave number.
 
     P = erf(1/(2 sqrt(G))), G(q) = (1/8) int_q0^q q^3 C(q) int_0^2pi |E*(q v cos phi)/p|^2 dphi dq,
-    E* = E/(1-nu^2). Elastic: P = erf(sqrt(2) p/(E* h'(q))). The last value is the contact.
+    E* = E/(1-nu^2). Elastic: P = erf(sqrt(2) p/(E* h'(q))).
+    mu = (1/2) int q^3 C(q) S(q) P(q) int_0^2pi cos(phi) Im E*(q v cos phi)/p dphi dq,
+    S = gamma + (1-gamma) P^2. gamma = 1 leaves S out. Both (pressures, wave numbers); the last
+    values are those of the contact, the others show which scales make it.
 
     Parameters:
-        pressure: Nominal pressure, Pa, > 0.
+        pressure: Nominal pressures, Pa, > 0.
         wavenumber, spectrum: q (rad/m, rising) and the isotropic 2-D spectrum C(q) (m^4), <h^2> = 2
             pi int q C dq.
         modulus: Young's modulus as in ``steady_sliding``: Pa, a material, or E*(rad/s).
-        speed: m/s; 0 takes the modulus at rest.
+        speed: m/s; 0 takes the modulus at rest; mu(-v) = -mu(v).
 
-    Exact at full contact. At light load the area is p/(E* h') times 1.60, where half-space
-    solutions of broad spectra give 2.0 to 2.3: about 25 to 30 % low there, less above.
-    """
-    q, c = checked_spectrum(wavenumber, spectrum)
-    return _area_and_friction(np.array([pressure]), q, c, modulus, speed, poisson_ratio)[0][0]
-
-
-def persson_cumulative_friction(
-    pressure: ArrayLike,
-    wavenumber: ArrayLike,
-    spectrum: ArrayLike,
-    modulus: Modulus,
-    speed: float,
-    poisson_ratio: float = 0.5,
-    gamma: float = FRICTION_GAMMA,
-) -> np.ndarray:
-    """Return the hysteresis COF (pressures, wave numbers) from roughness up to each wave number.
-
-    mu = (1/2) int q^3 C(q) S(q) P(q) int_0^2pi cos(phi) Im E*(q v cos phi)/p dphi dq,
-    S = gamma + (1-gamma) P^2, P(q) from ``persson_contact_fractions``. gamma = 1 leaves S out.
-    Exact in full contact (P = S = 1), where it is a sum over independent waves. The last value is
-    the friction; the others show which scales make it.
-
-    Nominal ``pressure`` (Pa, > 0). ``speed`` (m/s) may be negative: mu(-v) = -mu(v).
-    In partial contact expect the right order and trends, not the percent: see the comparison on
-    the physics page. It is known to be worse where sliding strongly reduces the area
-    (Sukhomlinov and Mueser 2021, arXiv:2104.15056).
+    Exact at full contact (P = S = 1), where friction is a sum over independent waves. At light load
+    the area is p/(E* h') times 1.60, where half-space solutions of broad spectra give 2.0 to 2.3:
+    about 25 to 30 % low there. Expect the right order and trends of friction in partial contact; it
+    is worse where sliding strongly reduces the area (Sukhomlinov and Mueser 2021,
+    arXiv:2104.15056).
     """
     q, c = checked_spectrum(wavenumber, spectrum)
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
-    return _area_and_friction(p, q, c, modulus, speed, poisson_ratio, gamma)[1]
-
-
-def _area_and_friction(
-    p: np.ndarray,
-    q: np.ndarray,
-    c: np.ndarray,
-    modulus: Modulus,
-    speed: float,
-    poisson_ratio: float,
-    gamma: float = FRICTION_GAMMA,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return P(q) and mu(q), both (pressures, wave numbers)."""
     bad = p[~(np.isfinite(p) & (p > 0.0))]
     if bad.size:
         raise InputError(f"the pressure is {bad[0]}", where="Persson", allowed="above zero")

@@ -9,7 +9,6 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, Preview, kept_continuation
-from underfoot.compute.numerical_error import LUGS
 from underfoot.compute.positions import treaded
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.threads import threads_limited
@@ -20,6 +19,8 @@ DRIFT = (0.46, 0.17)
 """What one position on the quick grid may miss of turning, 1/rad: share of the COF, and of the load
 for the film. Chosen on 50 settings of two treaded soles; ``benchmarks/previews.py`` counts on
 others."""
+USUAL = {"cof": 0.02, "fluid_load": 0.15}
+"""Relative numerical error of a whole run that tells of none."""
 MOST_UNSURE = 0.25
 """Error beside a whole run, over the COF and over the load for the film, that still says enough."""
 
@@ -68,7 +69,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
     """
     case = solved.case.replace(seen.changes)
     load, values, errors = case.motion.normal_force, dict(seen.values), dict(seen.errors)
-    for number, (name, usual) in enumerate(LUGS.items()):
+    for number, (name, usual) in enumerate(USUAL.items()):
         run, before, after = whole[name].value or 0.0, solved.values[name], seen.values[name]
         limits = (math.inf, math.inf)
         if name == "fluid_load":
@@ -76,7 +77,7 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         values[name] = _moved(run, before, after, limits)
         share = values[name] / after if after else 1.0
         known = whole[name].numerical
-        relative = usual[True] if known is None or not run else known / run
+        relative = usual if known is None or not run else known / run
         size = values[name] if name == "cof" else load
         turned = case.motion.shoe_angle - solved.case.motion.shoe_angle
         repeated = math.sqrt(2.0) * SURE * relative * values[name]
