@@ -22,7 +22,7 @@ from .solve import Solution, solved_at
 
 BETWEEN_GRIDS = {
     True: {"fluid_load": (0.05, 0.2), "cof_viscous": (0.01, 0.02), "cof": (0.002, 0.004)},
-    False: {"fluid_load": (0.03, 0.1), "cof_viscous": (0.01, 0.02), "cof": (0.002, 0.004)},
+    False: {"fluid_load": (0.03, 0.2), "cof_viscous": (0.01, 0.05), "cof": (0.002, 0.04)},
 }
 """Standard deviations with lugs and without, of the grid of a run and of the quick one: of
 ln F / (W - F), of the relative viscous friction, of what else moves COF

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
 
 from .units import display_unit, number_text, unit_system
 from .values import SourcedValue
@@ -24,6 +24,31 @@ WIDE = 0.5
 SKEWED = 0.25
 """Difference of an interval's two sides over its width above which the interval is printed in
 place of one standard deviation."""
+
+
+@runtime_checkable
+class SourcedModel(Protocol):
+    """A model that a case chooses by name."""
+
+    @property
+    def name(self) -> str:
+        """Short name for reports."""
+        ...
+
+    @property
+    def source(self) -> str:
+        """Paper and equation, measurement, or the computation that it comes from."""
+        ...
+
+
+@runtime_checkable
+class AssumingModel(SourcedModel, Protocol):
+    """A model that says what it assumes."""
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What no measurement stands behind, in words."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

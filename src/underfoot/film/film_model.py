@@ -7,23 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core.arrays import Array
+from underfoot.core.presentation import SourcedModel
 
 from .operator import Conductance
 
 
 @runtime_checkable
-class FilmModel(Protocol):
+class FilmModel(SourcedModel, Protocol):
     """A film between sole and floor: shear thinning, slip at a wall, a porous floor."""
-
-    @property
-    def name(self) -> str:
-        """Short name for reports."""
-        ...
-
-    @property
-    def source(self) -> str:
-        """Paper and equation."""
-        ...
 
     @property
     def viscosity(self) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import AssumingModel, Presentable, Table
 
 SMALLEST_FILM = 2e-7
 """m: the viscous part counts no film thinner than this; mean gaps of rough soles are micrometres
@@ -52,23 +52,8 @@ class FrictionParts:
 
 
 @runtime_checkable
-class FrictionLaw(Protocol):
+class FrictionLaw(AssumingModel, Protocol):
     """Local friction of the pair and fluid, vectorised; computed, fitted or measured."""
-
-    @property
-    def name(self) -> str:
-        """Short name for reports."""
-        ...
-
-    @property
-    def source(self) -> str:
-        """Paper and equation, measurement, or the computation the law comes from."""
-        ...
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What no measurement stands behind, in words."""
-        ...
 
     def __call__(
         self, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike

@@ -11,28 +11,14 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array, scalar_or_array
+from underfoot.core.presentation import AssumingModel
 
 from .law import PIN_PRESSURE, PIN_RANGES, UncertainInputs, coefficient, sourced_fields, with_values
 
 
 @runtime_checkable
-class SpeedEffect(Protocol):
+class SpeedEffect(AssumingModel, Protocol):
     """A mechanism that takes adhesion away as the sliding speed grows."""
-
-    @property
-    def name(self) -> str:
-        """Short name for tables."""
-        ...
-
-    @property
-    def source(self) -> str:
-        """Papers and equations."""
-        ...
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What no measurement stands behind, in words."""
-        ...
 
     def adhesion_left(
         self, *, viscosity: float | None, speed: ArrayLike, contact_pressure: ArrayLike

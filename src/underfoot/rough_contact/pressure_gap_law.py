@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, InputError, Range, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import poisson_ratio, positive
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import Presentable, SourcedModel, Table
 
 from ._kernels.monotone import pchip_slopes
 from .persson import GAP_SOURCE, cumulative, yang_persson_mean_gap
@@ -21,22 +21,12 @@ DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS = 0.5, 0.375
 
 
 @runtime_checkable
-class PressureGapLaw(Protocol):
+class PressureGapLaw(SourcedModel, Protocol):
     """Mean-field law of a rough interface: pressure and permeability against the mean gap.
 
     ``pressure`` decreases with the gap and continues linearly (once differentiable) below zero, so
     that a Newton iteration that overshoots meets a finite, growing pressure.
     """
-
-    @property
-    def name(self) -> str:
-        """Short name for reports."""
-        ...
-
-    @property
-    def source(self) -> str:
-        """Paper and equation, or the computation the law comes from."""
-        ...
 
     def pressure(self, gap: ArrayLike) -> Array:
         """Return the asperity pressure (Pa) at mean gap ``gap`` (m)."""

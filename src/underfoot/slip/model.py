@@ -6,6 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, unknown_name
+from underfoot.core.presentation import AssumingModel
 
 from .beschorner_2016 import Beschorner2016
 from .chang_2004 import Chang2004
@@ -13,23 +14,8 @@ from .report_g6 import ReportG6
 
 
 @runtime_checkable
-class SlipModel(Protocol):
+class SlipModel(AssumingModel, Protocol):
     """Probability that a step slips, from available (ACOF) and required friction (RCOF)."""
-
-    @property
-    def name(self) -> str:
-        """Short name."""
-        ...
-
-    @property
-    def source(self) -> str:
-        """Publication."""
-        ...
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What no publication stands behind."""
-        ...
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
         """Return the probability for persons of known ``rcof``."""

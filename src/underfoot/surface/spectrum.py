@@ -42,11 +42,6 @@ class _Spectrum:
                 "a density is negative or missing", where="spectrum", allowed="0 or more"
             )
 
-    @property
-    def mean_square(self) -> float:
-        """Sum of density times area, m^2: the mean square height, window included."""
-        return float(np.sum(self.density * self.area))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProfileSpectrum(_Spectrum):
