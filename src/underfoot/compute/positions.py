@@ -54,7 +54,7 @@ class TreadPositions:
         places: Of the pattern and the shoe.
         values: Name of a result's scalar: its value at each place, SI.
         left_out: Number of positions that did not converge.
-        own: The scalars at the case's own place, on the grid of the run.
+        at_own_place: The scalars at the case's own place, on the grid of the run.
         between: Name of a scalar: what the difference of two grids leaves unknown of its mean.
         by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
             case's own place; empty where that is not known or in the values.
@@ -67,7 +67,7 @@ class TreadPositions:
     places: tuple[Place, ...]
     values: Mapping[str, Array]
     left_out: int
-    own: Mapping[str, float]
+    at_own_place: Mapping[str, float]
     between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
 
@@ -92,7 +92,7 @@ class TreadPositions:
             draws = {}
             for name in values:
                 part = name.removeprefix("cof_")
-                own = self.own[name]
+                own = self.at_own_place[name]
                 factors = self.drawn(name, sampled.cof.size) / own if own else 1.0
                 draws[part] = getattr(sampled, part) * factors
             draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
@@ -150,7 +150,7 @@ class TreadPositions:
             )
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average", **told}
-        cof, load = self.own["cof"], self.own["fluid_load"]
+        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
         if not self.by_angle:
             told["angle_as_exact"] = (
                 "The shoe could not be solved turned: its angle counts as exact, and the interval "
@@ -215,7 +215,7 @@ class ShoeAngles(TreadPositions):
         if len(self.places) == 1:
             return {}
         least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
-        cof, load = self.own["cof"], self.own["fluid_load"]
+        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
         return {
             "shoe_angle": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
