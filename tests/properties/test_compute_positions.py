@@ -16,6 +16,7 @@ from underfoot.compute.positions import (
     ANGLE_DEVIATION,
     Place,
     TreadPositions,
+    carried,
     places,
     position_count,
     run_cost,
@@ -107,6 +108,44 @@ def test_the_error_of_the_mean_covers_a_saw_tooth(corner, count):
     teeth = np.mod(at + corner, 1)
     stated = np.std(teeth, ddof=1) / count ** numerical_error.RATES[1]
     assert abs(teeth.mean() - 0.5) < 2 * stated + 1e-12
+
+
+@given(
+    st.lists(st.floats(0.5, 80), min_size=3, max_size=8),
+    st.floats(1.0, 3.0),
+    st.floats(0, 3),
+    st.booleans(),
+)
+def test_numbers_of_two_grids_are_carried_on_by_the_first_order_of_the_cells(
+    values, grows, onward, shrinks
+):
+    """A number a + b h on cells h, or 1 / (a + b h) where it shrinks, is found on any cells."""
+    coarse = np.array(values)
+    fine = coarse / grows if shrinks else coarse * grows
+    free = carried(coarse, coarse, fine, onward, math.inf)
+    even = grows + onward * (grows - 1)
+    assert free == pytest.approx(coarse / even if shrinks else coarse * even)
+    load = 300.0
+    bound = carried(coarse, coarse, fine, onward, load)
+    assert ((bound >= 0) & (bound <= load)).all()
+    assert (np.sign((bound - coarse).round(9)) != (1 if shrinks else -1)).all()
+    assert carried(coarse, coarse, coarse, onward, load) == pytest.approx(coarse)
+    assert carried(coarse, 0 * coarse, fine, onward, load) == pytest.approx(fine.mean())
+
+
+@pytest.mark.slow
+def test_two_grids_say_more_of_finer_cells_than_one(bars):
+    """Under this light sole one place of six has 22, 18 and 7 N of film on 1, 0.6 and 0.3 mm."""
+    light = bars.replace({"motion.normal_force": "90 N", "contaminant.viscosity": "120 cP"})
+    found = run(light)
+    grid = light.numerics.grid_spacing
+    alone = run(light.replace("numerics.quick_grid_spacing", grid))
+    cells = {"numerics.grid_spacing": "0.3 mm", "numerics.quick_grid_spacing": "0.3 mm"}
+    finer = run(light.replace(cells))
+    for name in ("cof", "fluid_load"):
+        off = abs(found.value(name) - finer.value(name))
+        assert off < 0.7 * abs(alone.value(name) - finer.value(name)), name
+        assert off < 1.96 * found[name].numerical, name
 
 
 def test_draws_take_every_position_and_its_spread_is_named():
@@ -202,8 +241,8 @@ def test_the_number_of_positions_is_a_field_with_a_range(bars):
 
 def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
     alone = bars.replace("numerics.tread_positions", 1)
-    # six on the quick grid, three of them on that of the run
-    for quick, count in ((False, 3 + 6 * 0.6**2), (True, 3)):
+    # its own; six on the quick grid, three of them on that of the run
+    for quick, count in ((False, 4 + 6 * 0.6**2), (True, 4)):
         one, more = run_cost(alone, quick=quick), run_cost(bars, quick=quick)
         assert more.seconds == pytest.approx(np.multiply(count, one.seconds))
         assert more.memory == one.memory
@@ -287,8 +326,7 @@ def test_one_position_is_the_case_s_own(bars):
     more = run(coarse)
     cof, load = more.fields["position_cof"], more.fields["position_fluid_load"]
     assert cof.size == 6
-    assert float(cof[0]) == pytest.approx(one.value("cof"), rel=1e-12)
-    assert float(load[0]) == pytest.approx(one.value("fluid_load"), rel=1e-12)
+    assert f"(COF {one.value('cof'):.3g}, " in more.labels["tread_position"]
     assert more.value("cof") == pytest.approx(float(cof.mean()), rel=1e-12)
     assert more.value("fluid_load") == pytest.approx(float(load.mean()), rel=1e-12)
     parts = sum(more.value(f"cof_{part}") for part in ("adhesion", "hysteresis", "viscous"))
@@ -298,7 +336,6 @@ def test_one_position_is_the_case_s_own(bars):
     assert "mean over positions of the tread" in more.headline()[0]
     assert "tread_position" not in one.labels
     assert "6 positions" in more.labels["tread_position"]
-    assert f"(COF {float(cof[0]):.3g}, " in more.labels["tread_position"]
     assert "position of the tread" in more.labels["cof_spread_from"]
     assert "spread over tread positions" in more.summary()
     assert any("shoe_angle: ±1 deg" in line for line in more.assumptions)
@@ -344,17 +381,17 @@ def test_a_turned_shoe_that_can_t_go_on_is_marched_and_one_without_answer_is_sai
     assert "its angle counts as exact" in alone.summary().split("\n\n")[0]
 
 
-@pytest.mark.slow
-def test_the_mean_hardly_depends_on_where_the_pattern_begins(bars):
+def test_the_mean_does_not_depend_on_where_the_pattern_begins(bars):
     single, mean = [], []
     for offset in ("0 mm", "1.25 mm", "4 mm"):
         moved = bars.replace("shoe.tread.offset_along", offset)
-        over = run(moved.replace("numerics.tread_positions", 12), quick=True)
-        single.append([float(over.fields[f"position_{x}"][0]) for x in ("cof", "fluid_load")])
+        alone, over = (
+            run(each, quick=True) for each in (moved.replace("numerics.tread_positions", 1), moved)
+        )
+        single.append((alone.value("cof"), alone.value("fluid_load")))
         mean.append((over.value("cof"), over.value("fluid_load")))
     before, after = np.ptp(single, axis=0), np.ptp(mean, axis=0)
-    assert (after < 0.35 * before).all()
-    assert after[0] < 0.05 * np.mean(mean, axis=0)[0]
+    assert (after < 1e-5 * before).all()
 
 
 def test_a_place_that_does_not_converge_is_said_first_and_widens_the_error(monkeypatch):

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from itertools import chain
 from typing import Any
 
-from underfoot.case import Case, assumptions
+from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
 from underfoot.core.fields import Fields, labelled
 from underfoot.film import NewtonianFilm
@@ -126,7 +126,9 @@ def _fields(
 ) -> Fields:
     """Return maps, histories and draws with their axes."""
     sole, contact, sampled = parts.sole, solution.contact, reading.sampled
-    pictured = pictured_fields(sole, contact, parts.compliance, _map_angle(parts.case))
+    # a steady motion is solved on the map as it is
+    rolls_from = 0.0 if parts.case.motion.build() is None else parts.case.motion.shoe_angle
+    pictured = pictured_fields(sole, contact, parts.compliance, rolls_from)
     variables, coordinates = (
         earlier | later
         for earlier, later in zip(history_fields(contact, solution.recorder), pictured, strict=True)
@@ -180,8 +182,3 @@ def _sole_maps(parts: Prepared, solution: Solution) -> dict[str, tuple[tuple[str
         name: (("x", "y"), values, {"units": unit, "long_name": meaning})
         for name, (values, unit, meaning) in maps.items()
     }
-
-
-def _map_angle(case: Case) -> float:
-    """Return the angle from which the sole rolls: a steady motion is solved on the map as it is."""
-    return 0.0 if case.motion.build() is None else case.motion.shoe_angle

@@ -147,7 +147,8 @@ def numerical_errors(
     if checked:
         # cells along the sliding give the rims of lugs a peak that they don't have
         finer = columns if parts.sole.tread_depth.any() else max(CHECKED, columns)
-        return _compared(_with_cells(parts, finer), numbers, progress)
+        finely = replace(parts, case=case.replace("numerics.cells_along", finer))
+        return _compared(finely, numbers, progress)
     if positions is None:
         return "not estimated with numerics.tread_positions = 1"
     grid, count, lost = {}, len(positions.places), positions.left_out
@@ -160,13 +161,11 @@ def numerical_errors(
     finer = {name: PEAKS[lugs] * positions.answer(name) for name in numbers}
     finer["fluid_load"] = float((moved * (1 - film)).mean()) * force
     finer["cof"] = math.hypot(share["cof"][quick] * positions.answer("cof"), moved_cof.mean())
+    rate = RATES[len(pattern_periods(case))] if lugs else 0.0
     for name, error in finer.items():
-        values = at[name]
-        if isinstance(positions, ShoeAngles):
-            grid[name] = math.hypot(error, numbers[name] - positions.coarse[name])
-            continue
-        scatter = float(np.std(values, ddof=1)) if count > 1 else 0.0
-        rule = scatter / count ** RATES[len(pattern_periods(case))]
+        values, rule = at[name], 0.0
+        if lugs and count > 1:
+            rule = float(np.std(values, ddof=1)) / count**rate
         missing = lost / (count + lost) * float(np.abs(values - values.mean()).max())
         grid[name] = math.hypot(error, positions.between.get(name, 0.0), rule, missing)
     origin = f"{count} {positions.several}"
@@ -196,10 +195,6 @@ def _compared(
 def _cells(parts: Prepared, columns: int) -> str:
     spacing = display(parts.case.numerics.quick_grid_spacing, "m")
     return f"cells of {spacing}" + f", {columns} along the sliding" * (columns > 1)
-
-
-def _with_cells(parts: Prepared, columns: int) -> Prepared:
-    return replace(parts, case=parts.case.replace("numerics.cells_along", columns))
 
 
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:

@@ -20,13 +20,15 @@ from .cost import cost
 from .numbers import scalars
 from .prepare import Prepared
 from .sensors import scanned
-from .sole import file_periods, file_surface
+from .sole import file_periods, file_surface, new_sole
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
 ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
 GOLDEN = (math.sqrt(5) - 1) / 2
+LANDING = 0.1e-3
+"""What lies within this of the lowest point of a sole lands first, m."""
 FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with
 (docs/guide/performance.md)."""
@@ -48,7 +50,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class TreadPositions:
-    """Numbers of a run at some positions of the tread, the case's own first.
+    """Numbers of a run at some positions of the tread.
 
     Attributes:
         places: Of the pattern and the shoe.
@@ -198,13 +200,7 @@ class TreadPositions:
 
 @dataclass(frozen=True, slots=True)
 class ShoeAngles(TreadPositions):
-    """Numbers of a run of a sole without lugs at its own shoe angle and beside it.
-
-    Attributes:
-        coarse: Scalars at the own angle on the grid that the angles are compared on.
-    """
-
-    coarse: Mapping[str, float]
+    """Numbers of a run of a sole without lugs at its own shoe angle and beside it."""
 
     origin = "shoe_angle"
     held = "shoe angle"
@@ -242,8 +238,8 @@ TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
 """The shoe turned toe up and toe down, the tread as it lies."""
 
 
-def places(periods: Array, count: int) -> tuple[Place, ...]:
-    """Return ``count`` places of a pattern with the periods (n, 2), m; the first at rest.
+def places(periods: Array, count: int, origin: Array | None = None) -> tuple[Place, ...]:
+    """Return ``count`` places of a pattern with the periods (n, 2), m; the first at ``origin``.
 
     Even along the first period and along a second, where they follow the order of golden shares: no
     low wave across both meets all of them in one phase, as it meets those of a lattice of 4 or 6.
@@ -252,21 +248,35 @@ def places(periods: Array, count: int) -> tuple[Place, ...]:
     """
     order = np.argsort(np.argsort(np.mod(GOLDEN * np.arange(count), 1)))
     shares = np.column_stack([np.arange(count), order])[:, : len(periods)] / count
+    if origin is not None:
+        shares = np.mod(shares + origin @ np.linalg.pinv(periods), 1)
     return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
 
 
-AtPlaces = Callable[
-    [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
-]
-"""Solves places, each on a grid (m), and gives the index of each with its numbers as they end, None
-where a contact did not converge."""
+def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
+    """Return the places of a run of a treaded sole.
+
+    A pattern begins where the front of what lands first begins. The teeth of its film lie there: so
+    all treads are met in nearly one phase of them, wherever they were drawn and however wide their
+    lugs are, and numbers move smoothly with the widths. The tread of a file begins as it lies.
+    """
+    count, tread = position_count(case, quick=quick), _tread(case)
+    if tread is None:
+        return places(file_periods(case), count)
+    x, height = new_sole(case).centre_line()
+    clearance = height + math.tan(case.motion.shoe_angle) * x
+    front = float(x[clearance < clearance.min() + LANDING].max())
+    return places(tread.periods, count, np.array([front, 0.0]) - tread.offset)
 
 
 def tread_positions(
     case: Case,
     known: Mapping[Place, Mapping[str, float]],
-    at_places: AtPlaces,
+    at_places: Callable[
+        [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
+    ],
     *,
+    load: float,
     spacing: float,
     quick: bool,
 ) -> TreadPositions:
@@ -278,8 +288,10 @@ def tread_positions(
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
     case's own position.
 
-    ``known`` are the numbers at the case's own place, and what is known of others, on the grid of
-    the run, of ``spacing`` (m).
+    ``load`` is the whole load, N; ``known`` are the numbers at the case's own place, and what is
+    known of others, on the grid of the run, of ``spacing`` (m); ``at_places`` solves places,
+    each on a grid (m), and gives the index of each with its numbers as they end, None where a
+    contact did not converge.
     """
     lugs, own = treaded(case), known[Place()]
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
@@ -291,18 +303,17 @@ def tread_positions(
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
     pairs = [p for p in on_run_grid if (p, spacing) in at and (p, coarse) in at]
     if not pairs:  # nothing compares the grids
-        pairs = [place for place in on_run_grid if (place, spacing) in at]
+        pairs = [place for place in on_run_grid if (place, spacing) in at] or [Place()]
         coarse = spacing
-    answers = {place: at[place, coarse] for place in all_places if (place, coarse) in at}
-    failed = {p for p in all_places if p not in answers}
-    failed |= {place for place in on_run_grid if (place, spacing) not in at}
+    answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
+    failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
     onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and coarse > spacing else 0.0
     rate = RATES[len(pattern_periods(case))] if lugs else 1.0
     values, between = {}, {}
     for name in own:
         each = np.array([numbers[name] for numbers in answers.values()])
         before, after = (np.array([at[p, h][name] for p in pairs]) for h in (coarse, spacing))
-        limit = case.motion.normal_force if name == "fluid_load" else math.inf
+        limit = load if name == "fluid_load" else math.inf
         order = onward if name in CARRIED else 0.0
         values[name] = carried(each, before, after, order, limit)
         further = float((values[name] - carried(each, before, after, 0.0, limit)).mean())
@@ -313,9 +324,7 @@ def tread_positions(
     values["cof"] = sum(values[name] for name in parts)
     between["cof"] = sum(between[name] for name in parts)
     if not lugs:
-        return ShoeAngles(
-            tuple(answers), values, len(failed), own, coarse=answers.get(Place(), own)
-        )
+        return ShoeAngles(tuple(answers), values, len(failed), own, between=between)
     by_angle = {}
     if all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
@@ -328,15 +337,15 @@ def tread_positions(
 def carried(each: Array, coarse: Array, fine: Array, onward: float, limit: float) -> Array:
     """Return numbers (n,) of a coarse grid on a finer one, by some of both (m,).
 
-    The odds v / (limit - v), v without a limit, are scaled so that those of the mean over the m
-    move as from ``coarse`` to ``fine`` and ``onward`` times as far again. What grows with finer
-    cells grows evenly, of what shrinks the inverse does.
+    The odds v / (limit - v), v without a limit, are scaled as those of the mean over the m move
+    from ``coarse`` to ``fine``, and ``onward`` times as far again. What grows with finer cells
+    grows evenly, of what shrinks the inverse does.
     """
     before, after = (float(one.mean()) for one in (coarse, fine))
     if not (0 < before < limit and 0 < after < limit):
         return each if before == after else np.full_like(each, after)
     step = after / before * (1 - before / limit) / (1 - after / limit)
-    factor = step + onward * (step - 1) if step > 1 else step / (1 + onward * (1 / step - 1))
+    factor = step + onward * (step - 1) if step > 1 else step / (1 + onward * (1 - step))
     share = np.minimum(each / limit, 1.0)
     return each * factor / (1 - share + factor * share)
 
@@ -347,7 +356,7 @@ def _places_on_grids(
     """Return the places of a run, those that the grid of the run solves, and that of all, m."""
     coarse = case.numerics.quick_grid_spacing
     if treaded(case):
-        all_places = places(pattern_periods(case), position_count(case, quick=quick))
+        all_places = case_places(case, quick=quick)
         if quick or coarse <= spacing:
             return all_places, all_places, spacing
         return all_places, all_places[::2], coarse
@@ -386,7 +395,10 @@ def first_share(case: Case, *, quick: bool) -> float:
         return 1.0
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
-    marches = len(on_run_grid) + (coarse != spacing) * len(all_places) * (spacing / coarse) ** 2
+    marches = (
+        len({Place(), *on_run_grid})
+        + (coarse != spacing) * len(all_places) * (spacing / coarse) ** 2
+    )
     if treaded(case):  # a history of the motion is marched at both angles
         marches += len(TURNED) * (case.motion.build() is not None)
     return 1 / marches

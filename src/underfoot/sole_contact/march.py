@@ -146,7 +146,8 @@ class March:
             self.counts.krylov += attempt.krylov
             self.residuals = attempt.residuals
             state = attempt.state and cells.on_whole(attempt.state, problem, self._whole)
-            if state is not None and not _escaped(problem, cells, state.gap):
+            # it must not touch the floor outside the cells of the step
+            if state is not None and not (state.gap[~cells.mask] < 20 * problem.decay).any():
                 self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1
                 grown = duration * GROWTH if attempt.newton < EASY else duration
@@ -226,8 +227,3 @@ def _cells(problem: Problem, fit: PoleFit, cells: Cells | None, low: Mask, near:
     ):
         return cells
     return Cells(mask, problem, fit)
-
-
-def _escaped(problem: Problem, cells: Cells, gap: Array) -> bool:
-    """Return whether the sole touches the floor outside the cells of the step."""
-    return bool((gap[~cells.mask] < 20 * problem.decay).any())

@@ -24,7 +24,7 @@ def slab(shape: SoleShape) -> Any:
     through points of the land (parabola across).
     """
     profile = side_face(shape)
-    body = _across(profile, shape)
+    body = profile.Extrude(kernel().Vec(0.0, (shape.width + 2 * MARGIN) * MM, 0.0))
     if shape.crown_radius is None:
         return body
 
@@ -117,10 +117,6 @@ def _curve(point: Any, places: list[tuple[float, float]]) -> Any:
     if abs(z1 - (z0 + z2) / 2) < 1e-9:
         return kernel().Segment(point(x0, z0), point(x2, z2))
     return kernel().ArcOfCircle(*(point(x, z) for x, z in places))
-
-
-def _across(face: Any, shape: SoleShape) -> Any:
-    return face.Extrude(kernel().Vec(0.0, (shape.width + 2 * MARGIN) * MM, 0.0))
 
 
 def _crowned_piece(shape: SoleShape, first: float, last: float) -> Any:
