@@ -15,8 +15,9 @@ import numpy as np
 
 from benchmarks.tread_widths import bars
 from underfoot import Case
-from underfoot.compute.positions import TURNED, Place, pattern_periods, place_numbers, places
+from underfoot.compute.positions import TURNED, Place, place_numbers, places
 from underfoot.compute.prepare import Prepared, prepared
+from underfoot.compute.sole import tread_on_sole
 from underfoot.compute.solve import continued, solved_at
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array
@@ -47,7 +48,7 @@ def film_loads(parts: Prepared, at: Sequence[tuple[float, float]]) -> Array:
 
 def rows(parts: Prepared, name: str) -> None:
     """Print the errors of means over a few positions of bars."""
-    (period,) = pattern_periods(parts.case)
+    (period,) = tread_on_sole(parts.case)[0]
     loads = film_loads(parts, [tuple(period * k / EVEN) for k in range(EVEN)])
     mean, spread = np.nanmean(loads), np.nanstd(loads)
     for count in COUNTS:
@@ -62,7 +63,7 @@ def rows(parts: Prepared, name: str) -> None:
 
 def of_blocks(parts: Prepared) -> None:
     """Print the errors of means over positions of blocks, by the rule of a run."""
-    periods, rng = pattern_periods(parts.case), np.random.default_rng(0)
+    periods, rng = tread_on_sole(parts.case)[0], np.random.default_rng(0)
     count = 6
     shifts = np.array([place.shift for place in places(periods, count)])
     origins = rng.random((ORIGINS, 2)) @ periods
@@ -78,7 +79,7 @@ def of_blocks(parts: Prepared) -> None:
 
 def of_turned(parts: Prepared, name: str) -> None:
     """Print what turning the shoe does to the film, in two steps and in the march."""
-    (period,) = pattern_periods(parts.case)
+    (period,) = tread_on_sole(parts.case)[0]
     for share in (0.0, 1 / 3, 2 / 3):
         shift = tuple(period * share)
         here, contact = solved_at(parts, Place(shift), parts.spacing)

@@ -14,10 +14,10 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import readings
-from .positions import RATES, Place, ShoeAngles, TreadPositions, pattern_periods
+from .positions import RATES, Place, ShoeAngles, TreadPositions
 from .prepare import Prepared
 from .sensors import scanned
-from .sole import RESOLVED, cells_along
+from .sole import RESOLVED, cells_along, tread_on_sole
 from .solve import Solution, solved_at
 
 BETWEEN_GRIDS = {
@@ -25,8 +25,7 @@ BETWEEN_GRIDS = {
     False: {"fluid_load": (0.03, 0.2), "cof_viscous": (0.01, 0.05), "cof": (0.002, 0.04)},
 }
 """Standard deviations with lugs and without, of the grid of a run and of the quick one: of
-ln F / (W - F), of the relative viscous friction, of what else moves COF
-(docs/guide/performance.md)."""
+ln F / (W - F), of the relative viscous friction, of what else moves COF."""
 PEAKS = {True: 0.3, False: 0.05}
 """Relative standard deviation of peaks and of what a sensor reads."""
 CHECKED = 2 * RESOLVED
@@ -161,11 +160,10 @@ def numerical_errors(
     finer = {name: PEAKS[lugs] * positions.answer(name) for name in numbers}
     finer["fluid_load"] = float((moved * (1 - film)).mean()) * force
     finer["cof"] = math.hypot(share["cof"][quick] * positions.answer("cof"), moved_cof.mean())
-    rate = RATES[len(pattern_periods(case))] if lugs else 0.0
+    rate = RATES[len(tread_on_sole(case)[0])] if lugs else 0.0
     for name, error in finer.items():
-        values, rule = at[name], 0.0
-        if lugs and count > 1:
-            rule = float(np.std(values, ddof=1)) / count**rate
+        values = at[name]
+        rule = float(np.std(values, ddof=1)) / count**rate if lugs and count > 1 else 0.0
         missing = lost / (count + lost) * float(np.abs(values - values.mean()).max())
         grid[name] = math.hypot(error, positions.between.get(name, 0.0), rule, missing)
     origin = f"{count} {positions.several}"

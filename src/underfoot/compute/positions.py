@@ -20,7 +20,7 @@ from .cost import cost
 from .numbers import scalars
 from .prepare import Prepared
 from .sensors import scanned
-from .sole import file_periods, file_surface, new_sole
+from .sole import file_surface, tread_on_sole
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
@@ -28,15 +28,13 @@ ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
 GOLDEN = (math.sqrt(5) - 1) / 2
 LANDING = 0.1e-3
-"""What lies within this of the lowest point of a sole lands first, m."""
+"""What lies at most this above the lowest quarter of a sole lands first, m."""
 FINEST = 0.25e-3
-"""Cells that numbers under lugs are carried on to, m: the finest they were compared with
-(docs/guide/performance.md)."""
+"""Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
 CARRIED = ("fluid_load", "cof_adhesion", "cof_hysteresis", "cof_viscous")
 RATES = {1: 1.0, 2: 0.75}
-"""Rate of the rule of positions by the number of periods of the tread: of what jumps with the
-place, as lugs that come to float, an even rule along one period has the error s_p / n, a lattice in
-two n^(-3/4) (docs/physics/coupled_contact.md has both measured)."""
+"""Rate of the rule of positions by the number of periods of the tread, where the film jumps with
+the place (docs/physics/coupled_contact.md)."""
 _HELD = "spread of the friction law, its inputs and the"
 
 
@@ -238,35 +236,35 @@ TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
 """The shoe turned toe up and toe down, the tread as it lies."""
 
 
-def places(periods: Array, count: int, origin: Array | None = None) -> tuple[Place, ...]:
-    """Return ``count`` places of a pattern with the periods (n, 2), m; the first at ``origin``.
+def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Place, ...]:
+    """Return ``count`` places of a pattern with the periods (n, 2), m.
 
-    Even along the first period and along a second, where they follow the order of golden shares: no
-    low wave across both meets all of them in one phase, as it meets those of a lattice of 4 or 6.
-    All at the shoe angle of the case: the film under bars is a saw-tooth along their period whose
-    teeth the angle moves, and positions that have other angles leave a larger error of its mean.
+    The first at ``begin``, shares (n,) of the periods; at rest without. Even along the first period
+    and along a second, where they follow the order of golden shares: no low wave across both meets
+    all of them in one phase, as it meets those of a lattice of 4 or 6. All at the shoe angle of the
+    case: the film under bars is a saw-tooth along their period whose teeth the angle moves, and
+    positions that have other angles leave a larger error of its mean.
     """
     order = np.argsort(np.argsort(np.mod(GOLDEN * np.arange(count), 1)))
     shares = np.column_stack([np.arange(count), order])[:, : len(periods)] / count
-    if origin is not None:
-        shares = np.mod(shares + origin @ np.linalg.pinv(periods), 1)
+    if begin is not None:
+        shares = np.mod(shares + begin, 1)
     return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
 
 
 def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
     """Return the places of a run of a treaded sole.
 
-    A pattern begins where the front of what lands first begins. The teeth of its film lie there: so
-    all treads are met in nearly one phase of them, wherever they were drawn and however wide their
-    lugs are, and numbers move smoothly with the widths. The tread of a file begins as it lies.
+    The pattern begins at the front of what lands first, where the teeth of its film lie: so all
+    treads meet them in nearly one phase, wherever they were drawn and however wide their lugs are.
     """
-    count, tread = position_count(case, quick=quick), _tread(case)
-    if tread is None:
-        return places(file_periods(case), count)
-    x, height = new_sole(case).centre_line()
+    periods, begin, x, height = tread_on_sole(case)
     clearance = height + math.tan(case.motion.shoe_angle) * x
-    front = float(x[clearance < clearance.min() + LANDING].max())
-    return places(tread.periods, count, np.array([front, 0.0]) - tread.offset)
+    over = np.nan_to_num(clearance, nan=math.inf) - np.nanquantile(clearance, 0.25) - LANDING
+    last = int(np.flatnonzero(over < 0)[-1])
+    front = np.interp(0.0, over[last : last + 2], x[last : last + 2])
+    at_front = np.array([front, 0.0]) @ np.linalg.pinv(periods)
+    return places(periods, position_count(case, quick=quick), at_front - begin)
 
 
 def tread_positions(
@@ -295,7 +293,7 @@ def tread_positions(
     """
     lugs, own = treaded(case), known[Place()]
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
-    angles = TURNED if lugs else ()
+    angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
     asked += [(place, coarse) for place in all_places if coarse != spacing]
     ended = dict(at_places(asked))
@@ -308,7 +306,7 @@ def tread_positions(
     answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
     failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
     onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and coarse > spacing else 0.0
-    rate = RATES[len(pattern_periods(case))] if lugs else 1.0
+    rate = RATES[len(tread_on_sole(case)[0])] if lugs else 1.0
     values, between = {}, {}
     for name in own:
         each = np.array([numbers[name] for numbers in answers.values()])
@@ -320,9 +318,8 @@ def tread_positions(
         apart = after - before
         scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
         between[name] = math.hypot(further / 2, (1 + order) * scatter / len(pairs) ** rate)
-    parts = [f"cof_{part}" for part in ("adhesion", "hysteresis", "viscous")]
-    values["cof"] = sum(values[name] for name in parts)
-    between["cof"] = sum(between[name] for name in parts)
+    for whole in (values, between):
+        whole["cof"] = sum(whole[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
     if not lugs:
         return ShoeAngles(tuple(answers), values, len(failed), own, between=between)
     by_angle = {}
@@ -361,12 +358,6 @@ def _places_on_grids(
             return all_places, all_places, spacing
         return all_places, all_places[::2], coarse
     return shoe_angles(), shoe_angles()[: 3 if quick else 1], spacing if quick else coarse
-
-
-def pattern_periods(case: Case) -> Array:
-    """Return the shifts that bring the tread of a case onto itself, (n, 2), m."""
-    tread = _tread(case)
-    return file_periods(case) if tread is None else tread.periods
 
 
 def position_count(case: Case, *, quick: bool) -> int:

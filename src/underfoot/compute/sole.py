@@ -279,16 +279,31 @@ def _read(path: str, checksum: str, settings: "FileSettings") -> "FileOutsole":
 
 
 @lru_cache(maxsize=4)
-def _periods(path: str, checksum: str, settings: "FileSettings") -> NDArray[np.float64]:
+def _tread(path: str, checksum: str, settings: "FileSettings") -> tuple[NDArray[np.float64], ...]:
     # compiled: numba takes a while to import
-    from underfoot.shoe.tread_shift import tread_periods
+    from underfoot.shoe.tread_shift import carried_base, tread_periods, tread_place
 
-    return tread_periods(_read(path, checksum, settings).surface)
+    surface = _read(path, checksum, settings).surface
+    periods = tread_periods(surface)
+    lowest = np.fmin.reduce(np.where(surface.inside, carried_base(surface), np.nan), axis=1)
+    return periods, tread_place(surface, periods), surface.x, lowest
 
 
 def file_periods(case: Case) -> NDArray[np.float64]:
     """Return the periods (n, 2) of the tread in the case's outsole file, m; ``tread_periods``."""
-    return _periods(*_file_key(case))
+    return _tread(*_file_key(case))[0]
+
+
+def tread_on_sole(case: Case) -> tuple[NDArray[np.float64], ...]:
+    """Return the periods of a tread (n, 2; m), where it begins, and the new sole under it.
+
+    It begins in shares (n,) of them, in a file where it has most land; the sole: x and height, m.
+    """
+    if case.shoe.outsole is not None:
+        return _tread(*_file_key(case))
+    shape = cast("Any", new_sole(case))
+    periods = shape.tread.periods
+    return periods, shape.tread.offset @ np.linalg.pinv(periods), *shape.centre_line()
 
 
 def file_surface(case: Case, shift: tuple[float, float] = (0.0, 0.0)) -> SoleSurface:

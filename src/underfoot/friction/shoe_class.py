@@ -212,14 +212,11 @@ def _ln_cof(
 ) -> Array:
     """Return draws of ln COF of the sole in a test house, without the error of a reading."""
     pair = replace(law.pair, floor_rq=test.floor_rq, family=test.family, floor_slope=None)
-    drawn = pair.drawn(replace(draws, errors=_of_the_sole(draws.errors)), seed + 1)
+    # what goes with the sole into another laboratory
+    errors = {name: each for name, each in draws.errors.items() if name.startswith("sole_rq")}
+    drawn = pair.drawn(replace(draws, errors=errors), seed + 1)
     terms = ContactTerms(*(drawn[name] for name in TERMS))
     cof = terms.adhesion(CONTACT_PRESSURE, test.viscosity * SPEED) + terms.hysteresis
     error = tread_error(test.viscosity)
     tread = error.draws(place, samples=draws.count, seed=seed, known=draws.errors)
     return np.log(cof * drawn["laboratory"] * drawn["pair"]) + tread
-
-
-def _of_the_sole(errors: Mapping[str, Array]) -> dict[str, Array]:
-    """Return the errors that go with the sole into another laboratory."""
-    return {name: value for name, value in errors.items() if name.startswith("sole_rq")}

@@ -209,7 +209,9 @@ def change_effects(
                 effects[number] = there.effect(
                     changes[number], variant, present, seen.errors["cof"]
                 )
-    alike = {number for number, each in variants.items() if quick and _same_plan(case, each)}
+    plans = {n: [getattr(v.shoe, part) for part in _OF_THE_PLAN] for n, v in variants.items()}
+    plan = [getattr(case.shoe, part) for part in _OF_THE_PLAN]
+    alike = {number for number, each in plans.items() if quick and each == plan}
     one_position = _ONE_POSITION if lugs else {}
     runs = {
         number: each.replace(one_position) if number in alike else each
@@ -270,7 +272,3 @@ def _continued(march: Continuation, change: Change, lugs: bool) -> Preview | Non
     # a large change of a film under a plain sole changes what a degree of shoe angle does to it
     most = max(MOST_ERROR, spread) if lugs else MOST_ERROR
     return seen if seen.errors["cof"] <= most else None
-
-
-def _same_plan(case: Case, variant: Case) -> bool:
-    return all(getattr(case.shoe, name) == getattr(variant.shoe, name) for name in _OF_THE_PLAN)

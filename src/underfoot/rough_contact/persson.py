@@ -131,7 +131,7 @@ def yang_persson_mean_gap(
     u(p) = sqrt(pi) int q^2 C(q) w(q) int_p^inf [gamma + 3 (1-gamma) P^2] exp(-(w p'/E*)^2) dp'/p'
     dq, w(q) = (pi int_q0^q q^3 C dq)^(-1/2), P = erf(w p'/E*), E* = E/(1-nu^2).
     It follows from p = -dU/du with the stored energy U = (pi/2) E* int q^2 C [gamma P +
-    (1-gamma) P^3] dq. At light load p ~ exp(-u/u0), see ``yang_persson_decay_length``.
+    (1-gamma) P^3] dq. At light load p ~ exp(-u/u0), u0 = sqrt(pi) gamma int q^2 C w dq.
 
     Elastic only: a sliding viscoelastic contact dissipates, so no stored energy gives its gap.
     ``wavenumber`` (rad/m, rising), ``spectrum`` C(q) in m^4 with <h^2> = 2 pi int q C dq.
@@ -144,15 +144,6 @@ def yang_persson_mean_gap(
     with np.errstate(divide="ignore"):
         x = p[:, None] * (1.0 - poisson_ratio**2) / (modulus * math.sqrt(math.pi) * root)
     return 2.0 * np.asarray(np.trapezoid(_inner_integral(x, gamma) * inverse, root, axis=1))
-
-
-def yang_persson_decay_length(
-    wavenumber: ArrayLike, spectrum: ArrayLike, gamma: float = GAP_GAMMA
-) -> float:
-    """Return u0 (m) of p ~ exp(-u/u0) at light load: sqrt(pi) gamma int q^2 C w dq."""
-    q, c = checked_spectrum(wavenumber, spectrum)
-    root, inverse = _root_grid(q, c)
-    return 2.0 * gamma * float(np.trapezoid(inverse, root))
 
 
 def _root_grid(q: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

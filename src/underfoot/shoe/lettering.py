@@ -52,7 +52,8 @@ class Lettering:
             low, high = np.min(shell, axis=0), np.max(shell, axis=0)
             inner = [h for h in self.holes if (low < h[0]).all() and (h[0] < high).all()]
             area = _area(shell) - sum(map(_area, inner))
-            widths.append(2 * area / sum(map(_perimeter, (shell, *inner))))
+            sides = (zip(ring, (*ring[1:], ring[0]), strict=True) for ring in (shell, *inner))
+            widths.append(2 * area / sum(math.dist(*ends) for ring in sides for ends in ring))
         return min(widths)
 
     @cached_property
@@ -82,7 +83,3 @@ class Lettering:
 def _area(ring: Ring) -> float:
     x, y = np.array(ring).T
     return float(abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2)
-
-
-def _perimeter(ring: Ring) -> float:
-    return sum(math.dist(a, b) for a, b in zip(ring, (*ring[1:], ring[0]), strict=True))

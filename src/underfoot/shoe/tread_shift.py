@@ -1,5 +1,6 @@
 """A tread known by its heights, moved under its sole: bevel, rocker and plan form stay."""
 
+import math
 from dataclasses import replace
 from itertools import product
 
@@ -53,6 +54,20 @@ def tread_periods(surface: SoleSurface) -> Array:
         )
         return np.diag([min(pitch, LONGEST_PERIOD)] * 2)
     return np.array(periods) * surface.spacing
+
+
+def tread_place(surface: SoleSurface, periods: Array) -> Array:
+    """Return where the tread has most land by its first waves, in shares (n,) of its periods."""
+    inside = surface.inside
+    x, y = np.meshgrid(surface.x, surface.y, indexing="ij")
+    window = inside.astype(np.float64)  # keeps the rim out of the waves
+    for place in (x, y):
+        ends = place[inside].min(), place[inside].max()
+        window *= np.sin(math.pi * np.clip((place - ends[0]) / (ends[1] - ends[0]), 0, 1)) ** 2
+    land = window * (surface.land - np.average(surface.land, weights=window))
+    shares = np.stack([x, y], axis=-1) @ np.linalg.pinv(periods)
+    waves = np.exp(-2j * math.pi * shares)
+    return -np.angle(np.einsum("ij,ijk->k", land, waves)) / (2 * math.pi)
 
 
 def _likeness(surface: SoleSurface) -> Array:

@@ -87,9 +87,12 @@ def unlikely_flags(
         value = features[law.feature]
         likelihood = law.likelihood(value)
         if likelihood < UNLIKELY:
+            rare = (
+                f"1 step in {1.0 / likelihood:.0f}" if likelihood > 1e-5 else "no step in 100 000"
+            )
             text = (
                 f"{law.feature} {law.shown(value):.3g}, where sound steps have "
-                f"{law.shown(law.mean):.3g}: as far out lies {_share(likelihood)}"
+                f"{law.shown(law.mean):.3g}: as far out lies {rare}"
             )
             limit = law.shown(law.limit(value))
             flags.append(
@@ -112,7 +115,3 @@ def impossible(features: Mapping[str, float], known: tuple[Reference, ...] | Non
                 "gain, unit or axes of the forces?"
             )
     return ""
-
-
-def _share(likelihood: float) -> str:
-    return f"1 step in {1.0 / likelihood:.0f}" if likelihood > 1e-5 else "no step in 100 000"
