@@ -326,6 +326,7 @@ def test_one_position_is_the_case_s_own(bars):
     more = run(coarse)
     cof, load = more.fields["position_cof"], more.fields["position_fluid_load"]
     assert cof.size == 6
+    assert cof.attrs["as_described"] == pytest.approx(one.value("cof"), rel=1e-12)
     assert f"(COF {one.value('cof'):.3g}, " in more.labels["tread_position"]
     assert more.value("cof") == pytest.approx(float(cof.mean()), rel=1e-12)
     assert more.value("fluid_load") == pytest.approx(float(load.mean()), rel=1e-12)

@@ -180,15 +180,16 @@ class TreadPositions:
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
 
-        def at(values: Any, unit: str, name: str) -> tuple[str, Any, dict[str, str]]:
-            return ("tread_position", values, {"units": unit, "long_name": name})
+        def at(values: Any, unit: str, name: str, **more: float) -> tuple[str, Any, dict[str, Any]]:
+            return ("tread_position", values, {"units": unit, "long_name": name, **more})
 
+        cof, film = ({"as_described": self.at_own_place[n]} for n in ("cof", "fluid_load"))
         shift = np.array([place.shift for place in self.places])
         return {
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
-            "position_cof": at(self.values["cof"], "1", "coefficient of friction"),
-            "position_fluid_load": at(self.values["fluid_load"], "N", "load carried by the fluid"),
+            "position_cof": at(self.values["cof"], "1", "coefficient of friction", **cof),
+            "position_fluid_load": at(self.values["fluid_load"], "N", "load on the film", **film),
         }
 
     def _range(self, name: str, unit: str = "1") -> str:

@@ -244,12 +244,12 @@ def change_effects(
 
 
 def _levels(present: Result) -> tuple[_Level, _Level]:
-    """Return the mean of a result over the positions of its tread, and its first position."""
+    """Return the mean of a result over the positions of its tread, and its own position."""
     mean = _Level(present.value("cof"), present.value("fluid_load"))
     if "position_cof" not in present.data:
         return mean, mean
-    first = (np.asarray(present.data[f"position_{name}"])[0] for name in _Level._fields)
-    return mean, _Level(*map(float, first))
+    own = (present.data[f"position_{name}"].attrs["as_described"] for name in _Level._fields)
+    return mean, _Level(*own)
 
 
 def _march(case: Case, progress: Progress) -> Continuation | None:
