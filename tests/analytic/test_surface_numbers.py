@@ -34,6 +34,10 @@ from underfoot.surface import (
 UM, MM = 1e-6, 1e-3
 
 
+def mean_square(spectrum):
+    return float(np.sum(spectrum.density * spectrum.area))
+
+
 def wave(amplitude, wavelength, length=5.6 * MM, spacing=0.5 * UM):
     x = spacing * np.arange(round(length / spacing))
     return Profile(amplitude * np.sin(2 * np.pi * x / wavelength), spacing)
@@ -229,11 +233,11 @@ def test_areal_numbers_of_a_wave_and_a_checkerboard():
 def test_parseval_of_profiles_and_maps(n):
     z = np.random.default_rng(1).standard_normal((n, 200)) * UM
     surface = HeightMap(z - z.mean(), 1 * UM, periodic=True)
-    assert isotropic_spectrum(surface).mean_square == pytest.approx(z.var(), rel=1e-12)
+    assert mean_square(isotropic_spectrum(surface)) == pytest.approx(z.var(), rel=1e-12)
     line = Profile(z[:, 0], 1 * UM, periodic=True)
-    assert profile_spectrum(line).mean_square == pytest.approx(z[:, 0].var(), rel=1e-12)
+    assert mean_square(profile_spectrum(line)) == pytest.approx(z[:, 0].var(), rel=1e-12)
     windowed = profile_spectrum(Profile(z[:, 0], 1 * UM))
-    assert windowed.mean_square == pytest.approx(z[:, 0].var(), rel=0.2)
+    assert mean_square(windowed) == pytest.approx(z[:, 0].var(), rel=0.2)
     assert "hann" in " ".join(windowed.notes)
 
 
@@ -369,7 +373,7 @@ def test_a_surface_made_from_a_spectrum_has_it():
     with pytest.raises(InputError, match="4 x 4"):
         surface_from_spectrum(spectrum, 2, 1 * UM, 0)
     narrow = spectrum.within(1e5, 4e5)
-    assert narrow.mean_square < spectrum.mean_square
+    assert mean_square(narrow) < mean_square(spectrum)
     with pytest.raises(InputError, match="wave number"):
         spectrum.within(1e9, 1e10)
 

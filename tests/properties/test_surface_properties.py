@@ -19,6 +19,10 @@ from underfoot.surface import (
 seeds = st.integers(0, 10_000)
 
 
+def mean_square(spectrum):
+    return float(np.sum(spectrum.density * spectrum.area))
+
+
 @settings(deadline=None, max_examples=30)
 @given(seeds, st.floats(1e-3, 1e3), st.floats(-1e3, 1e3))
 def test_numbers_scale_with_the_heights_and_ignore_the_level(seed, factor, level):
@@ -52,9 +56,9 @@ def test_parseval_on_any_grid(seed, nx, ny, spacing):
     z = np.random.default_rng(seed).standard_normal((nx, ny))
     z -= z.mean()
     found = isotropic_spectrum(HeightMap(z, spacing, periodic=True))
-    assert found.mean_square == pytest.approx(np.mean(z**2), rel=1e-10)
+    assert mean_square(found) == pytest.approx(np.mean(z**2), rel=1e-10)
     line = Profile(z[:, 0], spacing, periodic=True)
-    assert profile_spectrum(line).mean_square == pytest.approx(z[:, 0].var(), rel=1e-10)
+    assert mean_square(profile_spectrum(line)) == pytest.approx(z[:, 0].var(), rel=1e-10)
 
 
 @settings(deadline=None, max_examples=20)
