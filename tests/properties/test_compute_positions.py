@@ -382,6 +382,7 @@ def test_a_turned_shoe_that_can_t_go_on_is_marched_and_one_without_answer_is_sai
     assert "its angle counts as exact" in alone.summary().split("\n\n")[0]
 
 
+@pytest.mark.slow
 def test_the_mean_does_not_depend_on_where_the_pattern_begins(bars):
     single, mean = [], []
     for offset in ("0 mm", "1.25 mm", "4 mm"):

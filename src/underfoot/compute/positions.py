@@ -383,15 +383,15 @@ def treaded(case: Case) -> bool:
 
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
-    if position_count(case, quick=quick) == 1:
+    count, lugs, numerics = position_count(case, quick=quick), treaded(case), case.numerics
+    if count == 1:
         return 1.0
-    spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
-    all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
-    marches = (
-        len({Place(), *on_run_grid})
-        + (coarse != spacing) * len(all_places) * (spacing / coarse) ** 2
-    )
-    if treaded(case):  # a history of the motion is marched at both angles
+    share = numerics.grid_spacing / numerics.quick_grid_spacing
+    if quick or (lugs and share >= 1):
+        marches = float(count + lugs)
+    else:
+        marches = 1 + math.ceil(count / 2) * lugs + count * share**2
+    if lugs:  # a history of the motion is marched at both angles
         marches += len(TURNED) * (case.motion.build() is not None)
     return 1 / marches
 
