@@ -13,7 +13,7 @@ from .axes import Axes
 from .events import Stance, stances
 from .likelihood import impossible
 from .measurement import Flag, Measurement, remark
-from .plates import baseline_words, plate_axes, up_from_normal
+from .plates import baseline_words, plate_up
 from .plausibility import (
     baseline_error,
     judged_features,
@@ -269,7 +269,7 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
     """
     if plate.corners is None or stance.walking is None:
         return ()
-    normal = up_from_normal(plate_axes(plate.corners)[:, 2])
+    normal = plate_up(plate.corners, axes.up)
     slope = math.atan2(-float(normal @ stance.walking), float(normal @ axes.up))
     stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
     if abs(slope - stated) <= _TILT:

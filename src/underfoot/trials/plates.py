@@ -190,7 +190,10 @@ def finished_plate(
         seen.append(Flag("size", text, True, peak, _LOADED, "N"))
     elif peak <= 0.05:
         seen.append(remark("never loaded"))
-    if centre_of_pressure is None and moment is not None and corners is not None:
+    if centre_of_pressure is not None:
+        loaded = force @ up > _LOADED
+        centre_of_pressure = np.where(loaded[:, None], centre_of_pressure, np.nan)
+    elif moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
     return Plate(
         name, force, rate, start, moment, centre_of_pressure, corners, baseline, samples, kind,
@@ -223,13 +226,16 @@ def baseline_words(plate: Plate) -> str:
     return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
 
 
-def up_from_normal(normal: np.ndarray) -> np.ndarray:
-    """Return the normal (3,) turned so that its largest component is positive.
+def plate_up(corners: np.ndarray | None, up: np.ndarray) -> np.ndarray:
+    """Return the normal (3,) out of a plate's surface, on the side that is up in the laboratory.
 
-    Laboratories have their vertical axis upward; a plate's own z axis points down.
+    Without corners, and where they stand across the vertical that a person gave, it is ``up``.
     """
-    largest = int(np.argmax(np.abs(normal)))
-    return normal if normal[largest] > 0 else -normal
+    if corners is None:
+        return up
+    normal = plate_axes(corners)[:, 2]
+    height = float(normal @ up)
+    return up if abs(height) < 0.5 else normal * np.sign(height)
 
 
 def _upside_down(vertical: np.ndarray) -> bool:

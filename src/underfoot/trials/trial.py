@@ -134,6 +134,17 @@ class Event:
     source: str = "found"
 
 
+@dataclass(frozen=True, slots=True)
+class Vertical:
+    """The axis that is up in a laboratory, and what told it.
+
+    ``axis`` is a unit vector (3,) out of the floor, ``source`` is in words.
+    """
+
+    axis: tuple[float, float, float]
+    source: str
+
+
 MADE_UP = "underfoot trials simulate"
 """The software that a made-up recording names."""
 EDITS = ("contact", "toe off", "exclude", "side", "plate")
@@ -186,7 +197,8 @@ class Trial(Presentable):
     the SHA-256 of the file's bytes (hex). ``notes`` tell what reading found or did (units
     converted, duplicates renamed, plates refused), ``events`` are those written in the file,
     ``edits`` the changes by hand that ``stances`` applies, ``settings`` facts of the header as text
-    (set load, step type, subject mass in kg ...).
+    (set load, step type, subject mass in kg ...). ``vertical`` is the axis in which the plates were
+    worked out, None where reading found none.
     """
 
     name: str
@@ -199,6 +211,7 @@ class Trial(Presentable):
     events: tuple[Event, ...] = ()
     edits: tuple[Edit, ...] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
+    vertical: Vertical | None = None
 
     def channel(self, *names: str) -> Channel:
         """Return the first channel that has one of ``names`` (capitals and blanks ignored).
@@ -258,6 +271,7 @@ def joined(first: Trial, second: Trial) -> Trial:
         checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
         events=(*first.events, *second.events),
         settings={**first.settings, **second.settings},
+        vertical=next((one.vertical for one in (first, second) if one.plates), first.vertical),
     )
 
 

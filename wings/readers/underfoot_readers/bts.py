@@ -6,7 +6,7 @@ from underfoot.trials.readers.columns import trial_from_sheet
 from underfoot.trials.readers.draft import Draft
 from underfoot.trials.readers.sheet import Sheet
 from underfoot.trials.readers.text import is_number, split
-from underfoot.trials.trial import Event, Trial
+from underfoot.trials.trial import Event, Trial, Vertical
 
 _EVENTS = {"RHS": ("heel contact", "right"), "LHS": ("heel contact", "left"),
            "RTO": ("toe off", "right"), "LTO": ("toe off", "left")}  # fmt: skip
@@ -41,6 +41,7 @@ def read_bts(draft: Draft) -> Trial:
         kind = header.get("type", "table")
         raise draft.error(f'"{kind}" is no recording in time', remedy="Export tracks")
     draft.count(header.get("frames", ""), len(numbers), "Frames")
+    draft.up = Vertical((0.0, 1.0, 0.0), "y as BTS has it")
     unit = header.get("measure unit", "")
     tracks = {key: column for key, column in named.items() if key.casefold() != "frame"}
     units = {key: "s" if key == "Time" else unit for key in tracks}

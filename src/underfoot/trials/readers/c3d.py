@@ -100,10 +100,19 @@ def parse(data: bytes, where: str) -> C3DFile:
     width = 4 * n_points + n_analog
     size = 4 if real else 2
     used = int(shell.number("ROTATION", "USED"))
-    first, last = _frame_range(words, shell, (len(data) - data_start) // max(width * size, 1))
-    frames = last - first + 1
+    end = min([at for at in _later_sections(shell, used, start) if at > data_start] + [len(data)])
+    first, counts = _frame_counts(words, shell)
     if width or not used > 0:
-        _check_size(len(data), data_start, frames, width * size, where)
+        if width == 0 or not any(counts.values()):
+            raise DataError("holds neither points nor analog samples", where=where)
+        if data_start < BLOCK or data_start >= len(data):
+            raise DataError("truncated: the data section is missing", where=where)
+        frames, said = _frames(data[data_start:end], width * size, counts, where)
+        notes += said
+    else:
+        frames = max(counts.values())
+    if n_points != (points_used := shell.number("POINT", "USED", n_points)):
+        notes.append(f"the header counts {n_points} points, POINT:USED {points_used:g}")
     kind = "f4" if real else "i2"
     if not width:
         raw = np.empty(0)
@@ -144,37 +153,62 @@ def _rotations(
     return poses, rate * max(round(ratio), 1)
 
 
-def _check_size(length: int, start: int, frames: int, width: int, where: str) -> None:
-    if width == 0 or frames < 1:
-        raise DataError("holds neither points nor analog samples", where=where)
-    if start < BLOCK or start >= length:
-        raise DataError("truncated: the data section is missing", where=where)
-    whole = (length - start) // width
-    if whole < frames:
-        words = f"truncated or damaged: the header says {frames} frames, the file holds {whole}"
-        raise truncated(words, where)
+def _later_sections(shell: C3DFile, rotations: int, parameters: int) -> list[int]:
+    """Where other sections of the file begin (bytes)."""
+    poses = (int(shell.number("ROTATION", "DATA_START")) - 1) * BLOCK
+    return [parameters, poses] if rotations > 0 else [parameters]
 
 
-def _frame_range(header: np.ndarray, shell: C3DFile, whole: int) -> tuple[int, int]:
-    """Header words hold 16 bits; longer recordings put the range in parameters.
+def _frame_counts(header: np.ndarray, shell: C3DFile) -> tuple[int, dict[str, int]]:
+    """Return the number of the first frame, and how many frames each place of the file counts.
 
-    Where the header's range can't be, that of POINT:FRAMES counts, if just so many (``whole``, but
-    for the last block's padding) are there.
+    Words of the header hold 16 bits, and so do whole numbers of parameters: newer places hold more.
     """
     first, last = int(header[3]), int(header[4])
-    stated = int(shell.number("POINT", "FRAMES")) % 65536
-    if 0 < stated <= whole and (last < first or whole < last - first + 1):
-        return max(first, 1), max(first, 1) + stated - 1
+    counts = {"POINT:FRAMES": int(shell.number("POINT", "FRAMES"))}
+    counts["POINT:FRAMES"] += 65536 * (counts["POINT:FRAMES"] < 0)
+    counts["POINT:LONG_FRAMES"] = int(shell.number("POINT", "LONG_FRAMES"))
     names = ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD")
-    ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") % 65536 for name in names]
+    ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") for name in names]
     if ends[0].size == 2 and ends[1].size == 2:
-        low, high = (int(end[0]) + 65536 * int(end[1]) for end in ends)
-        if high >= low and (high % 65536 == last or last == 65535):
-            return low, high
-    frames = int(shell.number("POINT", "LONG_FRAMES") or 0)
-    if last == 65535 and frames > last - first + 1:
-        return first, first + frames - 1
-    return first, last
+        low, high = (int(end[0] % 65536) + 65536 * int(end[1] % 65536) for end in ends)
+        counts["TRIAL"] = high - low + 1
+        if low % 65536 == first % 65536:
+            first = low
+    counts["the header"] = last - int(header[3]) + 1
+    counts = {place: count for place, count in counts.items() if count > 0}
+    return max(first, 1), counts
+
+
+def _frames(
+    section: bytes, width: int, counts: dict[str, int], where: str
+) -> tuple[int, list[str]]:
+    """Return how many frames of ``width`` bytes a data section holds, and what else was said.
+
+    Its bytes decide: the count that fills its last block, else all frames down to the last byte
+    that is not zero. Fewer bytes than every place counts: the file is cut short, a DataError.
+    """
+    whole = len(section) // width
+    fewest = max(len(section) - BLOCK, 0) // width + 1
+    fitting = [count for count in counts.values() if fewest <= count <= whole]
+    largest = max(counts.values())
+    if fitting:
+        frames = fitting[0]
+    elif largest > whole:
+        words = f"truncated or damaged: {largest} frames are counted, the file holds {whole}"
+        raise truncated(words, where)
+    else:
+        content = len(section[: whole * width].rstrip(b"\0"))
+        frames = max(largest, -(-content // width))
+    told = {
+        place: count
+        for place, count in counts.items()
+        if count != frames and count != frames % 65536 and not (count == 65535 < frames)
+    }
+    if not told:
+        return frames, []
+    listed = ", ".join(f"{place} {count}" for place, count in told.items())
+    return frames, [f"frames are counted in two ways ({listed}): the data hold {frames}, all read"]
 
 
 def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tuple[float, float]:
@@ -311,9 +345,7 @@ def read_c3d(draft: Draft) -> Trial:
     raw = parse(draft.data, draft.name)
     unit = (raw.texts("POINT", "UNITS") or [""])[0]
     places = raw.points if raw.points.size else raw.rotations[..., :3, 3]
-    size = np.nanmedian(np.abs(places)) if np.isfinite(places).any() else 1000.0
-    unknown = f'unit of the markers "{unit}" is not known'
-    scale = draft.length_unit(unit, float(size), unknown, "their size")
+    scale = draft.length_unit(unit, places if np.isfinite(places).any() else np.array(1000.0))
     draft.start = (raw.first_frame - 1) / raw.point_rate if raw.first_frame > 0 else 0.0
     units = raw.texts("ANALOG", "UNITS")
     draft.rate = raw.analog_rate
@@ -413,7 +445,6 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         draft.plate(
             force @ axes.T,
             name,
-            up=plates.up_from_normal(axes[:, 2]),
             moment=moment @ axes.T,
             corners=corners,
             raw=signals,
@@ -452,17 +483,20 @@ def _in_si(
     wanted = {1: "FFFLLM", 2: "FFFMMM", 3: "FFFFFFFF"}[kind]
     kinds = {"F": ("N", 1.0), "L": ("m", scale), "M": ("N*m", scale)}
     factors = np.ones(len(columns))
-    unknown = set()
+    assumed = set()
     for i, (column, letter) in enumerate(zip(columns, wanted, strict=True)):
-        written = units[column] if column < len(units) else ""
+        written = units[column].strip() if column < len(units) else ""
         si, factors[i] = kinds[letter]
         unit = si_unit(written)
         if unit and unit[0] == si:
             factors[i] = unit[1]
+        elif written:
+            words = f'the unit of its channel {column + 1} is "{written}", which is no known {si}'
+            raise DataError(words)
         else:
-            unknown.add(f'"{written}" as {si}')
-    if unknown:
-        notes.append("units assumed: " + ", ".join(sorted(unknown)))
+            assumed.add(si)
+    if assumed:
+        notes.append(f"no unit in the file, taken as {', '.join(sorted(assumed))}")
     return signals * factors
 
 

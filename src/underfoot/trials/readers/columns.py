@@ -7,12 +7,11 @@ import numpy as np
 
 from underfoot.core import DataError, nearest_match
 
-from ..axes import axis_vector
-from ..plates import plate_axes, refused_plate, up_from_normal
+from ..plates import refused_plate
 from ..trial import Trial
 from .draft import Draft
 from .formats import nearest_format
-from .profile import PlateColumns, Profile
+from .profile import PlateColumns
 from .sheet import Sheet, sheet_from
 from .text import is_number, si_unit
 
@@ -183,20 +182,10 @@ def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None
     draft.plate(
         force,
         name if name.startswith("plate") else f"plate {name}",
-        up=_up(force, corners, draft.profile),
         centre_of_pressure=place,
         corners=corners,
         kind="columns " + ", ".join(columns.force),
     )
-
-
-def _up(force: np.ndarray, corners: np.ndarray | None, profile: Profile) -> np.ndarray:
-    if profile.vertical:
-        return axis_vector(profile.vertical)
-    if corners is not None:
-        return up_from_normal(plate_axes(corners)[:, 2])
-    load = np.nan_to_num(np.nanpercentile(np.abs(force), 95, axis=0)) if len(force) else [0.0]
-    return np.eye(3)[int(np.argmax(load))]
 
 
 def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, str, str], str]]:
@@ -206,9 +195,8 @@ def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, st
             continue
         unit = sheet.units.get(triple[0], "")
         if not unit:
-            size = float(np.nanmedian(np.abs(sheet.numbers[triple[2]])))
-            words = f"marker {base} without a unit"
-            unit = "m" if draft.length_unit("", size, words, "its size") == 1.0 else "mm"
+            places = np.column_stack([sheet.numbers[name] for name in triple])
+            unit = "m" if draft.length_unit("", places, f"marker {base}") == 1.0 else "mm"
         if (si_unit(unit) or ("",))[0] == "m":
             markers[base] = (triple, unit)
     return markers
