@@ -472,6 +472,10 @@ def _z_points_down(places: np.ndarray) -> bool:
     return True
 
 
+_COUNTS = ("adc", "adu", "bit", "bits", "count", "counts", "lsb", "unknown", "none", "n/a", "-")
+"""What stands for the unit of a channel before its SCALE: the numbers are in the plate's unit."""
+
+
 def _in_si(
     signals: np.ndarray,
     columns: np.ndarray,
@@ -490,13 +494,13 @@ def _in_si(
         unit = si_unit(written)
         if unit and unit[0] == si:
             factors[i] = unit[1]
-        elif written:
+        elif written and written.casefold() not in _COUNTS:
             words = f'the unit of its channel {column + 1} is "{written}", which is no known {si}'
             raise DataError(words)
         else:
-            assumed.add(si)
+            assumed.add(f'"{written}" as {si}')
     if assumed:
-        notes.append(f"no unit in the file, taken as {', '.join(sorted(assumed))}")
+        notes.append("units assumed: " + ", ".join(sorted(assumed)))
     return signals * factors
 
 
