@@ -7,8 +7,8 @@ import numpy as np
 
 from underfoot.core import DataError, nearest_match
 
-from ..plates import refused_plate
-from ..trial import Trial
+from ..recording.plates import refused_plate
+from ..recording.trial import Trial
 from .draft import Draft
 from .formats import nearest_format
 from .profile import PlateColumns

@@ -9,9 +9,9 @@ import numpy as np
 from underfoot.core import DataError, nearest_match
 from underfoot.core.text import decoded
 
-from ..axes import found_vertical, heel_candidates, toe_candidates
-from ..plates import finished_plate, plate_up
-from ..trial import Channel, Event, Marker, Plate, Trial, Vertical
+from ..recording.axes import found_vertical, heel_candidates, toe_candidates
+from ..recording.plates import finished_plate, plate_up
+from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
 from .seen import KINDS, camera_clock, unseen
 from .text import in_si, known_units, lines_of, rate_of, si_unit, table, unique_names

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..signals import runs
+from ..recording.signals import runs
 
 HELD, STRAIGHT, SIGN = "held", "straight", "sign"
 KINDS = {
