@@ -16,7 +16,7 @@ from ..recording import plates
 from ..recording.measurement import Flag
 from ..recording.trial import Event, Trial
 from .draft import Draft
-from .text import si_unit, truncated
+from .text import force_unit, si_unit, truncated
 
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
@@ -491,7 +491,7 @@ def _in_si(
     for i, (column, letter) in enumerate(zip(columns, wanted, strict=True)):
         written = units[column].strip() if column < len(units) else ""
         si, factors[i] = kinds[letter]
-        unit = si_unit(written)
+        unit = force_unit(written) if si == "N" else si_unit(written)
         if unit and unit[0] == si:
             factors[i] = unit[1]
         elif written and written.casefold() not in _COUNTS:

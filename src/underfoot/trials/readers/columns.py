@@ -13,7 +13,7 @@ from .draft import Draft
 from .formats import nearest_format
 from .profile import PlateColumns
 from .sheet import Sheet, sheet_from
-from .text import is_number, si_unit
+from .text import force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
 _FORCE = re.compile(
@@ -83,7 +83,7 @@ def _column(sheet: Sheet, name: str) -> np.ndarray:
 
 
 def _factor(unit: str, dimension: str, where: str) -> float:
-    known = si_unit(unit)
+    known = force_unit(unit) if dimension == "N" else si_unit(unit)
     if known is None or known[0] != dimension:
         raise DataError(f'"{unit}" is not a known unit of {dimension}', where=where)
     return known[1]
@@ -150,7 +150,7 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
     for _, triple in _triples(sheet, _FORCE):
         names = ", ".join(triple)
         units = {sheet.units.get(name, "") for name in triple}
-        if len(units) > 1 or any((si_unit(unit) or ("",))[0] != "N" for unit in units if unit):
+        if len(units) > 1 or any((force_unit(unit) or ("",))[0] != "N" for unit in units if unit):
             written = ", ".join(sorted(f'"{unit}"' for unit in units))
             draft.plates.append(refused_plate(names, f"{written} is not one known unit of force"))
             continue

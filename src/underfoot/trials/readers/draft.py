@@ -14,7 +14,7 @@ from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
 from .seen import KINDS, camera_clock, unseen
-from .text import in_si, known_units, lines_of, rate_of, si_unit, table, unique_names
+from .text import in_si, known_units, lines_of, rate_of, si_unit, table, truncated, unique_names
 
 _BODY = 0.03, 300.0  # m: markers of a body lie further apart, and no walkway is longer
 _FOOT = 0.06, 0.8  # m from the heel to the toes of any foot
@@ -87,12 +87,20 @@ class Draft:
         """Take rate, start and times from a column of times (s)."""
         self.rate, self.start, self.times = rate_of(times, self.name)
 
-    def count(self, written: str, counted: int, key: str = "") -> None:
-        """Note that the header announces another number of samples than the file holds."""
-        if written.isdigit() and int(written) != counted:
-            said = f"{key} is {written}" if key else f"{written} samples are announced"
-            less = " less than announced: was the file cut short?" if int(written) > counted else ""
-            self.notes.append(f"{said}, the file holds {counted}: all that is there is read{less}")
+    def count(self, written: str, counted: int, key: str = "", *, rows: bool = False) -> None:
+        """Note that the header announces another number of samples than the file holds.
+
+        Fewer than announced are refused as cut short, but where they are ``rows`` of a format whose
+        programs write the number before they drop or cut rows.
+        """
+        if not written.isdigit() or int(written) == counted:
+            return
+        said = f"{key} is {written}" if key else f"{written} samples are announced"
+        less = counted < int(written)
+        if less and not rows:
+            raise truncated(f"truncated or damaged: {said}, the file holds {counted}", self.name)
+        more = ": was the file cut short?" if less else ""
+        self.notes.append(f"{said}, the file holds {counted}: all of them are read{more}")
 
     def channel(
         self,

@@ -2,8 +2,6 @@
 
 import csv
 
-import numpy as np
-
 from ..recording.trial import Trial, Vertical
 from .draft import Draft
 

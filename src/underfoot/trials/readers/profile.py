@@ -10,7 +10,7 @@ from underfoot.core import InputError, nearest_match, to_si
 
 from ..recording.tester_calibration import TesterCalibration
 from ..recording.trial import PlateAccuracy
-from .text import known_units, si_unit
+from .text import force_unit, known_units, si_unit
 
 T = TypeVar("T")
 _DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
@@ -155,7 +155,8 @@ def _text(data: Mapping[str, Any], key: str, where: str) -> str | None:
 
 
 def _unit(text: object, dimension: str, where: str) -> str:
-    unit = si_unit(text) if isinstance(text, str) else None
+    read = force_unit if dimension == "N" else si_unit
+    unit = read(text) if isinstance(text, str) else None
     if unit is None or (dimension and unit[0] != dimension):
         raise InputError(
             f"{text!r} is no known unit" + (f" of {dimension}" if dimension else ""),

@@ -238,15 +238,14 @@ _MOMENTS = {
     for force, ours in _FORCES.items()
     for length, arm in _LENGTHS.items()
 }
-# One spelling of a unit for each word that instruments write; a mass as a unit of force is its
-# weight. Plurals are found by their s.
+# One spelling of a unit for each word that instruments write. Plurals are found by their s.
 _WORDS: dict[str, str] = {
     word: unit
     for unit, words in {
         "N": "newton", "kN": "kilonewton", "daN": "dan decanewton dekanewton", "dyn": "dyne",
-        "kgf": "kg kp kilopond kilogram-force kilogramforce kgforce kilogram kilogramme",
-        "gf": "g pond gram gramme gram-force gramforce", "lbf": "lb pound pound-force poundforce",
-        "ozf": "oz ounce", "m": "meter metre", "dm": "decimeter decimetre dezimeter",
+        "kgf": "kp kilopond kilogram-force kilogramforce kgforce",
+        "gf": "g pond gram-force gramforce", "lbf": "pound-force poundforce",
+        "m": "meter metre", "dm": "decimeter decimetre dezimeter",
         "cm": "centimeter centimetre zentimeter", "mm": "millimeter millimetre",
         "um": "micron micrometer micrometre mikrometer", "nm": "nanometer nanometre",
         "km": "kilometer kilometre", "in": "inch inche zoll \"", "ft": "foot feet fuss '",
@@ -259,6 +258,15 @@ _WORDS: dict[str, str] = {
     }.items()
     for word in words.split()
 }  # fmt: skip
+_WEIGHTS = {
+    word: unit
+    for unit, words in {
+        "kgf": "kg kilo kilogram kilogramme", "gf": "g gram gramme", "lbf": "lb lbm pound",
+        "ozf": "oz ounce",
+    }.items()
+    for word in words.split()
+}  # fmt: skip
+"""Units of mass that stand for their weight where a force is measured."""
 _FACTORS: dict[str, tuple[str, float]] = {
     name: (si, factor)
     for si, units in {
@@ -282,7 +290,7 @@ _FACTORS: dict[str, tuple[str, float]] = {
 }  # fmt: skip
 # Without regard to capitals, but where they decide between two units (mN and MN).
 _ANY_CASE: dict[str, str] = {}
-for _name in (*_FACTORS, *_WORDS):
+for _name in (*_FACTORS, *_WORDS, *_WEIGHTS):
     _ANY_CASE.setdefault(_name.casefold(), _name)
 _ANY_CASE |= {"mn": "mN", "mpa": "MPa", "nm": "N*m", "mn*m": "mN*m"}
 _CELSIUS = {"degc", "c", "deg c", "celsius", "degcelsius", "gradcelsius"}
@@ -292,7 +300,8 @@ _SUFFIXES = re.compile(r"[\s*·⋅×x.-]+")
 def si_unit(text: str) -> tuple[str, float, float] | None:
     """Return (SI unit, factor, offset) of a unit as written in a file, or None if unknown.
 
-    ``si = factor * value + offset``. A force by its mass ("kg", "lb") is its weight.
+    ``si = factor * value + offset``. A mass is no unit of a recording but as a force
+    (``force_unit``).
     """
     plain = text.strip().strip("[](){}").strip().replace("µ", "u").replace("μ", "u")
     plain = plain.replace("°", "deg").replace("Â", "").replace("−", "-").replace("²", "2")
@@ -300,9 +309,11 @@ def si_unit(text: str) -> tuple[str, float, float] | None:
     if plain.casefold().replace(" ", "") in _CELSIUS:
         return "K", 1.0, 273.15
     name = _unit_name(plain)
+    if name in _WEIGHTS:
+        return None
     if name is None:  # a moment: a force and an arm, in either order, with any sign between
         parts = [part for part in _SUFFIXES.split(plain) if part]
-        names = [_unit_name(part) for part in parts]
+        names = [_WEIGHTS.get(n := _unit_name(part) or "", n) for part in parts]
         if len(parts) == 1:
             names = _glued(plain)
         if len(names) == 2:
@@ -316,15 +327,23 @@ def _unit_name(word: str) -> str | None:
     """The one spelling of a unit: as it stands, in other capitals, a word, its plural."""
     for plain in (word, word.replace(" ", "").replace(".", "")):
         for one in (plain, re.sub("[sS]$", "", plain) if len(plain) > 2 else plain):
-            found = one if one in _FACTORS or one in _WORDS else _ANY_CASE.get(one.casefold())
+            known = one in _FACTORS or one in _WORDS or one in _WEIGHTS
+            found = one if known else _ANY_CASE.get(one.casefold())
             if found is not None:
                 return _WORDS.get(found, found)
     return None
 
 
-def _glued(word: str) -> list[str | None]:
+def force_unit(text: str) -> tuple[str, float, float] | None:
+    """Return what ``si_unit`` does of the unit of a force; a mass ("kg", "lb") is its weight."""
+    name = _unit_name(text.strip().strip("[](){}").strip())
+    return ("N", _FORCES[_WEIGHTS[name]], 0.0) if name in _WEIGHTS else si_unit(text)
+
+
+def _glued(word: str) -> list[str]:
     """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm."""
-    pairs = ([_unit_name(word[:i]), _unit_name(word[i:])] for i in range(len(word) - 1, 0, -1))
+    parts = ((word[:i], word[i:]) for i in range(len(word) - 1, 0, -1))
+    pairs = ([_WEIGHTS.get(n := _unit_name(p) or "", n) for p in two] for two in parts)
     return next((p for p in pairs if p[0] in _FORCES and p[1] in _LENGTHS), [])
 
 

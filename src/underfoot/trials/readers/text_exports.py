@@ -8,7 +8,7 @@ from underfoot.core import DataError
 
 from ..recording.trial import Trial, Vertical
 from .draft import Draft
-from .text import is_number, number_after, si_unit, split
+from .text import is_number, number_after, si_unit, split, truncated
 
 
 def read_trc(draft: Draft) -> Trial:
@@ -33,9 +33,13 @@ def read_trc(draft: Draft) -> Trial:
         raise draft.error("truncated: there are no rows")
     columns = 2 + 3 * len(labels)
     rows = [row for line in lines[first:] if (row := line.rstrip(" \t"))]
+    written = header.get("NumFrames", "")
+    cut = len(rows) > 1 and rows[-1].count("\t") < min(row.count("\t") for row in rows[:-1])
+    if cut and written.isdigit() and len(rows) <= int(written):
+        raise truncated("truncated: the last row is shorter than the others", draft.name)
     rows = [row + "\t" * (columns - 1 - row.count("\t")) for row in rows]
     numbers = draft.table(rows, "\t", columns, first + 1)
-    draft.count(header.get("NumFrames", ""), len(numbers), "NumFrames")
+    draft.count(written, len(numbers), "NumFrames", rows=True)
     draft.clock(numbers[:, 1])
     unit = header.get("Units", "")
     positions = numbers[:, 2:].reshape(len(numbers), -1, 3)
@@ -72,7 +76,7 @@ def read_motion(draft: Draft) -> Trial:
     names = draft.names(labels, "column")
     rows = [line.strip() for line in lines[at + 1 :]]
     numbers = draft.table(rows, delimiter, len(labels), at + 2)
-    draft.count(header.get("nrows", ""), len(numbers), "nrows")
+    draft.count(header.get("nrows", ""), len(numbers), "nrows", rows=True)
     draft.count(header.get("ncolumns", ""), len(labels), "ncolumns")
     draft.clock(numbers[:, 0])
     draft.up = Vertical((0.0, 1.0, 0.0), "y by OpenSim's convention: nobody on a plate")
