@@ -152,7 +152,7 @@ class Draft:
         seen = np.abs(places[np.isfinite(places)])
         millimetres = seen.size > 0 and float(np.percentile(seen, 90)) > 20.0
         taken = "mm" if millimetres else "m"
-        self.notes.append(f"{of} have no unit: taken as {taken} from the size of the numbers")
+        self.notes.append(f"{of} without a unit: taken as {taken} from the size of the numbers")
         self.metres = _NAMED[taken]
         return self.metres
 

@@ -50,7 +50,8 @@ def read_trc(draft: Draft) -> Trial:
 
 
 # ground_force_vx, 1_ground_force_vx, R_ground_force_vx, ground_force_1_vx, FP1_vx ...
-_GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])$")
+# and, where a table with two plates of one name went through pandas, ground_force_vx.1
+_GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])(?:\.(?P<number>\d+))?$")
 _REACTION = re.compile(r"ground|grf|force|fp|plate", re.IGNORECASE)
 
 
@@ -69,6 +70,12 @@ def read_motion(draft: Draft) -> Trial:
     at = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
     if at is None:
         raise draft.error("truncated: the column names are missing")
+    if header.get("datatype", "").casefold() == "quaternion":
+        raise draft.error(
+            "orientations of sensors (OpenSense), no forces and no markers",
+            allowed="ground reactions (.mot, .sto) or markers (.trc)",
+            remedy="Record the steps on a force plate, and export its forces and the markers",
+        )
     delimiter = "\t" if "\t" in lines[at] else ""
     labels = split(lines[at].rstrip(), delimiter)
     if labels[0].casefold() not in ("time", "frame", "t"):
@@ -103,11 +110,14 @@ def _header(lines: list[str]) -> dict[str, str]:
 
 
 def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
-    groups: dict[str, dict[str, int]] = {}
+    groups: dict[tuple[str, int], dict[str, int]] = {}
     for i, label in enumerate(labels[1:], start=1):
         match = _GROUND.match(label)
         if match and _REACTION.search(match["base"]):
-            groups.setdefault(match["base"], {}).setdefault(match["kind"], i)
+            number = int(match["number"] or 0)
+            while match["kind"] in groups.setdefault((match["base"], number), {}):
+                number += 1  # columns of one name are those of the next plate
+            groups[match["base"], number][match["kind"]] = i
     for columns in groups.values():
         if not {"vx", "vy", "vz"} <= columns.keys():
             continue
