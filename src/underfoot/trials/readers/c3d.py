@@ -5,6 +5,7 @@ and reads truncated files as if they were whole. Sizes are checked before anythi
 """
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,8 +14,9 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..recording import plates
+from ..recording.axes import axis_vector
 from ..recording.measurement import Flag
-from ..recording.trial import Event, Trial
+from ..recording.trial import Event, Trial, Vertical
 from .draft import Draft
 from .text import force_unit, si_unit, truncated
 
@@ -48,6 +50,16 @@ class C3DFile:
         """Return a parameter as floats in the file's shape; empty when absent or text."""
         value = self.parameters.get(group, {}).get(name)
         return value if isinstance(value, np.ndarray) else np.empty(0)
+
+    def continued(self, group: str, name: str) -> np.ndarray:
+        """Return a parameter of numbers with its continuations (TIMES, TIMES2 ...)."""
+        parts = [self.numbers(group, name)]
+        for number in range(2, 20):
+            part = self.numbers(group, f"{name}{number}")
+            if not part.size or part.shape[:-1] != parts[0].shape[:-1]:
+                break
+            parts.append(part)
+        return np.concatenate(parts, axis=-1) if len(parts) > 1 else parts[0]
 
     def whole_numbers(self, group: str, name: str) -> np.ndarray:
         """Return a parameter as whole numbers; what can't be one is 0."""
@@ -173,9 +185,10 @@ def _frame_counts(header: np.ndarray, shell: C3DFile) -> tuple[int, dict[str, in
     if ends[0].size == 2 and ends[1].size == 2:
         low, high = (int(end[0] % 65536) + 65536 * int(end[1] % 65536) for end in ends)
         counts["TRIAL"] = high - low + 1
-        if low % 65536 == first % 65536:
+        if first in (low % 65536, 65535):
             first = low
-    counts["the header"] = last - int(header[3]) + 1
+    if last < 65535 or not any(count > 0 for count in counts.values()):
+        counts["the header"] = last - int(header[3]) + 1
     counts = {place: count for place, count in counts.items() if count > 0}
     return max(first, 1), counts
 
@@ -235,11 +248,11 @@ def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
     unsigned = any(text.strip().upper() == "UNSIGNED" for text in shell.texts("ANALOG", "FORMAT"))
     if unsigned and not real:
         raw = raw.view(raw.dtype.str.replace("i", "u"))
-    offset = shell.numbers("ANALOG", "OFFSET").ravel(order="F")
+    offset = shell.continued("ANALOG", "OFFSET").ravel(order="F")
     if unsigned:
         offset = np.where(offset < 0, offset + 65536, offset)
     general = shell.number("ANALOG", "GEN_SCALE", 1.0)
-    scale = shell.numbers("ANALOG", "SCALE").ravel(order="F")
+    scale = shell.continued("ANALOG", "SCALE").ravel(order="F")
     samples = (raw - _padded(offset, n, 0.0)) * (_padded(scale, n, 1.0) * general)
     return np.where(np.abs(samples) < _POSSIBLE, samples, np.nan)
 
@@ -377,6 +390,10 @@ def read_c3d(draft: Draft) -> Trial:
     if left_out:
         draft.notes.append(f"{left_out} points are computed angles, forces or powers: left out")
     draft.events, draft.settings = _events(raw), _settings(raw)
+    screen = (raw.texts("POINT", "Y_SCREEN") or [""])[0]
+    if re.fullmatch("[+-][XYZxyz]", screen):
+        x, y, z = axis_vector(screen.lower()).tolist()
+        draft.up = Vertical((x, y, z), "upward on the screen, POINT:Y_SCREEN")
     return draft.trial("C3D")
 
 
@@ -517,7 +534,7 @@ def _of_plate(
 
 
 def _events(raw: C3DFile) -> tuple[Event, ...]:
-    times = raw.numbers("EVENT", "TIMES")
+    times = raw.continued("EVENT", "TIMES")
     if times.ndim == 1 and times.size == 2:
         times = times[:, None]
     if times.ndim != 2 or times.shape[0] != 2:
