@@ -77,14 +77,23 @@ def correlated_error(values: np.ndarray) -> float | None:
     return float(means.std(ddof=1) / np.sqrt(batches))
 
 
-NORMAL = ("normal force", "normal", "load", "fz", "fn", "force z")
-SHEAR = ("friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft")
-SPEED = ("sliding speed", "speed", "velocity")
-COF = ("cof", "friction coefficient", "traction coeff", "traction coefficient")
+NORMAL = (
+    "normal force", "normal", "load", "fz", "fn", "force z", "daq.fz", "normalkraft",
+)  # fmt: skip
+SHEAR = (
+    "friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft", "daq.fx",
+    "reibkraft", "reibungskraft",
+)  # fmt: skip
+SPEED = ("sliding speed", "speed", "velocity", "max linear speed")
+COF = (
+    "cof", "friction coefficient", "traction coeff", "traction coefficient", "daq.cof", "µ", "mu",
+    "reibwert", "reibungszahl",
+)  # fmt: skip
 _LIFTED = 0.1  # share of the load below which the pin has left the disk
 _LONG = 30, 0.5  # samples and s that an unloaded stretch needs to be a zero
 _KEPT = 0.2, 0.8  # part of such a stretch, away from where the pin touches and leaves
 _STROKE = 0.25, 0.75  # part of a stroke, away from where it turns
+_STROKES = "the middle half of each, in both directions"
 _FEWEST_TURNS = 4
 _REGULAR = 0.2  # relative scatter of the strokes of a machine
 
@@ -227,8 +236,11 @@ def _ratio(
         channel = _channel(trial, COF)
         if channel is None:
             raise problem from None
-        choices = {"cof": "column of the file"}
-        return np.abs(channel.values), None, None, channel, choices, [], None
+        choices, ratio = {"cof": "column of the file"}, np.abs(channel.values)
+        if (strokes := _strokes(channel.values)) is not None:
+            choices["strokes"] = _STROKES
+            ratio = np.where(strokes[0], np.abs(channel.values - strokes[1]), np.nan)
+        return ratio, None, None, channel, choices, [], None
     if len(normal.values) != len(shear.values):
         raise DataError("normal and shear force differ in length", where=trial.name)
     choices, flags = {"cof": "|shear| / |normal|"}, []
@@ -255,7 +267,7 @@ def _ratio(
         sliding, middle = strokes
         if zero_error is None:
             push = push - middle
-        choices["strokes"] = "the middle half of each, in both directions"
+        choices["strokes"] = _STROKES
         ratio = np.where(pressed & sliding, np.abs(push) / np.where(pressed, size, 1.0), np.nan)
     else:
         ratio = np.where(pressed, np.abs(push) / np.where(pressed, size, 1.0), np.nan)

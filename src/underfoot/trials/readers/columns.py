@@ -21,6 +21,18 @@ _PLATE = re.compile(
     r"[ _]?pressure)[ _.]?(?P<axis>[xyz])(?P<after>.*)$",
     re.I,
 )
+# Names of a tribometer's columns, letters only.
+_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load"}
+_SHEAR = {
+    "frictionforce",
+    "shearforce",
+    "tangentialforce",
+    "reibkraft",
+    "reibungskraft",
+    "fx",
+    "ft",
+}
+_COF = {"cof", "\u03bc", "frictioncoefficient", "coefficientoffriction", "reibwert", "reibungszahl"}
 _WHAT = re.compile(r"(forces?|moments?|torques?|cop|centre|center)[ _.:]*$", re.I)
 _FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 _POINT = re.compile(r"^(?P<before>.*?)[ _.:]?(?P<axis>[xyz])$", re.I)
@@ -38,13 +50,23 @@ def read_columns(draft: Draft) -> Trial:
     own = draft.profile
     sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
     above = [line for line in sheet.header if line.strip()]
-    if not own.name and not own.plates and not own.channels and len(above) > _PREAMBLE:
+    named = own.name or own.plates or own.channels or _is_known(sheet)
+    if not named and len(above) > _PREAMBLE:
         words = f"text of an unknown system: {len(above)} lines stand above the table"
         remedy = "Name its columns in a profile, or export as C3D or as a plain table"
         nearest = nearest_format(above)
         raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
     kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
     return trial_from_sheet(draft, sheet, kinds.get(draft.data[:4], "text table"))
+
+
+def _is_known(sheet: Sheet) -> bool:
+    """Whether the columns tell by themselves what they are: a time, and forces or a COF."""
+    folded = {re.sub("^daq|[^a-z\u03bc]", "", name.casefold()) for name in sheet.numbers}
+    forces = folded & _NORMAL and folded & _SHEAR
+    return any(_is_time(sheet, name) for name in sheet.numbers) and bool(
+        forces or folded & _COF or _plate_groups(sheet)
+    )
 
 
 def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
@@ -116,7 +138,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
         raise draft.error(f'the time column has the unit "{written}"')
     if not written:
         draft.notes.append("time without a unit: taken as s")
-    draft.clock(values * unit[1])
+    draft.clock(values * unit[1], restarts=True)
 
 
 def _is_time(sheet: Sheet, name: str) -> bool:

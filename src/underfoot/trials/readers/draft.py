@@ -14,7 +14,17 @@ from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
 from .seen import KINDS, camera_clock, unseen
-from .text import in_si, known_units, lines_of, rate_of, si_unit, table, truncated, unique_names
+from .text import (
+    in_si,
+    known_units,
+    lines_of,
+    rate_of,
+    si_unit,
+    table,
+    truncated,
+    unique_names,
+    without_restarts,
+)
 
 _BODY = 0.03, 300.0  # m: markers of a body lie further apart, and no walkway is longer
 _FOOT = 0.06, 0.8  # m from the heel to the toes of any foot
@@ -83,8 +93,17 @@ class Draft:
         """Return unique names; duplicates become a note."""
         return unique_names(labels, kind, self.notes)
 
-    def clock(self, times: np.ndarray) -> None:
-        """Take rate, start and times from a column of times (s)."""
+    def clock(self, times: np.ndarray, *, restarts: bool = False) -> None:
+        """Take rate, start and times from a column of times (s).
+
+        ``restarts``: the clock may begin anew with each step of a machine.
+        """
+        if restarts:
+            times, count = without_restarts(times)
+            if count:
+                self.notes.append(
+                    f"the clock begins anew {count} times: the parts follow each other"
+                )
         self.rate, self.start, self.times = rate_of(times, self.name)
 
     def count(self, written: str, counted: int, key: str = "", *, rows: bool = False) -> None:

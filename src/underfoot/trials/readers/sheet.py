@@ -18,6 +18,7 @@ from . import text
 from .text import si_unit
 
 _MOST_CELLS = 50_000_000
+_FOOT = 40  # lines below the table
 _HEAD = 300  # lines in which the table must begin
 _NOTHING = (*text.NOTHING, "", "#div/0!", "#value!")
 
@@ -83,11 +84,30 @@ def sheet_from(
         delimiter = text.delimiter_of(body)
     rows = [text.split(line, delimiter) for line in lines[: max(_HEAD, header_line or 0) + 2]]
     table = _layout(rows, header_line, where)
+    lines = _without_footer(lines, table.first, delimiter, notes)
     values = text.plain_numbers(lines[table.first :], delimiter, notes)
     if values is not None and (table.head is None or values.shape[1] == len(rows[table.head])):
         return _sheet(rows, table, [], values, where, notes)
     rest = [text.split(line, delimiter) for line in lines[table.first :]]
     return _sheet(rows, table, rest, None, where, notes)
+
+
+def _without_footer(lines: list[str], first: int, delimiter: str, notes: list[str]) -> list[str]:
+    """Lines up to the last row: what follows begins with no number and is no row of the table."""
+    end = len(lines)
+    while end > first + 1 and len(lines) - end < _FOOT:
+        cells = text.split(lines[end - 1], delimiter)
+        filled = [cell for cell in cells if cell]
+        numbers = sum(text.is_written_number(cell) for cell in filled)
+        if filled and (text.is_written_number(cells[0]) or numbers >= 0.5 * len(filled)):
+            break
+        end -= 1
+    else:
+        return lines
+    words = [line.strip() for line in lines[end:] if line.strip(" \t;,")]
+    if words:
+        notes.append(f"below the table, left out: {'; '.join(words)[:80]}")
+    return lines[:end]
 
 
 @dataclass(frozen=True, slots=True)

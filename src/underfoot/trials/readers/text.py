@@ -221,6 +221,23 @@ def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | N
     return (1.0 / mean, float(times[0]), None) if even else (1.0 / step, float(times[0]), times)
 
 
+def without_restarts(times: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return times whose clock begins anew with each step of a machine as one clock, and how often.
+
+    A restart goes back to about the first time of all; other steps backward stay as they are.
+    """
+    steps = np.diff(times)
+    forward = steps[steps > 0]
+    usual = float(np.median(forward)) if forward.size else 0.0
+    at = np.flatnonzero((steps <= 0) & (times[1:] <= times[0] + 1.5 * usual)) + 1
+    if not len(at) or len(at) > 0.1 * len(times):
+        return times, 0
+    joined = times.copy()
+    for index in at:
+        joined[index:] += joined[index - 1] + usual - joined[index]
+    return joined, len(at)
+
+
 _GRAVITY = 9.80665
 # A table instead of a unit library: files are read by the hundred, and instruments write few units.
 # Masses used as forces follow standard gravity.
