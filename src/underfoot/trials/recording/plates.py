@@ -9,7 +9,7 @@ from underfoot.core import DataError
 
 from .measurement import Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
-from .trial import Plate, Trial
+from .trial import REVERSED, Plate, Trial
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -161,7 +161,8 @@ def finished_plate(
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
         moment = None if moment is None else -moment
-        seen.append(remark("signs reversed: the file holds the force on the plate"))
+        words = "signs reversed: the file holds the force on the plate"
+        seen.append(Flag(REVERSED, words, matters=False))
     baseline, samples = None, 0
     empty = unloaded(vertical, rate)
     if not subtract_baseline:
