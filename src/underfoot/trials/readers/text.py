@@ -358,10 +358,12 @@ def force_unit(text: str) -> tuple[str, float, float] | None:
 
 
 def _glued(word: str) -> list[str]:
-    """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm."""
+    """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm, inlbf."""
     parts = ((word[:i], word[i:]) for i in range(len(word) - 1, 0, -1))
     pairs = ([_WEIGHTS.get(n := _unit_name(p) or "", n) for p in two] for two in parts)
-    return next((p for p in pairs if p[0] in _FORCES and p[1] in _LENGTHS), [])
+    return next(
+        (p for p in pairs if f"{p[0]}*{p[1]}" in _MOMENTS or f"{p[1]}*{p[0]}" in _MOMENTS), []
+    )
 
 
 def in_si(text: str) -> tuple[str, float, float]:
