@@ -339,6 +339,7 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
     ),
     "plates before the axis": (
         "a.csv", lambda: table(heads=lambda plate, axis: f"FP{plate}_F{axis}"), None),
+    "plates of one name": ("a.csv", lambda: table(heads=lambda plate, axis: f"F{axis}"), None),
     "UTF-16": ("a.csv", lambda: table(point=",", separator=";").encode("utf-16"), None),
     "workbook": ("a.xlsx", workbook, None),
 }  # fmt: skip

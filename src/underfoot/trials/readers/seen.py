@@ -26,6 +26,8 @@ _BESIDE = 3  # steps beside a stretch that tell how it moves there
 _AROUND = 12  # frames around a line that tell how its path bends
 _CORNER = 3.0  # times that bend: the corner at the end of a line that was drawn
 _RESOLVED = 0.1  # share of a path's moving frames on a line, above which it is too coarse to tell
+_FAR, _FAR_SPREADS = 50.0, 20.0  # m and quartile ranges from a path's middle: nobody goes there
+_ENOUGH = 4096  # frames that tell the last digit of a path
 _SLOWER = 1.5  # rows a camera frame
 
 
@@ -91,7 +93,7 @@ def unseen(path: np.ndarray, *, every_repeat: bool = False) -> dict[str, np.ndar
     that stands stops and starts without a leap. Straight: six or more second differences of nothing
     with a corner at each end, in a path
     that moves and is seldom straight elsewhere. Signs: one number in all three
-    coordinates, which no place in a laboratory has twice.
+    coordinates, which no place in a laboratory has twice, or a place that nobody goes to.
 
     ``every_repeat``: every repeated place was lost, as the system that wrote it says.
     """
@@ -104,7 +106,14 @@ def unseen(path: np.ndarray, *, every_repeat: bool = False) -> dict[str, np.ndar
 
 
 def _signs(path: np.ndarray) -> np.ndarray:
-    return np.asarray((path[:, 0] == path[:, 1]) & (path[:, 1] == path[:, 2]))
+    """One number three times, or a place far from all others (m)."""
+    one = (path[:, 0] == path[:, 1]) & (path[:, 1] == path[:, 2])
+    rest = path[~one & np.isfinite(path).all(axis=1)]
+    if len(rest) < 4:
+        return np.asarray(one)
+    low, middle, high = np.percentile(rest, (25, 50, 75), axis=0)
+    far = np.abs(path - middle).max(axis=1) > _FAR + _FAR_SPREADS * (high - low).max()
+    return np.asarray(one | far)
 
 
 def _steps(path: np.ndarray) -> np.ndarray:
@@ -114,7 +123,7 @@ def _steps(path: np.ndarray) -> np.ndarray:
 
 def _digit(path: np.ndarray) -> float:
     """Return the last digit of a path's coordinates: that of the file, else of single precision."""
-    values = np.unique(path[np.isfinite(path)])
+    values = np.unique(path[np.isfinite(path).all(axis=1)][:_ENOUGH])
     size = float(np.abs(values).max(initial=0.0))
     single = 1.2e-7 * size
     gaps = np.diff(values)

@@ -13,7 +13,7 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
 
-from .plates import plate_axes
+from .plates import plate_normal
 from .signals import CONTACT_FORCE
 from .trial import Marker, Plate, Trial, Vertical
 
@@ -360,7 +360,8 @@ def _vertical_line(
     markers: Mapping[str, Marker],
     stated: Vertical | None,
 ) -> tuple[np.ndarray, str]:
-    framed = [int(np.argmax(np.abs(plate_axes(each)[:, 2]))) for each in corners]
+    normals = (plate_normal(each) for each in corners)
+    framed = [int(np.argmax(np.abs(normal))) for normal in normals if normal is not None]
     if framed:
         return np.eye(3)[Counter(framed).most_common(1)[0][0]], "normal of the force plates"
     seen = [force[np.isfinite(force).all(axis=1)] for force in forces]

@@ -227,16 +227,24 @@ def baseline_words(plate: Plate) -> str:
     return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
 
 
+def plate_normal(corners: np.ndarray | None) -> np.ndarray | None:
+    """Return a unit vector (3,) normal to a plate's surface; None without corners that have one."""
+    if corners is None:
+        return None
+    try:
+        return plate_axes(corners)[:, 2]
+    except DataError:
+        return None
+
+
 def plate_up(corners: np.ndarray | None, up: np.ndarray) -> np.ndarray:
     """Return the normal (3,) out of a plate's surface, on the side that is up in the laboratory.
 
     Without corners, and where they stand across the vertical that a person gave, it is ``up``.
     """
-    if corners is None:
-        return up
-    normal = plate_axes(corners)[:, 2]
-    height = float(normal @ up)
-    return up if abs(height) < 0.5 else normal * np.sign(height)
+    normal = plate_normal(corners)
+    height = 0.0 if normal is None else float(normal @ up)
+    return up if normal is None or abs(height) < 0.5 else normal * np.sign(height)
 
 
 def _upside_down(vertical: np.ndarray) -> bool:
