@@ -95,6 +95,8 @@ def sheet_from(
 def _without_footer(lines: list[str], first: int, delimiter: str, notes: list[str]) -> list[str]:
     """Lines up to the last row: what follows begins with no number and is no row of the table."""
     end = len(lines)
+    if first >= end or not text.is_written_number(text.split(lines[first], delimiter)[0]):
+        return lines  # rows begin with text: it ends no table
     while end > first + 1 and len(lines) - end < _FOOT:
         cells = text.split(lines[end - 1], delimiter)
         filled = [cell for cell in cells if cell]
