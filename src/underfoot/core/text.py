@@ -1,5 +1,6 @@
 """Text files of instruments: encoding, cells, decimal commas, what stands for a missing value."""
 
+import csv
 import re
 from pathlib import Path
 
@@ -66,8 +67,21 @@ def with_content(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
 
 
 def cells_of(line: str, separator: str | None) -> list[str]:
-    """Return the cells of a line, blanks and quotes around them removed; None: blanks separate."""
-    return [cell.strip().strip('"') for cell in line.split(separator)]
+    """Return the cells of a line, blanks and quotes around them removed; None: blanks separate.
+
+    A separator between quotes is part of the cell.
+    """
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    if separator is None:
+        found = re.findall(r'"[^"]*"(?=\s|$)|\S+', line)
+        return [_unquoted(cell) for cell in found]
+    row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    return [cell.strip() for cell in row]
+
+
+def _unquoted(cell: str) -> str:
+    return cell[1:-1].strip() if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
 
 
 def row_of_numbers(cells: list[str], comma: bool, line: int, where: str) -> list[float]:
