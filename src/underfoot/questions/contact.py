@@ -270,6 +270,7 @@ def surface_from(
     measured = surface.read_surface(file)
     if isinstance(measured, Profile):
         return _from_profile(measured, points, seed, first, last)
+    measured = surface.squared(measured)
     return measured if measured.periodic else mirrored(measured)
 
 
