@@ -67,6 +67,9 @@ def read_rubber(
     levels = (instantaneous_modulus, equilibrium_modulus)
     if path.suffix.casefold() == ".toml":
         series, shear = _prony_toml(path)
+        given = _given_ratio(path)
+        if shear and given is not None:  # the file's own ratio goes before that of a command
+            series, shear = young_from_shear(series, given), False
         return RubberTest(series=series, shear=shear)
     if is_deck(path):
         deck = read_deck(path, modulus_unit)
@@ -233,7 +236,8 @@ def read_prony(
     path = Path(path)
     if path.suffix.casefold() == ".toml":
         spectrum, of_shear = _prony_toml(path)
-        poisson_ratio = _given_ratio(path) or poisson_ratio
+        given = _given_ratio(path)
+        poisson_ratio = poisson_ratio if given is None else given
     elif is_deck(path):
         deck = read_deck(path, (units or {}).get("modulus"))
         spectrum, of_shear = deck.series, deck.shear

@@ -84,8 +84,8 @@ class RelaxationSpectrum(Presentable):
         if rest > LEAST_AT_REST * once:
             return ()
         return (
-            f"At rest {display(rest, 'Pa')} of {display(once, 'Pa')} is left: it flows under a load "
-            f"held longer than {display(float(self.relaxation_times.max()), 's')}, which no "
+            f"At rest {display(rest, 'Pa')} of {display(once, 'Pa')} is left: it flows under a "
+            f"load held longer than {display(float(self.relaxation_times.max()), 's')}, which no "
             "cross-linked rubber does. Its fractions sum to 1: fit the series with a modulus at "
             "rest, or add it as a row tau = inf.",
         )

@@ -466,9 +466,8 @@ def _begun(
     if best is None:
         if before and not texts and not parameters:
             return _Draft(before[-1].heads, before[-1].units, kelvin=before[-1].kelvin)
-        best = next(
-            (k for k in range(len(texts) - 1, -1, -1) if len(texts[k][1]) == len(row)), None
-        )
+        words = [k for k, (_, cells) in enumerate(texts) if not _is_row(cells)]
+        best = next((k for k in reversed(words) if len(texts[k][1]) == len(row)), None)
     if best is None:
         return None
     heads = list(texts[best][1])
