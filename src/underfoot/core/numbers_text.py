@@ -117,39 +117,39 @@ def number_forms(columns: Sequence[Sequence[str]], where: str) -> list[NumberFor
     return [_form(one, decimals, groups, where) for one in found]
 
 
-def _form(one: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
-    if one.decimals & one.groups or len(one.decimals) > 1 or len(one.groups) > 1:
+def _form(evidence: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
+    if evidence.decimals & evidence.groups or len(evidence.decimals) > 1 or len(evidence.groups) > 1:
         raise DataError(
             "one column writes decimals in two ways, or marks decimals and thousands with one sign",
             where=where,
             allowed="one decimal sign, and another sign or none between thousands",
             remedy="Export the numbers with a decimal point and without thousands separators",
         )
-    if one.decimals:
-        (decimal,) = one.decimals
-        return NumberForm(decimal, bool(one.groups or one.open.keys() - {decimal} or one.gaps))
-    if one.groups:
-        (mark,) = one.groups
+    if evidence.decimals:
+        (decimal,) = evidence.decimals
+        return NumberForm(decimal, bool(evidence.groups or evidence.open.keys() - {decimal} or evidence.gaps))
+    if evidence.groups:
+        (mark,) = evidence.groups
         return NumberForm(_OTHER[mark], True)
-    if not one.open:
-        return NumberForm(thousands=one.gaps)
-    if len(one.open) == 1:
-        ((mark, example),) = one.open.items()
-        if _marks_decimals(one, mark, decimals, groups, example, where):
-            return NumberForm(mark, one.gaps)
+    if not evidence.open:
+        return NumberForm(thousands=evidence.gaps)
+    if len(evidence.open) == 1:
+        ((mark, example),) = evidence.open.items()
+        if _marks_decimals(evidence, mark, decimals, groups, example, where):
+            return NumberForm(mark, evidence.gaps)
         return NumberForm(_OTHER[mark], True)
-    raise _undecided(", ".join(f'"{cell}"' for cell in one.open.values()), where)
+    raise _undecided(", ".join(f'"{cell}"' for cell in evidence.open.values()), where)
 
 
 def _marks_decimals(
-    one: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
+    evidence: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
 ) -> bool:
     """Return whether the one mark of a column, always before three digits, marks decimals."""
-    if len(decimals) == 1 and not (one.long_whole and mark not in decimals):
+    if len(decimals) == 1 and not (evidence.long_whole and mark not in decimals):
         return mark in decimals
-    if mark in groups or (one.short_whole and (mark == "," or one.opened >= FEWEST)):
+    if mark in groups or (evidence.short_whole and (mark == "," or evidence.opened >= FEWEST)):
         return False
-    if not decimals and (mark == "." or one.long_whole):
+    if not decimals and (mark == "." or evidence.long_whole):
         return True
     raise _undecided(f'"{example}"', where)
 
