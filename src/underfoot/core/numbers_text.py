@@ -117,39 +117,39 @@ def number_forms(columns: Sequence[Sequence[str]], where: str) -> list[NumberFor
     return [_form(one, decimals, groups, where) for one in found]
 
 
-def _form(evidence: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
-    if evidence.decimals & evidence.groups or len(evidence.decimals) > 1 or len(evidence.groups) > 1:
+def _form(seen: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
+    if seen.decimals & seen.groups or len(seen.decimals) > 1 or len(seen.groups) > 1:
         raise DataError(
             "one column writes decimals in two ways, or marks decimals and thousands with one sign",
             where=where,
             allowed="one decimal sign, and another sign or none between thousands",
             remedy="Export the numbers with a decimal point and without thousands separators",
         )
-    if evidence.decimals:
-        (decimal,) = evidence.decimals
-        return NumberForm(decimal, bool(evidence.groups or evidence.open.keys() - {decimal} or evidence.gaps))
-    if evidence.groups:
-        (mark,) = evidence.groups
+    if seen.decimals:
+        (decimal,) = seen.decimals
+        return NumberForm(decimal, bool(seen.groups or seen.open.keys() - {decimal} or seen.gaps))
+    if seen.groups:
+        (mark,) = seen.groups
         return NumberForm(_OTHER[mark], True)
-    if not evidence.open:
-        return NumberForm(thousands=evidence.gaps)
-    if len(evidence.open) == 1:
-        ((mark, example),) = evidence.open.items()
-        if _marks_decimals(evidence, mark, decimals, groups, example, where):
-            return NumberForm(mark, evidence.gaps)
+    if not seen.open:
+        return NumberForm(thousands=seen.gaps)
+    if len(seen.open) == 1:
+        ((mark, example),) = seen.open.items()
+        if _marks_decimals(seen, mark, decimals, groups, example, where):
+            return NumberForm(mark, seen.gaps)
         return NumberForm(_OTHER[mark], True)
-    raise _undecided(", ".join(f'"{cell}"' for cell in evidence.open.values()), where)
+    raise _undecided(", ".join(f'"{cell}"' for cell in seen.open.values()), where)
 
 
 def _marks_decimals(
-    evidence: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
+    seen: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
 ) -> bool:
     """Return whether the one mark of a column, always before three digits, marks decimals."""
-    if len(decimals) == 1 and not (evidence.long_whole and mark not in decimals):
+    if len(decimals) == 1 and not (seen.long_whole and mark not in decimals):
         return mark in decimals
-    if mark in groups or (evidence.short_whole and (mark == "," or evidence.opened >= FEWEST)):
+    if mark in groups or (seen.short_whole and (mark == "," or seen.opened >= FEWEST)):
         return False
-    if not decimals and (mark == "." or evidence.long_whole):
+    if not decimals and (mark == "." or seen.long_whole):
         return True
     raise _undecided(f'"{example}"', where)
 

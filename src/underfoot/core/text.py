@@ -50,10 +50,16 @@ def utf16_of(data: bytes) -> str:
     """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
-    even, odd = data[:400:2], data[1:400:2]
-    if len(data) > 20 and not any(odd) and all(even):
-        return "utf-16-le"
-    return "utf-16-be" if len(data) > 20 and not any(even) and all(odd) else ""
+    head = data[: min(400, len(data)) // 2 * 2]
+    if len(head) < 20:
+        return ""
+    for name, blank, filled in (("utf-16-le", head[1::2], head[::2]),
+                                ("utf-16-be", head[::2], head[1::2])):  # fmt: skip
+        # a letter that is not Latin may stand among them
+        if blank.count(0) >= 0.8 * len(blank) and all(filled):
+            text = head.decode(name, "replace")
+            return "" if re.search(r"[\x01-\x08\x0e-\x1f\ufffd]", text) else name
+    return ""
 
 
 def harmless(cell: str) -> str:
