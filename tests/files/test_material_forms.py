@@ -76,7 +76,8 @@ def test_fractions_that_sum_to_one_are_a_caution_with_the_remedy(tmp_path):
     spectrum = read_prony(whole)
     assert spectrum.instantaneous_modulus == pytest.approx(14e6)
     assert "tau = inf" in " ".join(spectrum.cautions())
-    whole.write_text("i,E_0 (MPa),tau_i (s),alpha_i (-)\n0,14,0.1,0.3\n1,14,10,0.4\n")
+    rows = "1,0.1,0.3,14.0,4.2\n2,10.0,0.4,14.0,5.6\n"
+    whole.write_text(f"i,tau_i,alpha_i,E_0,E_i\n-,s,-,MPa,MPa\n{rows}")
     spectrum = read_prony(whole)
     assert spectrum.equilibrium_modulus == pytest.approx(4.2e6)
     assert spectrum.cautions() == ()

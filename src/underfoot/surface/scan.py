@@ -279,6 +279,10 @@ def read_scan(
         measured = isotropic_spectrum(surface)
         spectrum = _by_decades(measured)
     hurst, roll_off, ends = _power_law(measured, spectrum)
+    if lay is not None:
+        notes.append(
+            "the spectrum is the mean over directions; hysteresis counts sliding along x of the map"
+        )
     if isinstance(surface, Profile):
         notes.append("one direction measured: the spectrum counts as that of every direction")
     notes += [note for note in spectrum.notes if "levelled" in note]
