@@ -4,8 +4,6 @@ import csv
 import re
 from pathlib import Path
 
-import numpy as np
-
 from .errors import DataError
 
 MISSING = frozenset(
@@ -90,19 +88,7 @@ def _unquoted(cell: str) -> str:
     return cell[1:-1].strip() if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
 
 
-def row_of_numbers(cells: list[str], comma: bool, line: int, where: str) -> list[float]:
-    """Return the numbers of a row, NaN where one is missing; ``comma``: the decimal sign is one.
-
-    Raises:
-        DataError: Text among the numbers.
-    """
-    row = []
-    for cell in cells:
-        try:
-            missing = cell.casefold() in MISSING
-            row.append(np.nan if missing else float(cell.replace(",", ".") if comma else cell))
-        except ValueError:
-            raise DataError(
-                f'"{cell}" in line {line} is not a number', where=where, allowed="numbers"
-            ) from None
-    return row
+def excerpt(cell: str, longest: int = 40) -> str:
+    """Return what a cell of a damaged file holds as a message can show it."""
+    plain = "".join(letter if letter.isprintable() else "?" for letter in cell)
+    return plain if len(plain) <= longest else f"{plain[: longest - 3]}..."

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -81,7 +82,7 @@ def _numbers(line: str, where: str) -> list[float]:
         return [float(re.sub(r"(?<=\d)[dD]", "e", one)) if one.strip() else 0.0 for one in fields]
     except ValueError:
         raise DataError(
-            f'"{line.strip()[:40]}" is no card of numbers', where=where,
+            f'"{text.excerpt(line.strip())}" is no card of numbers', where=where,
             allowed="fields of ten columns, or commas",
         ) from None  # fmt: skip
 
@@ -195,13 +196,13 @@ def _febio(content: str, where: str) -> Parts:
     for material in root.iter("material"):
         if material.get("type") not in ("viscoelastic", "uncoupled viscoelastic"):
             continue
-        values = {part.tag: float(part.text or "0") for part in material
+        values = {part.tag: _value(part, where) for part in material
                   if re.fullmatch(r"[tg]\d+", part.tag)}  # fmt: skip
         numbers = sorted(int(tag[1:]) for tag in values if tag[0] == "t")
         elastic = next((e for e in material if e.tag == "elastic"), None)
         if elastic is None:
             raise DataError("a viscoelastic material without its elastic part", where=where)
-        parts = {part.tag: float(part.text or "0") for part in elastic if part.text}
+        parts = {part.tag: _value(part, where) for part in elastic if part.text}
         kind = (elastic.get("type") or "").casefold()
         if "c1" in parts:
             rest = 2.0 * (parts["c1"] + parts.get("c2", 0.0))
@@ -211,11 +212,20 @@ def _febio(content: str, where: str) -> Parts:
             raise DataError(f'an elastic part "{kind}" that is not read', where=where,
                             allowed="neo-Hookean, isotropic elastic, Mooney-Rivlin")  # fmt: skip
         terms = [values.get(f"g{n}", 0.0) * rest for n in numbers]
-        rest *= float(values.get("g0", 1.0))
+        rest *= values.get("g0", 1.0)
         if min(terms, default=0.0) < 0.0:
             raise InputError("a negative factor g", where=where, allowed="0 or more")
         return rest, terms, [values[f"t{n}"] for n in numbers], True, "FEBio viscoelastic"
     raise _none('type="viscoelastic" or "uncoupled viscoelastic"', where)
+
+
+def _value(part: Any, where: str) -> float:
+    try:
+        return float((part.text or "0").split(",")[0])
+    except ValueError:
+        raise DataError(
+            f'"{text.excerpt(part.text)}" in <{part.tag}> is not a number', where=where
+        ) from None
 
 
 def _none(wanted: str, where: str) -> DataError:

@@ -259,7 +259,8 @@ def _series(
     fraction, term = table.named("fraction"), table.named(*_TERMS)
     if fraction is None and term is None:
         raise DataError(
-            f"no column of terms among {', '.join(column.name for column in table.columns)}",
+            "no column of terms among "
+            + ", ".join(text.excerpt(column.name) for column in table.columns),
             where=where,
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )

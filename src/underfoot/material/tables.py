@@ -129,7 +129,7 @@ class Table:
         near = (nearest_match(column.name, names) for column in self.columns)
         raise DataError(
             f"no column for {' or '.join(quantities)} among "
-            f"{', '.join(column.name for column in self.columns)}",
+            f"{', '.join(text.excerpt(column.name) for column in self.columns)}",
             where=self.where,
             allowed=f"one named {', '.join(names[:6])}",
             nearest=next(filter(None, near), None),
@@ -143,7 +143,7 @@ class Table:
             for line, cell in zip(self.lines, column.cells, strict=True):
                 if not _is_number(cell, (column.form,)):
                     raise DataError(
-                        f'"{cell[:40]}" in line {line} is not a number',
+                        f'"{text.excerpt(cell)}" in line {line} is not a number',
                         where=self.where,
                         allowed="numbers",
                     ) from None
@@ -240,7 +240,7 @@ def _factor(number: float, unit: str, target: str, where: str) -> float:
     plain = re.sub(r"^(Pa|mPa|kPa|MPa)[ .\-]?s$", r"\1*s", plain)
     plain = {"sec": "s", "Grad": "deg", "kelvin": "K"}.get(plain, plain)
     try:
-        return to_si(f"{number} {plain}", target, where=where)
+        return to_si(f"{number} {text.excerpt(plain)}", target, where=where)
     except InputError as error:
         raise DataError(
             error.what, where=where, allowed=error.allowed, nearest=error.nearest
@@ -495,7 +495,12 @@ def _temperature(
         for part in line.split(";"):
             name, _, value = part.partition("=")
             if name.strip() == "T":
-                return _factor(float(NumberForm().plain(value)), "degC", "K", where)
+                if not _is_number(value):
+                    raise DataError(
+                        f'the temperature "{text.excerpt(value)}" is not a number', where=where
+                    )
+                forms = [form for form in _FORMS if _is_number(value, (form,))]
+                return _factor(forms[0].number(value), "degC", "K", where)
     for line, _ in reversed(texts):
         if found := _HELD.match(line):
             number = float(found.group(1).replace(",", "."))

@@ -93,7 +93,9 @@ def read_numbers(path: Path | str) -> TextNumbers:
             except ValueError:
                 k, cell = next((k, cell) for k, cell in enumerate(cells) if not _holds(cell, form))
                 raise DataError(
-                    f'"{cell}" in line {body[k][0]} is not a number', where=where, allowed="numbers"
+                    f'"{text.excerpt(cell)}" in line {body[k][0]} is not a number',
+                    where=where,
+                    allowed="numbers",
                 ) from None
     decimals = tuple(
         max(len(form.plain(cell).partition(".")[2]) for cell in cells)
