@@ -154,6 +154,48 @@ def test_steps_and_ramps_are_sweeps_of_what_the_machine_held(name, count):
     assert at_room == pytest.approx(5.11e6, rel=0.01)
 
 
+def test_a_ramp_of_three_frequencies_is_a_master_curve_and_one_of_one_is_told(tmp_path):
+    from underfoot.material import dynamic_master_curve
+
+    lines = (FORMS / "mt_ramp.csv").read_text().splitlines()
+    three = tmp_path / "three.csv"
+    three.write_text("\n".join(line for line in lines if not line.startswith("3,")))
+    law = dynamic_master_curve(read_dynamic(three), 298.15).shifts.wlf
+    assert (law.c1, law.c2) == pytest.approx((8.86, 101.6), rel=0.05)
+    one = tmp_path / "one.csv"
+    one.write_text("\n".join([lines[0], *(line for line in lines if line.startswith("1,"))]))
+    with pytest.raises(DataError, match="one frequency, 1 Hz"):
+        read_dynamic(one)
+
+
+@pytest.mark.parametrize(
+    ("content", "size", "shear"),
+    [
+        ("[step]\nFrequency sweep\nAngular frequency\tStorage modulus\tLoss modulus\tTemperature"
+         "\nrad/s\tPa\tPa\t°C\n1\t2e6\t1e5\t25\n2\t2e6\t1e5\t25\n4\t2e6\t1e5\t25\n\n[step]\nAngular "
+         "frequency\tStorage modulus\tLoss modulus\tTemperature\nrad/s\tPa\tPa\t°C\n1\t3e6\t1e5\t5\n"
+         "2\t3e6\t1e5\t5\n4\t3e6\t1e5\t5\n", 2, None),
+        ("Temperatur [°C];Frequenz [Hz];|E*| [MPa];E' [MPa];E\" [MPa];tan delta\n"
+         "-20,0;0,1;5,01;5,0;0,25;0,05\n-20,0;1;5,01;5,0;0,25;0,05\n-20,1;10;5,01;5,0;0,25;0,05\n",
+         1, False),
+        ("Meas. Pts.\tAngular Frequency\tStorage Modulus\tLoss Modulus\tStatus\n\t[1/s]\t[Pa]\t[Pa]"
+         "\t[]\n1\t1\t2e6\t1e5\tDy_auto\n2\t2\t2e6\t1e5\tDy_auto\n3\t4\t2e6\t1e5\tWMa\n", 1, True),
+    ],
+    ids=["several steps", "German", "states in words"],
+)  # fmt: skip
+def test_exports_of_other_programs(tmp_path, content, size, shear):
+    (tmp_path / "a.txt").write_text(content, encoding="utf-8")
+    test = read_rubber(tmp_path / "a.txt")
+    assert len(test.sweeps) == size
+    assert test.shear is shear
+
+
+def test_a_clock_that_starts_again_starts_a_test(tmp_path):
+    rows = "".join(f"{t},{5 - 0.1 * t}\n" for _ in range(3) for t in (1, 2, 4, 8, 16))
+    (tmp_path / "a.csv").write_text(f"t (s),E (MPa)\n{rows}")
+    assert len(read_relaxation(tmp_path / "a.csv")) == 3
+
+
 @given(
     st.sampled_from([0.5, 1.0, 2.0, 3.0, 5.0, 10.0]),
     st.integers(4, 9),

@@ -131,7 +131,7 @@ def _is_sweep(table: Table) -> bool:
     return table.named("angular frequency", "frequency") is not None and any(
         table.named(name) is not None
         for name in ("storage modulus", "loss modulus", "modulus magnitude", "complex viscosity",
-                     "storage compliance")
+                     "storage compliance", "loss factor")
     )  # fmt: skip
 
 
@@ -151,6 +151,13 @@ def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
     for table in tables:
         w = table.angular_frequency()
         storage, loss = _moduli(table, w)
+        if w.size > FEWEST and np.ptp(w) < 1e-3 * w.max():
+            raise DataError(
+                f"one frequency, {w[0] / (2 * np.pi):.3g} Hz, in all {w.size} rows: no spectrum",
+                where=table.where,
+                allowed=f"{FEWEST} frequencies or more at each temperature",
+                remedy="Test several frequencies at each temperature of a ramp (multi-frequency)",
+            )
         found += [
             DynamicSweep(w[rows], storage[rows], loss[rows], temperature, source=table.where)
             for rows, temperature in _sets(table, w)
