@@ -172,9 +172,9 @@ def test_a_ramp_of_three_frequencies_is_a_master_curve_and_one_of_one_is_told(tm
     ("content", "size", "shear"),
     [
         ("[step]\nFrequency sweep\nAngular frequency\tStorage modulus\tLoss modulus\tTemperature"
-         "\nrad/s\tPa\tPa\t°C\n1\t2e6\t1e5\t25\n2\t2e6\t1e5\t25\n4\t2e6\t1e5\t25\n\n[step]\nAngular "
-         "frequency\tStorage modulus\tLoss modulus\tTemperature\nrad/s\tPa\tPa\t°C\n1\t3e6\t1e5\t5\n"
-         "2\t3e6\t1e5\t5\n4\t3e6\t1e5\t5\n", 2, None),
+         "\nrad/s\tPa\tPa\t°C\n1\t2e6\t1e5\t25\n2\t2e6\t1e5\t25\n4\t2e6\t1e5\t25\n\n[step]\n"
+         "Angular frequency\tStorage modulus\tLoss modulus\tTemperature\nrad/s\tPa\tPa\t°C\n"
+         "1\t3e6\t1e5\t5\n2\t3e6\t1e5\t5\n4\t3e6\t1e5\t5\n", 2, None),
         ("Temperatur [°C];Frequenz [Hz];|E*| [MPa];E' [MPa];E\" [MPa];tan delta\n"
          "-20,0;0,1;5,01;5,0;0,25;0,05\n-20,0;1;5,01;5,0;0,25;0,05\n-20,1;10;5,01;5,0;0,25;0,05\n",
          1, False),

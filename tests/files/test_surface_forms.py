@@ -282,6 +282,28 @@ def test_sliding_along_a_lay_loses_less_than_across(tmp_path):
     assert losses[0] < 0.3 * alike
 
 
+def test_a_case_slides_along_the_x_of_a_scanned_floor(tmp_path):
+    from underfoot.calibrate.compound import compound_from_files
+    from underfoot.case import Case
+    from underfoot.compute.resolve import resolved
+
+    dma = Path(__file__).parents[2] / "examples" / "measured" / "dma.csv"
+    (tmp_path / "compound.toml").write_text(compound_from_files([dma]).toml())
+    losses = {}
+    for degrees in (0, 90):
+        (tmp_path / f"{degrees}.gsf").write_bytes(gsf(ridges(degrees).heights, (1e-5, 1e-5)))
+        (tmp_path / "case.toml").write_text(
+            'file_version = 2\nshoe.from = "work_shoe_half_tread"\nfloor.from = "vinyl_g4"\n'
+            'contaminant = "detergent"\nmotion = "slip_tester_g4"\n'
+            f'shoe.material.file = "compound.toml"\nfloor.roughness.file = "{degrees}.gsf"\n'
+        )
+        case = Case.load(tmp_path / "case.toml")
+        assert case.value("floor.roughness.rq") == pytest.approx(3.42e-6, rel=0.01)
+        assert case.value("floor.roughness.rt") == pytest.approx(9.67e-6, rel=0.01)
+        losses[degrees] = case.friction.build(resolved(case)).pair.hysteresis
+    assert losses[90] > 5 * losses[0] > 0
+
+
 def test_shares_of_all_directions_alike_are_the_isotropic_integral():
     from underfoot.material import power_law_spectrum
     from underfoot.rough_contact import persson

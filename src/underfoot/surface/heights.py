@@ -224,7 +224,8 @@ def profile_from_positions(
             raise DataError(
                 f"positions are uneven: up to {metres(off)} off a grid of {metres(spacing)}",
                 where=where,
-                remedy="Ask for resampling (resample=True); the result then says so",
+                remedy="Export evenly spaced positions, or ask for resampling in Python "
+                "(resample=True); the result then says so",
             )
         check_heights(z)
         even = np.linspace(x[0], x[-1], x.size)

@@ -142,7 +142,11 @@ class Scan(Presentable):
             return display(value.value, value.unit) + spread
 
         rows = [
-            (QUANTITIES[name][0], shown(value), value.reason or QUANTITIES[name][2])
+            (
+                QUANTITIES[name][0],
+                shown(value),
+                value.reason if value.value is None else QUANTITIES[name][2],
+            )
             for name, value in self.values.items()
         ]
         roll = "none" if self.roll_off is None else display(self.roll_off, "m")
