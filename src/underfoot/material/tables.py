@@ -75,6 +75,7 @@ UNITS = {
 PURE = ("loss factor", "fraction", "set")
 _CYCLES = {"hz": 1.0, "khz": 1e3, "mhz": 1e-3, "cycles/s": 1.0, "cps": 1.0}
 _PER_SECOND = {"1/s", "s^-1", "s-1", "s⁻¹", "1/sec", "sec^-1", "sec-1", "/s", "s**-1", "s^{-1}"}
+_RADIANS = re.compile(r"rad(ians?)?(/s(ec)?|[.·*]?s(ec)?(\^?-1|⁻¹))")
 _SHEAR = re.compile(r"(^|[|\s(_])(G|J|η|eta)t?(?![a-z])|shear|schub|viscosity|viskosit", re.I)
 _YOUNG = re.compile(r"(^|[|\s(_])(E|D)t?(?![a-z])|young|tensile|dehn|zug|elongation|bending", re.I)
 _NO_UNIT = {"t", "delta", "δ", "d", "ω", "w", "phi", "i"}
@@ -198,6 +199,8 @@ class Table:
                 where=where,
                 allowed="Hz or rad/s in the heading, in a row below it, or as an argument",
             )
+        if _RADIANS.fullmatch(unit):
+            return values
         if unit in _PER_SECOND:
             return values * (1.0 if angular else 2.0 * np.pi)
         if written != "MHz" and unit in _CYCLES:
@@ -286,6 +289,8 @@ def heading_of(cell: str) -> tuple[str, str]:
 
 def _is_unit(cell: str) -> bool:
     plain = cell.strip().strip("[](){}").strip()
+    if _RADIANS.fullmatch(plain.casefold().replace(" ", "")):
+        return True
     if plain.casefold() in (*_CYCLES, *_PER_SECOND, "-", "1", "%", "°", "deg", "grad", "°c", "c"):
         return True
     if not plain or len(plain) > 12 or (quantity_of(plain) and plain not in ("K", "s")):
