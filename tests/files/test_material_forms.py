@@ -190,6 +190,15 @@ def test_exports_of_other_programs(tmp_path, content, size, shear):
     assert test.shear is shear
 
 
+def test_moduli_of_both_kinds_are_not_mixed(tmp_path):
+    rows = "".join(f"{f},1,0.1,3,0.3\n" for f in (1, 2, 4, 8))
+    (tmp_path / "a.csv").write_text(f"f (Hz),G' (MPa),G'' (MPa),E' (MPa),E'' (MPa)\n{rows}")
+    test = read_rubber(tmp_path / "a.csv")
+    assert test.shear is False
+    assert test.sweeps[0].storage_modulus[0] == pytest.approx(3e6)
+    assert test.sweeps[0].loss_modulus[0] == pytest.approx(0.3e6)
+
+
 def test_a_clock_that_starts_again_starts_a_test(tmp_path):
     rows = "".join(f"{t},{5 - 0.1 * t}\n" for _ in range(3) for t in (1, 2, 4, 8, 16))
     (tmp_path / "a.csv").write_text(f"t (s),E (MPa)\n{rows}")

@@ -223,17 +223,23 @@ class Table:
     @property
     def headed_shear(self) -> bool | None:
         """Whether its moduli are those of shear; None where no heading tells."""
-        names = [
-            column.name
-            for column in self.columns
-            if (column.quantity in UNITS and UNITS[column.quantity] in ("Pa", "Pa*s", "1/Pa"))
-            or column.quantity == "fraction"
-        ]  # fmt: skip
-        if any(_YOUNG.search(name) for name in names):
+        if any(map(_of_young, self.columns)):
             return False
-        if any(_SHEAR.search(name) for name in names):
-            return True
-        return None
+        return True if any(map(_of_shear, self.columns)) else None
+
+
+def _has_kind(column: Column) -> bool:
+    """Return whether a column holds moduli, which are of shear or of tension."""
+    unit = UNITS.get(column.quantity or "")
+    return unit in ("Pa", "Pa*s", "1/Pa") or column.quantity == "fraction"
+
+
+def _of_young(column: Column) -> bool:
+    return _has_kind(column) and _YOUNG.search(column.name) is not None
+
+
+def _of_shear(column: Column) -> bool:
+    return _has_kind(column) and not _of_young(column) and _SHEAR.search(column.name) is not None
 
 
 def _factor(number: float, unit: str, target: str, where: str) -> float:
@@ -452,6 +458,8 @@ class _Draft:
             columns = tuple(
                 replace(c, unit=c.unit or own.get(c.quantity or "", "Pa")) for c in columns
             )
+        if any(map(_of_young, columns)):  # of a file with both kinds, one
+            columns = tuple(c for c in columns if _of_young(c) or not _of_shear(c))
         rheometer = any(_RHEOMETER.match(head.strip()) for head in self.heads)
         lines = tuple(number for number, _ in self.rows)
         return Table(columns, lines, where, part, stated, self.kelvin, rheometer)
