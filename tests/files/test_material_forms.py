@@ -190,6 +190,29 @@ def test_exports_of_other_programs(tmp_path, content, size, shear):
     assert test.shear is shear
 
 
+@pytest.mark.parametrize(
+    ("between", "after", "says"),
+    [
+        ("-- pause --\n", "", None),
+        ("", "Mean;5;3\nEnd of test\n", None),
+        ("x;5;1\n", "", '"x" in line 6'),
+        ("5;bad;1\n", "", "missing in the column E'"),
+        ("5;7x;1\n", "", '"7x" in line 6'),
+    ],
+)
+def test_no_rows_are_lost_between_lines_that_are_none(tmp_path, between, after, says):
+    rows = [f"{f};5;1\n" for f in (1, 2, 4, 8, 16, 32, 64, 128)]
+    head = "f (Hz);E' (MPa);E'' (MPa)\n"
+    path = tmp_path / "a.csv"
+    path.write_text("".join([head, *rows[:4], between, *rows[4:], after]))
+    if says is not None:
+        with pytest.raises(DataError, match=says):
+            read_dynamic(path)
+        return
+    (sweep,) = read_dynamic(path)
+    assert sweep.angular_frequency.size == 8
+
+
 def test_moduli_of_both_kinds_are_not_mixed(tmp_path):
     rows = "".join(f"{f},1,0.1,3,0.3\n" for f in (1, 2, 4, 8))
     (tmp_path / "a.csv").write_text(f"f (Hz),G' (MPa),G'' (MPa),E' (MPa),E'' (MPa)\n{rows}")

@@ -203,6 +203,18 @@ def test_profiles_of_x3p_and_quoted_text():
     assert quoted.heights[:2] == pytest.approx([1.2811e-6, 2.1374e-6])
 
 
+def test_words_above_and_below_a_profile_are_left_out(tmp_path):
+    rows = "".join(f"{i / 100:.2f};{i * 3.1:.1f}\n" for i in range(9)).replace(".", ",")
+    path = tmp_path / "a.csv"
+    path.write_text(f"Instrument;X\nCutoff;0,8 mm\nPosition [mm];Height [µm]\n{rows}Ra;1,5\n")
+    found = read_surface(path)
+    assert found.heights.size == 9
+    assert "lines of words below the numbers left out: 1" in found.processing
+    path.write_text(f"x [mm];z [µm]\n{rows}Ra;1,5\n0,09;3\n")
+    with pytest.raises(DataError, match='"Ra" in line 11'):
+        read_surface(path)
+
+
 def test_a_pure_sine_has_no_spread_of_rounding():
     scan = read_scan(FORMS / "sine_profile.csv")
     assert scan.values["rq"].value == pytest.approx(3.42e-6, rel=2e-3)

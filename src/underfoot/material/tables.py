@@ -376,19 +376,19 @@ def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> lis
     draft: _Draft | None = None
     for number, line in lines:
         cells = text.cells_of(line, separator)
-        if _is_row(cells) and not _PARAMETERS.match(line):
-            if draft is None:
-                draft = _begun(above, cells, where, found)
-                if draft is None:  # a number in the lines above a table
-                    above.append((number, line, cells))
-                    continue
-                found.append(draft)
-                above = []
-            draft.add(number, cells, separator, where)
-            continue
-        if draft is not None:
+        if not _is_row(cells) or _PARAMETERS.match(line):
             draft = None
-        above.append((number, line, cells))
+            above.append((number, line, cells))
+            continue
+        if draft is None:
+            draft = _begun(above, cells, where, not found) or (found[-1] if found else None)
+            if draft is None:  # a number in the lines above a table
+                above.append((number, line, cells))
+                continue
+            if draft not in found:
+                found.append(draft)
+            above = []
+        draft.add(number, cells, separator, where)
     if not found:
         raise _tableless(above, where)
     return [draft.table(where, n, units or {}) for n, draft in enumerate(found)]
@@ -420,8 +420,22 @@ class _Draft:
     rows: list[tuple[int, list[str]]] = field(default_factory=list)
     kelvin: float | None = None
     reptate: bool = False
+    after: tuple[int, str] | None = None
+    """A row that begins with a word, as below a table; among its rows it is damage."""
 
     def add(self, number: int, cells: list[str], separator: str | None, where: str) -> None:
+        first = next(filter(None, cells))
+        if self.rows and not _is_number(first):
+            before = next(filter(None, self.rows[-1][1]))
+            if _is_number(before):
+                self.after = self.after or (number, first)
+                return
+        if self.after is not None:
+            raise DataError(
+                f'"{text.excerpt(self.after[1])}" in line {self.after[0]} is not a number',
+                where=where,
+                allowed="numbers",
+            )
         width = len(self.heads)
         while len(cells) > width and not cells[-1]:
             cells = cells[:-1]
@@ -466,10 +480,7 @@ class _Draft:
 
 
 def _begun(
-    above: Sequence[tuple[int, str, list[str]]],
-    row: Sequence[str],
-    where: str,
-    before: Sequence[_Draft],
+    above: Sequence[tuple[int, str, list[str]]], row: Sequence[str], where: str, first: bool
 ) -> _Draft | None:
     """Return a table whose headings are the nearest above its first row; None without any."""
     parameters = [line for _, line, _ in above if _PARAMETERS.match(line)]
@@ -477,12 +488,10 @@ def _begun(
     named = [k for k, (_, cells) in enumerate(texts) if _named(cells)]
     best = max(named, key=lambda k: (_named(texts[k][1]), k), default=None)
     if best is None:
-        if before and not texts and not parameters:
-            return _Draft(before[-1].heads, before[-1].units, kelvin=before[-1].kelvin)
-        words = [k for k, (_, cells) in enumerate(texts) if not _is_row(cells)]
+        words = [k for k, (_, cells) in enumerate(texts) if first and not _is_row(cells)]
         best = next((k for k in reversed(words) if len(texts[k][1]) == len(row)), None)
     if best is None:
-        return None
+        return None  # lines between rows of one table, or above the first
     heads = list(texts[best][1])
     while len(heads) > len(row) and not heads[-1]:
         heads.pop()

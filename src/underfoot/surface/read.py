@@ -74,6 +74,9 @@ def read_numbers(path: Path | str) -> TextNumbers:
     rows = [text.cells_of(line, separator) for _, line in body]
     while len(rows[0]) > 1 and all(len(row) > 1 and row[-1] == "" for row in rows):
         rows = [row[:-1] for row in rows]  # instruments close their lines with separators
+    count = len(rows)
+    while len(rows) > 2 and not any(_holds(rows[-1][0], form) for form in _FORMS):
+        rows, body = rows[:-1], body[:-1]  # words below the numbers
     width = len(rows[0])
     for (i, _), row in zip(body, rows, strict=True):
         if len(row) != width:
@@ -106,6 +109,7 @@ def read_numbers(path: Path | str) -> TextNumbers:
     said = {
         "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
         "signs between thousands left out": any(form.thousands for form in forms),
+        f"lines of words below the numbers left out: {count - len(rows)}": len(rows) < count,
     }
     notes = tuple(note for note, holds in said.items() if holds)
     return TextNumbers(values, header, decimals, start + 1, notes, where)
