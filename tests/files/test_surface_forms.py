@@ -203,6 +203,15 @@ def test_profiles_of_x3p_and_quoted_text():
     assert quoted.heights[:2] == pytest.approx([1.2811e-6, 2.1374e-6])
 
 
+def test_an_archive_that_unpacks_to_far_more_than_its_size_is_refused(tmp_path):
+    path = tmp_path / "a.x3p"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("main.xml", "<a/>")
+        archive.writestr("bindata/data.bin", bytes(70_000_000))
+    with pytest.raises(DataError, match="times its size"):
+        read_surface(path)
+
+
 def test_words_above_and_below_a_profile_are_left_out(tmp_path):
     rows = "".join(f"{i / 100:.2f};{i * 3.1:.1f}\n" for i in range(9)).replace(".", ",")
     path = tmp_path / "a.csv"

@@ -458,7 +458,9 @@ class _Draft:
         names = [named[k][0] for k in kept]
         twice = [name for name in names if names.count(name) > 1 and quantity_of(name)]
         if twice:
-            raise DataError(f"a heading occurs twice: {', '.join(names)}", where=where)
+            raise DataError(
+                f"a heading occurs twice: {text.excerpt(', '.join(names), 200)}", where=where
+            )
         quantities = [quantity_of(name) for name in names]
         numeric = [k for k, q in zip(kept, quantities, strict=True) if q is not None]
         forms = dict(zip(numeric, number_forms([cells[k] for k in numeric], where), strict=True))

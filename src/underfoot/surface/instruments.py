@@ -19,6 +19,8 @@ GSF = b"Gwyddion Simple Field 1."
 _SDF = re.compile(rb"[ab](ISO|BCR|NIST)-\d")
 LARGEST = 1.0
 """Side (m) that no scan of a floor or sole has: its unit is not that of the file."""
+MOST_UNPACKED = 64e6
+"""Bytes that any archive may unpack to; a larger one to 200 times its size."""
 _OTHER_THINGS = {
     b"%PDF": "a PDF document",
     b"\x89PNG": "a picture (PNG)",
@@ -223,8 +225,16 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
         with zipfile.ZipFile(path) as archive:
             if not any(name.casefold() == "main.xml" for name in archive.namelist()):
                 return None
-    except zipfile.BadZipFile as error:
+            unpacked = sum(part.file_size for part in archive.infolist())
+    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise DataError("a damaged archive", where=str(path), remedy="Copy it again") from error
+    if unpacked > max(MOST_UNPACKED, 200 * path.stat().st_size):
+        raise DataError(
+            f"the archive unpacks to {unpacked / 1e6:.0f} MB, {unpacked / path.stat().st_size:.0f} "
+            "times its size: no scan",
+            where=str(path),
+            remedy="Export it again",
+        )
     how = ["read as X3P"]
     try:
         found: Any = x3pio.read(path)
