@@ -117,39 +117,39 @@ def number_forms(columns: Sequence[Sequence[str]], where: str) -> list[NumberFor
     return [_form(one, decimals, groups, where) for one in found]
 
 
-def _form(one: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
-    if one.decimals & one.groups or len(one.decimals) > 1 or len(one.groups) > 1:
+def _form(seen: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
+    if seen.decimals & seen.groups or len(seen.decimals) > 1 or len(seen.groups) > 1:
         raise DataError(
             "one column writes decimals in two ways, or marks decimals and thousands with one sign",
             where=where,
             allowed="one decimal sign, and another sign or none between thousands",
             remedy="Export the numbers with a decimal point and without thousands separators",
         )
-    if one.decimals:
-        (decimal,) = one.decimals
-        return NumberForm(decimal, bool(one.groups or one.open.keys() - {decimal} or one.gaps))
-    if one.groups:
-        (mark,) = one.groups
+    if seen.decimals:
+        (decimal,) = seen.decimals
+        return NumberForm(decimal, bool(seen.groups or seen.open.keys() - {decimal} or seen.gaps))
+    if seen.groups:
+        (mark,) = seen.groups
         return NumberForm(_OTHER[mark], True)
-    if not one.open:
-        return NumberForm(thousands=one.gaps)
-    if len(one.open) == 1:
-        ((mark, example),) = one.open.items()
-        if _marks_decimals(one, mark, decimals, groups, example, where):
-            return NumberForm(mark, one.gaps)
+    if not seen.open:
+        return NumberForm(thousands=seen.gaps)
+    if len(seen.open) == 1:
+        ((mark, example),) = seen.open.items()
+        if _marks_decimals(seen, mark, decimals, groups, example, where):
+            return NumberForm(mark, seen.gaps)
         return NumberForm(_OTHER[mark], True)
-    raise _undecided(", ".join(f'"{cell}"' for cell in one.open.values()), where)
+    raise _undecided(", ".join(f'"{cell}"' for cell in seen.open.values()), where)
 
 
 def _marks_decimals(
-    one: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
+    seen: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
 ) -> bool:
     """Return whether the one mark of a column, always before three digits, marks decimals."""
-    if len(decimals) == 1 and not (one.long_whole and mark not in decimals):
+    if len(decimals) == 1 and not (seen.long_whole and mark not in decimals):
         return mark in decimals
-    if mark in groups or (one.short_whole and (mark == "," or one.opened >= FEWEST)):
+    if mark in groups or (seen.short_whole and (mark == "," or seen.opened >= FEWEST)):
         return False
-    if not decimals and (mark == "." or one.long_whole):
+    if not decimals and (mark == "." or seen.long_whole):
         return True
     raise _undecided(f'"{example}"', where)
 
