@@ -57,7 +57,8 @@ class Counts:
 class Demand:
     """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m.
 
-    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters.
+    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters;
+    ``settles``: nothing changes but the contact, on its way to a steady state.
     """
 
     load: float
@@ -65,6 +66,7 @@ class Demand:
     clearance: Array
     tolerance: float
     leaps: bool
+    settles: bool = False
 
 
 class March:
@@ -92,6 +94,7 @@ class March:
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
+        self._settling: State | None = None
         self._lugs = inlet
         self._edges: dict[bool, LeadingEdges] = {}  # by the way that the floor moves
 
@@ -112,8 +115,11 @@ class March:
         """
         limited = self.step > most
         duration = min(self.step, most)
+        start = self.state
         while True:
             demand = demand_after(duration)
+            if demand.settles and self._settling is not None:
+                start = _between(self._settling, self.state)
             problem = replace(
                 self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
             )
@@ -138,8 +144,8 @@ class March:
                 content=self._content()[cells.numbers],
                 tolerance=demand.tolerance,
                 leaps=demand.leaps,
-                upstream=self._upstream(problem, cells),
-                inlet=self._inlet(problem, cells),
+                upstream=self._upstream(problem, cells, start),
+                inlet=self._inlet(problem, cells, start),
                 tick=tick,
             )
             self.counts.newton += attempt.newton
@@ -149,6 +155,7 @@ class March:
             # it must not touch the floor outside the cells of the step
             if state is not None and not (state.gap[~cells.mask] < 20 * problem.decay).any():
                 self.problem, self.state, self.film = problem, state, film
+                self._settling = start if demand.settles else None
                 self.counts.time_steps += 1
                 grown = duration * GROWTH if attempt.newton < EASY else duration
                 # a step cut short by the end of a stage says nothing against longer ones
@@ -160,7 +167,7 @@ class March:
             if duration < self._shortest:
                 return 0.0
 
-    def _upstream(self, problem: Problem, cells: Cells) -> Upwinding | None:
+    def _upstream(self, problem: Problem, cells: Cells, start: State) -> Upwinding | None:
         """Return how far the faces of the cells lean upstream; None on a dry floor.
 
         From the gap at the start of the step: so it stays out of the Newton matrix.
@@ -168,26 +175,26 @@ class March:
         if problem.viscosity is None:
             return None
         rows = problem.cells
-        start = np.clip(self.state.gap, SMALLEST_GAP, problem.largest_gap)
+        gap = np.clip(start.gap, SMALLEST_GAP, problem.largest_gap)
         carried = 0.5 * abs(problem.wall_speed) * rows.spacing * rows.width
         lean = leaning(
             rows,
-            start,
+            gap,
             rows.width,
             carried * problem.compliance.self_compliance,
-            problem.conductance(start).value,
+            problem.conductance(gap).value,
             backward=problem.wall_speed < 0,
         )
         return Upwinding(*(part[cells.x_faces] for part in lean))
 
-    def _inlet(self, problem: Problem, cells: Cells) -> Inlet | None:
+    def _inlet(self, problem: Problem, cells: Cells, start: State) -> Inlet | None:
         """Return what edges of lugs let in, from the state at the start of the step."""
         if self._lugs is None or problem.viscosity is None:
             return None
         rows, backward = problem.cells, problem.wall_speed < 0
         if backward not in self._edges:
             self._edges[backward] = LeadingEdges(self._lugs, rows, backward=backward)
-        inlet = self._edges[backward].inlet(problem, self.state, rows.west.size)
+        inlet = self._edges[backward].inlet(problem, start, rows.west.size)
         return Inlet(*(part[cells.x_faces] for part in inlet))
 
     def _content(self) -> Array:
@@ -195,6 +202,18 @@ class March:
         pool = np.clip(self.state.gap, SMALLEST_GAP, self._pool_depth)
         held = np.clip(self.state.gap, SMALLEST_GAP, self.problem.largest_gap)
         return np.where(self.film, self.state.fraction * held, pool)
+
+
+def _between(before: State, now: State) -> State:
+    """Return the mean of two states in pressures and gap.
+
+    What a step takes from its start (faces that lean, edges that let in) overshoots the steady
+    state when steps are longer than the memory of the film: each end swings to the other side.
+    """
+    names = ("pressure", "gap", "fluid")
+    return replace(
+        now, **{name: 0.5 * (getattr(before, name) + getattr(now, name)) for name in names}
+    )
 
 
 def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:

@@ -310,7 +310,8 @@ class SlidingSole:
                     clearance = self._clearance(angle)
                 leaps = self._leaps or settled is not None
                 last = settled is not None or self._time + duration > end * (1 - 1e-12)
-                return Demand(load, -speed, clearance, exact if last else passed, leaps)
+                settles = settled is not None
+                return Demand(load, -speed, clearance, exact if last else passed, leaps, settles)
 
             fraction = self._fraction(min(start + march.step, end))
             state = march.state
