@@ -20,6 +20,7 @@ from .prepare import Prepared
 from .sensors import blind_sensor
 from .sole import overload_breaches
 from .solve import Solution
+from .steadiness import later_numbers, steady_slide, with_steadiness
 from .summary import FILM_MATTERS
 
 
@@ -72,11 +73,13 @@ def readings(
         friction = replace(friction, cof=sampled.sourced("cof", cof))
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
+    values |= later_numbers(parts, contact) | steady_slide(parts, contact)
     values |= solution.recorder.array_scalars()
     micro = micro_contact(parts, contact)
     values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
+    values = with_steadiness(values)
     drawn = positions.drawn if positions else None
     values = numbers.with_film_spread(values, solution.friction.film_odds, drawn)
     drainage = None
@@ -135,10 +138,12 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
 
 
 def _last_instant(case: Case) -> str:
-    """Return when and at which angle a motion that turns ends; empty where the angle is held."""
-    history = case.motion.build()
-    if history is None or not np.ptp(history.shoe_angle):
+    """Return when the numbers are taken, and at which angle of a motion that turns."""
+    history, end = case.motion.build(), case.motion.end_time
+    if end is None:
         return ""
+    if history is None or not np.ptp(history.shoe_angle):
+        return f"at {display(end, 's')}"
     time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")
     return f"at the end of the motion ({time}, shoe angle {angle})"
 

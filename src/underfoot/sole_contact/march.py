@@ -21,6 +21,7 @@ from .problem import Problem, State
 
 EASY = 7  # Newton steps below which the time step grows
 GROWTH = 2.0
+STILL, FASTER = 3, 4.0  # Newton steps at most on the way to a steady state, and growth then
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
@@ -94,7 +95,7 @@ class March:
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
-        self._settling: State | None = None
+        self._settling: tuple[State, State] | None = None  # before the last two steps
         self._lugs = inlet
         self._edges: dict[bool, LeadingEdges] = {}  # by the way that the floor moves
 
@@ -119,7 +120,7 @@ class March:
         while True:
             demand = demand_after(duration)
             if demand.settles and self._settling is not None:
-                start = _between(self._settling, self.state)
+                start = _calmed(*self._settling, self.state)
             problem = replace(
                 self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
             )
@@ -154,10 +155,13 @@ class March:
             state = attempt.state and cells.on_whole(attempt.state, problem, self._whole)
             # it must not touch the floor outside the cells of the step
             if state is not None and not (state.gap[~cells.mask] < 20 * problem.decay).any():
+                first = self.state if self._settling is None else self._settling[1]
+                self._settling = (first, self.state) if demand.settles else None
                 self.problem, self.state, self.film = problem, state, film
-                self._settling = start if demand.settles else None
                 self.counts.time_steps += 1
-                grown = duration * GROWTH if attempt.newton < EASY else duration
+                grown = duration * (GROWTH if attempt.newton < EASY else 1.0)
+                if demand.settles and attempt.newton <= STILL:
+                    grown = duration * FASTER
                 # a step cut short by the end of a stage says nothing against longer ones
                 self.step = max(grown, self.step) if limited else grown
                 return duration
@@ -204,16 +208,17 @@ class March:
         return np.where(self.film, self.state.fraction * held, pool)
 
 
-def _between(before: State, now: State) -> State:
-    """Return the mean of two states in pressures and gap.
+def _calmed(first: State, before: State, now: State) -> State:
+    """Return a state whose pressures and gaps lie half a step back where they swing.
 
     What a step takes from its start (faces that lean, edges that let in) overshoots the steady
-    state when steps are longer than the memory of the film: each end swings to the other side.
+    state when steps are longer than the memory of the film: each step swings to the other side.
     """
-    names = ("pressure", "gap", "fluid")
-    return replace(
-        now, **{name: 0.5 * (getattr(before, name) + getattr(now, name)) for name in names}
-    )
+    calmed = {}
+    for name in ("pressure", "gap", "fluid"):
+        one, two, three = (getattr(state, name) for state in (first, before, now))
+        calmed[name] = np.where((three - two) * (two - one) < 0, 0.5 * (two + three), three)
+    return replace(now, **calmed)
 
 
 def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:
