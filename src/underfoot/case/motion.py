@@ -133,6 +133,10 @@ class MotionFromHistory(Motion):
     )
 
     @property
+    def end_time(self) -> float | None:
+        return self.history_points[-1].time
+
+    @property
     def forward(self) -> bool:
         return self.history_points[-1].speed >= 0
 
@@ -186,7 +190,7 @@ class MotionFromHistory(Motion):
         assert history is not None
         last, force = float(history.time[-1]), history.normal_force[-1]
         for name, what, differs in (
-            ("duration", f"lasts {display(last, 's')}", abs(last - self.duration) > 1e-9),
+            ("duration", f"lasts {display(last, 's')}", abs(last - (self.duration or last)) > 1e-9),
             ("normal_force", f"ends with {force:g} N", abs(force - self.normal_force) > 1e-6),
         ):
             if differs:

@@ -247,7 +247,7 @@ def solver_settings(
         pool_depth=pool_depth(case),
         start_film=motion.start_film,
         rise_time=motion.force_rise_time,
-        **({"steady": True} if motion.end_time is None else {"end_time": motion.end_time}),
+        end_time=motion.end_time,
         tolerance=case.numerics.tolerance,
         film=None if isinstance(film, NewtonianFilm) else film,
     )

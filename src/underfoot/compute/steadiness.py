@@ -67,10 +67,9 @@ def with_steadiness(values: Mapping[str, SourcedValue]) -> dict[str, SourcedValu
     if "later_cof" not in numbers:
         return dict(values)
     cof, film, whole = (numbers[name] for name in ("cof", "fluid_load", "normal_force"))
-    moves = (
-        abs(numbers["later_cof"] - cof) > WITHIN * cof
-        or abs(numbers["later_fluid_load"] - film) > _least(film, whole)
-    )
+    moves = abs(numbers["later_cof"] - cof) > WITHIN * cof or abs(
+        numbers["later_fluid_load"] - film
+    ) > _least(film, whole)
     return {name: value for name, value in values.items() if moves or name not in LATER}
 
 

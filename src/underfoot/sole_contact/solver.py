@@ -88,9 +88,7 @@ def solve_sliding(
         viscosity=viscosity,
         settings=settings,
         typical_force=normal_force,
-        reporting=Reporting(
-            progress, end_time=None if settings.steady and not dry else end, watch=watch
-        ),
+        reporting=Reporting(progress, end_time=end, watch=watch),
         inlet=inlet,
     )
     rise = settings.rise_time
@@ -104,7 +102,7 @@ def solve_sliding(
     counts = sliding.counts
     left = settings.most_time_steps - counts.time_steps - counts.rejected
     if not dry and state.status.usable and left > 0:
-        if settings.steady:
+        if end is None:
             state = sliding.settle(normal_force=normal_force, speed=speed, most_steps=left)
         elif end > rise:
             state = sliding.advance(
@@ -116,7 +114,7 @@ def solve_sliding(
                 most_steps=left,
             )
     now = with_history(state, sliding)
-    return now if dry or settings.steady else held_on(now, sliding)
+    return now if dry or end is None else held_on(now, sliding)
 
 
 def held_on(now: SoleContact, sliding: SlidingSole) -> SoleContact:
