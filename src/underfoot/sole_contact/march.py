@@ -24,6 +24,7 @@ GROWTH = 2.0
 STILL, FASTER = 3, 4.0  # Newton steps at most on the way to a steady state, and growth then
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
+BEARS = 1e3  # Pa, of a film that is no edge of the pool: a pocket, which pressure may lift above it
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
@@ -128,7 +129,7 @@ class March:
             gap = self.state.gap
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
-            film = low = _film_mask(problem, gap, self._pool_depth, self.film)
+            film = low = _film_mask(problem, gap, self._pool_depth, self._kept)
             if problem.drained is not None:  # no film, but they touch the floor
                 low = film | (problem.drained & (gap < self._pool_depth))
             near = gap < self._pool_depth + DEEP
@@ -170,6 +171,12 @@ class March:
             limited = False
             if duration < self._shortest:
                 return 0.0
+
+    @property
+    def _kept(self) -> Mask:
+        """Cells that keep their film a little longer; ones that bear keep it however high."""
+        brink = self.state.gap < LETS_GO * self._pool_depth
+        return self.film & (brink | (self.state.fluid > BEARS))
 
     def _upstream(self, problem: Problem, cells: Cells, start: State) -> Upwinding | None:
         """Return how far the faces of the cells lean upstream; None on a dry floor.
@@ -225,7 +232,7 @@ def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | N
     """Return the cells that the pool reaches; one that held film lets go a little later."""
     film = gap < pool_depth
     if before is not None:
-        film |= before & (gap < LETS_GO * pool_depth)
+        film |= before
     film &= problem.clearance < 0.5
     if problem.drained is not None:
         film &= ~problem.drained

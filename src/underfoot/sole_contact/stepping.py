@@ -35,6 +35,7 @@ STEADY_CHANGE = 3e-4  # share of the load by which that on the film may change o
 STEADY_MOVE = 3e-3  # share of the load that may change its place then
 MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
 SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
+LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
 MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from its map's angle
 
 
@@ -131,7 +132,7 @@ class SlidingSole:
             law=law,
             viscosity=viscosity,
             wall_speed=0.0,
-            largest_gap=min(4 * settings.pool_depth, 5e-3),
+            largest_gap=min(max(4 * settings.pool_depth, LIFTED), 5e-3),
             decay=decay,
             settings=settings,
             drained=None if sole.slits is None else cells.of(sole.slits.drained),
