@@ -25,6 +25,7 @@ STILL, FASTER = 3, 4.0  # Newton steps at most on the way to a steady state, and
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 BEARS = 1e3  # Pa, of a film that is no edge of the pool: a pocket, which pressure may lift above it
+TOUCHES = 20.0  # times the decay of the asperities' pressure, a gap across which they may touch
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
@@ -132,6 +133,7 @@ class March:
             film = low = _film_mask(problem, gap, self._pool_depth, self._kept)
             if problem.drained is not None:  # no film, but they touch the floor
                 low = film | (problem.drained & (gap < self._pool_depth))
+            low = low | (gap < 1.5 * TOUCHES * problem.decay)  # out of a thin pool
             near = gap < self._pool_depth + DEEP
             self._cells = _cells(problem, self._fit, self._cells, low, near)
             self.counts.cells = max(self.counts.cells, self._cells.size)
@@ -155,7 +157,8 @@ class March:
             self.residuals = attempt.residuals
             state = attempt.state and cells.on_whole(attempt.state, problem, self._whole)
             # it must not touch the floor outside the cells of the step
-            if state is not None and not (state.gap[~cells.mask] < 20 * problem.decay).any():
+            beside = TOUCHES * problem.decay
+            if state is not None and not (state.gap[~cells.mask] < beside).any():
                 first = self.state if self._settling is None else self._settling[1]
                 self._settling = (first, self.state) if demand.settles else None
                 self.problem, self.state, self.film = problem, state, film
