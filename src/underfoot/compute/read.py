@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.case import Case
+from underfoot.case.motion import SLOWEST
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
 from underfoot.friction import SampledCof
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
@@ -142,6 +143,11 @@ def _last_instant(case: Case) -> str:
     history, end = case.motion.build(), case.motion.end_time
     if end is None:
         return ""
+    if history is not None and abs(history.speed[-1]) < SLOWEST:
+        return (
+            f"at {display(end, 's')}, where the shoe is at rest: that of sliding off at "
+            f"{display(SLOWEST, 'm/s')}"
+        )
     if history is None or not np.ptp(history.shoe_angle):
         return f"at {display(end, 's')}"
     time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")

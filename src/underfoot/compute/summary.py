@@ -78,6 +78,7 @@ PARTS: Mapping[str, str] = {
     "speed_table": "the friction of this sole on this floor",
     "compound": "how the rubber answers at the rates of sliding",
     "grid": "the tread, which has few cells of the grid across its details",
+    "tread": "channels that the summits of the rough surfaces fill",
     "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how the rubber gives way under the load",
     "gent_1958": "the stiffness of a rubber of this hardness",

@@ -231,8 +231,9 @@ class SlidingSole:
                 and change < STEADY_MOVE * normal_force
             )
 
-        ramp = self._ramp(LONGEST_TIME, normal_force, speed, None)
-        done = self._loop(ramp, LONGEST_TIME, math.inf, most_steps, settled)
+        longest = max(LONGEST_TIME, 100 * passing)
+        ramp = self._ramp(longest, normal_force, speed, None)
+        done = self._loop(ramp, longest, math.inf, most_steps, settled)
         return self._state(done)
 
     def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
