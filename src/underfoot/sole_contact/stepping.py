@@ -36,6 +36,7 @@ STEADY_MOVE = 3e-3  # share of the load that may change its place then
 MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
 SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
 LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
+MEMORY = 0.5  # of the time in which a sole slides its length: what a film remembers
 MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from its map's angle
 
 
@@ -335,9 +336,12 @@ class SlidingSole:
                 clearance = march.problem.clearance
                 if angle != self._angle:
                     clearance = self._clearance(angle)
-                leaps = self._leaps or settled is not None
-                last = settled is not None or self._time + duration > end * (1 - 1e-12)
+                now = self._load, self._speed, self._angle
                 settles = settled is not None
+                if (load, speed, angle) == now:  # steps longer than the memory of the film swing
+                    settles |= duration > MEMORY * self.sliding_time(speed)
+                last = settled is not None or self._time + duration > end * (1 - 1e-12)
+                leaps = self._leaps or settles
                 return Demand(load, -speed, clearance, exact if last else passed, leaps, settles)
 
             fraction = self._fraction(min(start + march.step, end))
