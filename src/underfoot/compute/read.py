@@ -139,19 +139,20 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
 
 
 def _last_instant(case: Case) -> str:
-    """Return when the numbers are taken, and at which angle of a motion that turns."""
+    """Return when the numbers of a motion that ends are taken, and what is assumed of its start."""
     history, end = case.motion.build(), case.motion.end_time
     if end is None:
         return ""
+    at = f"at {display(end, 's')}"
+    if history is not None and np.ptp(history.shoe_angle):
+        angle = display(history.shoe_angle[-1], "rad")
+        at = f"at the end of the motion ({display(end, 's')}, shoe angle {angle})"
     if history is not None and abs(history.speed[-1]) < SLOWEST:
-        return (
-            f"at {display(end, 's')}, where the shoe is at rest: that of sliding off at "
-            f"{display(SLOWEST, 'm/s')}"
-        )
-    if history is None or not np.ptp(history.shoe_angle):
-        return f"at {display(end, 's')}"
-    time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")
-    return f"at the end of the motion ({time}, shoe angle {angle})"
+        at += f", where the shoe is at rest: that of sliding off at {display(SLOWEST, 'm/s')}"
+    film = case.sourced("motion.start_film")
+    if case.contaminant is not None and film.assumed:
+        at += f", from {display(film.value or 0.0, 'm')} above the floor at touch-down, assumed"
+    return at
 
 
 def chamfer_remark(case: Case) -> str:
