@@ -376,7 +376,7 @@ def assumed_rcof():
 
 
 def steady_by_default():
-    return default("motion.duration") is None
+    return default("motion.duration") == "None"
 
 
 def abrasive_sheet():
