@@ -34,6 +34,7 @@ STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must n
 STEADY_CHANGE = 3e-4  # share of the load by which that on the film may change over such a step
 STEADY_MOVE = 3e-3  # share of the load that may change its place then
 MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
+CREEPING = 100.0  # s in which a sole slides its length, from which half the elapsed time counts
 SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
 LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
 MEMORY = 0.5  # of the time in which a sole slides its length: what a film remembers
@@ -214,10 +215,11 @@ class SlidingSole:
         passing, rejected = self.sliding_time(speed), self.counts.rejected
 
         def slow() -> bool:
-            begin = self._time - 2 * passing
+            begin = self._time - (2 * passing if passing < CREEPING else 0.5 * self._time)
             film = self.history.fluid_load
             change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
-            return begin > loading and change < SLOW * min(film[-1], normal_force - film[-1])
+            least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
+            return begin > loading and change < SLOW * least
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
