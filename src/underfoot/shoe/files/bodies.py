@@ -131,7 +131,7 @@ def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
     if count == 0 or count > _STRAY_SHARE * corners.shape[0]:
         return mesh, []
     faces = off.reshape(-1, 3).any(axis=1)
-    places = np.unique(corners[off], axis=0)
+    places = np.unique(corners[off], axis=0) + np.array(mesh.origin)
     place = ", ".join(f"{value:.6g}" for value in places[0])
     remark = (
         f"{places.shape[0]} stray corner{'s' if places.shape[0] > 1 else ''} far off all others, "
