@@ -93,9 +93,7 @@ def read_obj(path: Path) -> MeshFile:
             where=where,
             remedy=AGAIN,
         )
-    names = [
-        (o.decode("utf-8", "replace"), g.decode("utf-8", "replace")) for o, g in numbers
-    ]
+    names = [(o.decode("utf-8", "replace"), g.decode("utf-8", "replace")) for o, g in numbers]
     owner_of = np.array(owners, dtype=np.int64)
     bodies = []
     for n, (o, g) in enumerate(names):
