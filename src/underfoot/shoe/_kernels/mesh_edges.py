@@ -109,9 +109,9 @@ def overlap_lines(
     """Return on how many straight lines a body overlaps itself, on how many faces lie double, met.
 
     Lines along the third axis, ``pitch`` apart. Along a line through a sound body the surfaces are
-    met in turn from outside and from inside; two from outside in a row, farther apart than ``near``,
-    mean that the surface crosses itself. Two faces turned opposite ways that lie nearer, with
-    nothing else beside them, are faces that lie double.
+    met in turn from outside and from inside; two from outside in a row, farther apart than
+    ``near``, mean that the surface crosses itself. Two faces turned opposite ways that lie nearer,
+    with nothing else beside them, are faces that lie double.
 
     Parameters:
         body: (n,) number of the body of each triangle; all alike: bodies that overlap count too.

@@ -41,7 +41,8 @@ def _without_stray_parts(height: Array, spacing: float) -> tuple[Array, list[str
         return height, []
     sizes = np.bincount(parts.ravel())
     sizes[0] = 0
-    keep = sizes >= SMALLEST_PART * sizes.sum()
+    # many parts alike are no accident
+    keep = (sizes >= min(SMALLEST_PART * sizes.sum(), sizes.max() / 2)) & (sizes > 0)
     gone = int(count - np.count_nonzero(keep))
     area = float(sizes[~keep].sum()) * spacing**2 * 1e6
     height = np.where(keep[parts], height, np.nan)

@@ -64,8 +64,10 @@ class _Asset:
             self._demands()
             roots = self._roots()
             bodies = [body for n in roots for body in self._node(n, np.eye(4), (), True, ())]
-        except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-            raise self._error(f"the {self.format} file contradicts itself ({error!r})") from error
+        except KeyError as error:
+            raise self._error(f"the {self.format} file lacks {error}, which it needs") from error
+        except (IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
+            raise self._error(f"the {self.format} file contradicts itself ({error})") from error
         unit, remarks = self._unit(bodies)
         return MeshFile(self.format, bodies, unit, tuple(self.unmet), remarks)
 
@@ -272,14 +274,15 @@ class _Asset:
         return np.fromfile(beside, dtype=np.uint8)
 
     def _unit(self, bodies: list[Body]) -> tuple[float | None, tuple[str, ...]]:
-        corners = [
-            body.vertices.astype(np.float64) @ body.placement[:3, :3].T + body.placement[:3, 3]
-            for body in bodies
-            if body.visible and body.vertices.size
-        ]
-        if not corners:
-            return None, ()
-        size = float(np.ptp(np.concatenate(corners), axis=0).max())
+        with np.errstate(invalid="ignore"):
+            corners = [
+                body.vertices.astype(np.float64) @ body.placement[:3, :3].T + body.placement[:3, 3]
+                for body in bodies
+                if body.visible and body.vertices.size
+            ]
+            if not corners:
+                return None, ()
+            size = float(np.ptp(np.concatenate(corners), axis=0).max())
         if _SHORTEST <= size <= _LONGEST:
             return 1.0, ()
         return None, (f"glTF is in metres, which would make this file {size:.4g} m long.",)

@@ -71,7 +71,8 @@ class Body:
         matrix, shift = self.placement[:3, :3], self.placement[:3, 3] - origin
         points = self.vertices
         if points.dtype != np.float32 or shift.any() or not np.array_equal(matrix, np.eye(3)):
-            points = (points @ matrix.T + shift).astype(np.float32)
+            with np.errstate(invalid="ignore", over="ignore"):
+                points = (points @ matrix.T + shift).astype(np.float32)
         soup = points.reshape(-1, 3, 3) if self.faces is None else points[self.faces]
         if np.linalg.det(matrix) < 0:
             soup = soup[:, ::-1]

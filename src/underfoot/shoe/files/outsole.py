@@ -26,7 +26,7 @@ from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
 from .mesh import Mesh
-from .no_sole import TALL, Shape, check_sole, check_surface, check_tread
+from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
@@ -179,6 +179,7 @@ def _outsole(
     remarks += region_remarks
     surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
+    check_carried(surface.inside, surface.land, seen.spacing, where)
     alike = any(each.startswith("Assumed: the ground side") for each in side_remarks)
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)

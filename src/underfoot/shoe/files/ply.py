@@ -74,7 +74,7 @@ def read_ply(path: Path) -> MeshFile:
             continue
         counts = own["\0counts"]
         if not strips:
-            faces.append(triangulated(vertices.astype(np.float64), counts, corners, where))
+            faces.append(triangulated(vertices.astype(np.float64), counts, corners, "PLY", where))
             continue
         for strip in np.split(corners, np.cumsum(counts)[:-1]):
             for piece in np.split(strip, np.flatnonzero(strip < 0)):

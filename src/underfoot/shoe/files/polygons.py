@@ -14,7 +14,9 @@ _NO_WIDTH = 1e-12  # of the length: all corners lie on a line
 _SAME_AREA = 1e-6
 
 
-def triangulated(vertices: Array, counts: Ints, corners: Ints, where: str) -> NDArray[np.int64]:
+def triangulated(
+    vertices: Array, counts: Ints, corners: Ints, kind: str, where: str
+) -> NDArray[np.int64]:
     """Return triangles (n, 3) of polygons; those of fewer than three corners are left out.
 
     A convex polygon is cut from its first corner. A concave one, or one with corners that do not
@@ -25,7 +27,7 @@ def triangulated(vertices: Array, counts: Ints, corners: Ints, where: str) -> ND
         vertices: (m, 3).
         counts: (n,) corners of each polygon.
         corners: Numbers of their vertices, one polygon after the other.
-        where: The file.
+        kind, where: Format and name of the file.
 
     Raises:
         DataError: A polygon crosses itself; it names a vertex that is not there.
@@ -35,12 +37,14 @@ def triangulated(vertices: Array, counts: Ints, corners: Ints, where: str) -> ND
     if corners.size and (corners.min() < 0 or corners.max() >= vertices.shape[0]):
         bad = corners[(corners < 0) | (corners >= vertices.shape[0])][0]
         raise DataError(
-            f"a face names vertex {bad + 1} of {vertices.shape[0]}",
+            f"a face of the {kind} file names vertex {bad} of {vertices.shape[0]}, counted from 0",
             where=where,
             remedy="It may be cut short or damaged: export the outsole again",
         )
     if (counts == 3).all():
         return corners.reshape(-1, 3)
+    sound = np.isfinite(vertices).all()
+    vertices = vertices if sound else np.nan_to_num(vertices, posinf=0.0, neginf=0.0)
     first = np.cumsum(counts) - counts
     made = [np.zeros((0, 3), dtype=np.int64)]
     order = [np.zeros(0, dtype=np.int64)]

@@ -204,7 +204,8 @@ def _is_obj(head: bytes, path: Path) -> bool:
     if named and not _OBJ_VERTEX.search(head):
         with path.open("rb") as stream:
             head = stream.read(_OBJ_HEAD)
-    if not _OBJ_VERTEX.search(head.replace(b"\r", b"\n")):
+    head = re.sub(rb"\\[ \t]*\r?\n", b" ", head).replace(b"\r", b"\n")
+    if not _OBJ_VERTEX.search(head):
         return False
     words = [line.split(None, 1)[0] for line in head.splitlines() if line.strip()]
     known = [word in OBJ_WORDS or word.startswith(b"#") for word in words[:-1]]

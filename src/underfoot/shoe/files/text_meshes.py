@@ -99,7 +99,7 @@ def read_obj(path: Path) -> MeshFile:
     for n, (o, g) in enumerate(names):
         mine = owner_of == n if len(names) > 1 else np.ones(len(owners), dtype=bool)
         own = corners if mine.all() else corners[np.repeat(mine, counts)]
-        made = triangulated(vertices, counts[mine], own, where)
+        made = triangulated(vertices, counts[mine], own, "OBJ", where)
         layer, name = (o, g) if o and g else ("", o or g)
         bodies.append(Body(vertices, made, name, layer))
     remarks = ()
@@ -205,10 +205,10 @@ def read_off(path: Path) -> MeshFile:
         if any(len(each) != n for each, n in zip(corners, counts, strict=True)):
             raise ValueError("a face has fewer corners than it says")
         flat = np.array([word for each in corners for word in each], dtype="S").astype(np.int64)
-    except (ValueError, IndexError) as error:
+    except (ValueError, IndexError, OverflowError) as error:
         raise DataError(f"the OFF file is not read ({error})", where=where, remedy=AGAIN) from error
     if not face_count:
         raise _without_faces("OFF", f"{vertex_count} points and no faces", where)
     if kind[4]:
         points = points[:, :3] / points[:, 3:]
-    return MeshFile("OFF", [Body(points, triangulated(points, counts, flat, where))])
+    return MeshFile("OFF", [Body(points, triangulated(points, counts, flat, "OFF", where))])
