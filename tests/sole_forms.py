@@ -797,6 +797,7 @@ for _unit, _size in (("Millimeters", 1.0), ("Inches", 1 / 25.4), ("Mils", 1 / 0.
 @form("3dm")
 @rhino_file
 def hidden_layers_and_objects(rhino, file):
+    rhino_layer(rhino, file, "Default")
     off = rhino_layer(rhino, file, "Old", visible=False)
     below = rhino_layer(rhino, file, "Below it", parent=off)
     file.Objects.AddMesh(rhino_mesh(rhino, parts()), rhino_attributes(rhino, "sole"))
