@@ -28,6 +28,7 @@ OTHER_NAMES = re.compile(
 _PLAINLY = re.compile(r"out.?sole|lauf.?sohle", re.IGNORECASE)
 _STRAY_REACH = 3.0  # sizes of the box around nearly all corners
 _STRAY_SHARE = 1e-3  # of the corners
+_ON_TABLE = 0.1  # of a plate: what stands on it
 _BIG = (0.5, 0.4)  # of the longest body's extent along and across
 _SLENDER = 3.0  # height over width: a support, no lug
 _SAME = 0.03  # relative difference of the sizes of a pair
@@ -292,9 +293,9 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     length, width, height = bodies.size.T
     box = 2 * (length * width + (length + width) * height)
     plates = keep & (np.abs(bodies.area - box) < _BOX * box) & (height < _PLATE * width)
-    # loose lugs are no sole without the plate that they stand on
+    # a base is one with its lugs, so that what is left of plates carries nothing
     others = bodies.size[keep & ~plates, :2].max(axis=0, initial=0.0)
-    plates &= (others > _BIG[1] * bodies.size[:, :2]).all(axis=1)
+    plates &= (others > _ON_TABLE * bodies.size[:, :2]).all(axis=1)
     plates &= (bodies.size[:, :2] > _BIG[1] * others).all(axis=1)
     if not plates.any():
         return keep, []

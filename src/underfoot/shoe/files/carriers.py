@@ -17,7 +17,7 @@ from .view import View, extents, view
 _MOST = 12  # bodies that are looked at, the largest first
 _COARSE = 300  # cells along a body
 _NEAR = 1e-3  # of a body's length: faces nearer than this touch
-_HANGS = 0.6  # of a body's plan form that touches what carries it
+_HANGS, _PART = 0.6, 0.1  # of a body's plan form over what carries it, in all: what touches it
 _OPEN = 0.08  # of the plan form of lugs: what shows between them
 _LEVEL = 0.5  # cosine of a face's normal with upright: a wall touches nothing
 _SLENDER = 3.0  # height over width: a support, no lug
@@ -96,13 +96,14 @@ def _claims(mesh: Mesh, corners: Array, carrier: int) -> list[_Claim]:
     plan = np.bincount(mesh.body, np.abs(normal[:, 2]), len(mesh.bodies)) / 2
     middle = placed.mean(axis=1)
     lowest, highest, there = _over(seen, middle)
+    over = np.bincount(mesh.body, np.abs(normal[:, 2]) * there, len(mesh.bodies)) / 2
     near = _NEAR * length
     touching = level & there & (middle[:, 2] > lowest - near) & (middle[:, 2] < highest + near)
     below = middle[:, 2] < (lowest + highest) / 2
     found = []
     for sign, on_side in ((-1.0, below), (1.0, ~below)):
         met = np.bincount(mesh.body, np.abs(normal[:, 2]) * (touching & on_side), len(mesh.bodies))
-        lugs = (met > _HANGS * plan) & (plan > 0) & ~_slender(mesh, placed)
+        lugs = (met > _HANGS * over) & (met > _PART * plan) & ~_slender(mesh, placed)
         lugs[carrier] = False
         if lugs.any():
             claim = _claim(mesh, seen, carrier, lugs, sign, near)
