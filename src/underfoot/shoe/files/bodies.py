@@ -100,7 +100,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     remarks += told
     mesh, keep, told = _joined(mesh, group, keep)
     remarks += told
-    if np.ptp(mesh.body) == 0:
+    if mesh.body is None or np.ptp(mesh.body) == 0:
         return Found((mesh,), away, tuple(remarks))
     bodies = _measured(mesh)
     others = ~keep

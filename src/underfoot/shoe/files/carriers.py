@@ -145,7 +145,7 @@ def _over(seen: View, points: Array) -> tuple[Array, Array, Mask]:
     shape = seen.covered.shape
     with np.errstate(invalid="ignore"):
         places = np.rint((points[:, :2] - seen.first) / seen.spacing)
-    there = (places >= 0).all(axis=1) & (places < shape).all(axis=1)
+    there = np.asarray((places >= 0).all(axis=1) & (places < shape).all(axis=1))
     rows, columns = np.where(there[:, None], places, 0).astype(np.intp).T
     there &= seen.covered[rows, columns]
     return seen.lowest[rows, columns], seen.highest[rows, columns], there

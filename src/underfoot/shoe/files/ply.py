@@ -121,7 +121,7 @@ def _of_text(values: np.ndarray, place: int, element: _Element) -> tuple[Columns
     lists = [each for each in element.properties if each.length]
     if not element.count or not element.properties:
         return {}, place
-    width = len(element.properties)
+    width, first = len(element.properties), 0
     if lists:
         first = int(values[place + element.properties.index(lists[0])]) if len(lists) == 1 else -1
         width = width + first if first >= 0 else 0

@@ -46,8 +46,8 @@ def triangulated(
     sound = np.isfinite(vertices).all()
     vertices = vertices if sound else np.nan_to_num(vertices, posinf=0.0, neginf=0.0)
     first = np.cumsum(counts) - counts
-    made = [np.zeros((0, 3), dtype=np.int64)]
-    order = [np.zeros(0, dtype=np.int64)]
+    made: list[Ints] = [np.zeros((0, 3), dtype=np.int64)]
+    order: list[Ints] = [np.zeros(0, dtype=np.int64)]
     for count in np.unique(counts[counts > 2]):
         number = np.flatnonzero(counts == count)
         rings = corners[first[number][:, None] + np.arange(count)]

@@ -168,7 +168,7 @@ class _Reader:
             )
 
 
-def _mesh(mesh: Any) -> tuple[Array, np.ndarray]:
+def _mesh(mesh: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices and triangles of a mesh; a quadrilateral is cut where it stays within."""
     points = [mesh.Vertices[n] for n in range(len(mesh.Vertices))]
     corners = np.array([(p.X, p.Y, p.Z) for p in points], dtype=np.float64).reshape(-1, 3)

@@ -209,8 +209,7 @@ class _Package:
             raise self._error(f"its part {name} is damaged ({error})") from error
 
     def _xml(self, name: str, data: bytes | None = None) -> Any:
-        from lxml import etree
-
+        etree = optional_module("lxml.etree", "cad", "Reading 3MF")
         parser = etree.XMLParser(
             resolve_entities=False, no_network=True, huge_tree=True, remove_comments=True
         )
