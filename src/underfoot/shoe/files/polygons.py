@@ -64,7 +64,8 @@ def triangulated(
             within, owner = _within(vertices, rings[~convex], number[~convex], where)
             made.append(within)
             order.append(owner)
-    return np.concatenate(made)[np.argsort(np.concatenate(order), kind="stable")]
+    faces = np.concatenate(made)[np.argsort(np.concatenate(order), kind="stable")]
+    return faces.astype(np.int64)
 
 
 def _normals(rings: Array) -> Array:
