@@ -73,9 +73,13 @@ def soup_keys(
 
 
 @njit(cache=True)
-def shared_edges(edges: Keys) -> tuple[int, int, int]:
-    """Return how many edges of sorted keys have one face, more than two, or two turned alike."""
-    open_edges, crowded, turned = 0, 0, 0
+def shared_edges(edges: Keys) -> tuple[int, int, int, int]:
+    """Return how many edges of sorted keys have one face, more than two, or two turned alike.
+
+    More than two, as many in one direction as in the other, are bodies that touch or copies: they
+    are counted last, apart.
+    """
+    open_edges, crowded, turned, touching = 0, 0, 0, 0
     one = np.uint64(1)
     n = 0
     while n < edges.size and edges[n] == 0:
@@ -89,11 +93,13 @@ def shared_edges(edges: Keys) -> tuple[int, int, int]:
             n += 1
         if total == 1:
             open_edges += 1
+        elif total > 2 and 2 * forward == total:
+            touching += 1
         elif total > 2:
             crowded += 1
         elif forward != 1:
             turned += 1
-    return open_edges, crowded, turned
+    return open_edges, crowded, turned, touching
 
 
 @njit(cache=True, error_model="numpy")

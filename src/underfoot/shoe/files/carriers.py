@@ -19,6 +19,7 @@ _COARSE = 300  # cells along a body
 _NEAR = 1e-3  # of a body's length: faces nearer than this touch
 _HANGS, _PART = 0.6, 0.1  # of a body's plan form over what carries it, in all: what touches it
 _OPEN = 0.08  # of the plan form of lugs: what shows between them
+_FITS = 3.0  # area where a carrier and the span of its lugs differ, over that span
 _LEVEL = 0.5  # cosine of a face's normal with upright: a wall touches nothing
 _SLENDER = 3.0  # height over width: a support, no lug
 
@@ -129,6 +130,8 @@ def _claim(
     if standing < near:
         return None
     misfit = np.count_nonzero(seen.covered ^ span) / np.count_nonzero(span)
+    if misfit > _FITS:
+        return None
     return _Claim(carrier, frozenset(np.flatnonzero(lugs).tolist()), sign * seen.axes[2], misfit)
 
 
