@@ -528,6 +528,13 @@ PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
 RELATIONS = "http://schemas.openxmlformats.org/package/2006/relationships"
 KIND = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 ONE = "1 0 0 0 1 0 0 0 1"
+TYPES = (
+    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" '
+    'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel'
+    '+xml"/><Default Extension="config" ContentType="text/xml"/></Types>'
+)
 
 
 def mesh_xml(bodies, scale=1.0, flipped=False, prefix="", face=""):
@@ -555,8 +562,17 @@ def package(text, start="3D/3dmodel.model", **others):
     relation = f'<Relationship Target="/{start}" Id="r" Type="{KIND}"/>'
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         relations = f'<Relationships xmlns="{RELATIONS}">{relation}</Relationships>'
+        archive.writestr("[Content_Types].xml", TYPES)
         archive.writestr("_rels/.rels", relations)
         archive.writestr(start, text)
+        parts = [name for name in others if name.endswith(".model")]
+        if parts:
+            held = "".join(
+                f'<Relationship Target="/{name}" Id="r{n}" Type="{KIND}"/>'
+                for n, name in enumerate(parts)
+            )
+            beside = f'<Relationships xmlns="{RELATIONS}">{held}</Relationships>'
+            archive.writestr("3D/_rels/3dmodel.model.rels", beside)
         for name, data in others.items():
             archive.writestr(name, data)
     return stream.getvalue()
