@@ -262,15 +262,18 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
     )
 
 
-def cut_ends(plan: Mask, axis: int, spacing: float) -> tuple[bool, bool]:
+def cut_ends(plan: Mask, axis: int, spacing: float, *, oblique: bool = True) -> tuple[bool, bool]:
     """Return whether the near and the far end along ``axis`` are cut straight, not rounded.
 
-    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it; or its rim there
-    is a line, up to 25 degrees off square, over 80 % of its width within 2 % of it.
+    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it; or, with
+    ``oblique``, its rim there is a line, up to 25 degrees off square, over 80 % of its width within
+    2 % of it.
     """
     widths = np.trim_zeros(plan.sum(axis=1 - axis))
     near, far = (min(round(place / spacing), widths.size - 1) for place in _CUT_PLACES)
     square = [bool(each[near] > _CUT * each[far]) for each in (widths, widths[::-1])]
+    if not oblique:
+        return square[0], square[1]
     turned = plan if axis == 0 else plan.T
     low, high = (square[0] or _is_line(turned)), (square[1] or _is_line(turned[::-1]))
     return low, high
