@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
+import scipy.sparse as sp
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
@@ -32,10 +34,15 @@ from ._kernels.elastic import (
     influence_from_symbol,
     wavenumbers,
 )
+from .long_waves import Body, LongWaves, long_waves
 
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
+BATCH = 32  # fields whose deflections are found at once
+LEAST_OWN = 0.05  # of the layers' self compliance is left by what the long waves take
+MERGED = 2e-3
+"""m: cells are merged up to this side to find what the layers say under hats of some mm."""
 THINNEST = 0.1  # share of the outsole left above the deepest profile
 REACHED = 1e-3
 """m: a channel deeper than this neither touches the floor nor holds a film (pools: 0.6 mm)."""
@@ -73,6 +80,7 @@ class ConvolutionCompliance:
     ) -> None:
         """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
+        self._long_waves: LongWaves | None = None
         self._modulus = modulus
         plain = np.ones(shape)
         self._weights = np.stack([plain if weight is None else weight for _, weight in parts])
@@ -100,7 +108,36 @@ class ConvolutionCompliance:
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         weights = self._weights
-        return np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
+        risen = np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
+        if self._long_waves is not None:
+            risen += self._long_waves.apply(pressure)
+        return risen
+
+    def corrected(self, long_waves: LongWaves | None) -> ConvolutionCompliance:
+        """Return the compliance with its long waves put right; itself for None."""
+        if long_waves is None:
+            return self
+        result = copy(self)
+        result._long_waves = long_waves
+        own = self._self + long_waves.own(self._self.shape)
+        result._self = np.maximum(own, LEAST_OWN * self._self)
+        return result
+
+    def under_hats(self, hats: sp.csr_matrix, merged: int = 1) -> Array:
+        """Return B^T C B (m/Pa) of fields B (cells, n) on ``merged`` x ``merged`` cells as one."""
+        convolution = self._convolution.merged(merged)
+        (nx, ny), (mx, my) = self._self.shape, convolution.shape
+        i, j = np.divmod(np.arange(nx * ny), ny)
+        block = (i // merged) * my + j // merged
+        gather = sp.csr_matrix((np.ones(block.size), (block, np.arange(block.size))))
+        total = np.zeros((hats.shape[1], hats.shape[1]))
+        for part, weight in enumerate(self._weights):
+            loads = sp.csr_matrix(gather @ sp.diags(weight.ravel()) @ hats)
+            for first in range(0, hats.shape[1], BATCH):
+                some = loads[:, first : first + BATCH].toarray().T.reshape(-1, mx, my)
+                risen = convolution.part(part)(some / merged**2).reshape(len(some), -1)
+                total[:, first : first + BATCH] += loads.T @ risen.T
+        return total
 
     def within(self, box: Box, dtype: Any = float) -> ConvolutionCompliance:
         """Return the compliance between the cells of a box, whose cost is that of the box.
@@ -110,6 +147,8 @@ class ConvolutionCompliance:
         part = object.__new__(ConvolutionCompliance)
         part._symbol, part._self = self._symbol, self._self[box]
         part._modulus = self._modulus
+        long = self._long_waves
+        part._long_waves = long and long.within(self._self.shape, box, dtype)
         part._weights = self._weights[:, *box].astype(dtype)
         part._convolution = self._convolution.within(part._self.shape, dtype)
         return part
@@ -255,13 +294,19 @@ def layered_compliance(
 
     block = influence(footprint)
     plan_weight = balanced_weights(block, plan, give)
+    base: list[tuple[Array, Array | None]] = [(influence(rest), None), (block, plan_weight)]
+    layers = ConvolutionCompliance(
+        shape, base, lambda q: rest(q) + footprint(q), modulus=plane
+    )
+    soft = None
+    if midsole_modulus is not None and midsole_thickness is not None:
+        soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
+    long = long_waves(
+        Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft),
+        partial(layers.under_hats, merged=max(1, round(MERGED / sole.spacing))),
+    )
     if depth == 0.0:
-        return ConvolutionCompliance(
-            shape,
-            [(influence(rest), None), (block, plan_weight)],
-            lambda q: rest(q) + footprint(q),
-            modulus=plane,
-        )
+        return layers.corrected(long)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -286,7 +331,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    )
+    ).corrected(long)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

@@ -302,3 +302,29 @@ class Convolution:
         (nx, ny), (mx, my) = self.shape, shape
         part = self.influence[..., nx - mx : nx + mx - 1, ny - my : ny + my - 1]
         return Convolution(part, shape, dtype)
+
+    def part(self, number: int) -> "Convolution":
+        """Return the convolution of one of the fields, of any number of them at once."""
+        part = object.__new__(Convolution)
+        part.shape, part.padded = self.shape, self.padded
+        part.influence, part.spectrum = self.influence[number], self.spectrum[number]
+        part._planned = None
+        return part
+
+    def merged(self, cells: int) -> "Convolution":
+        """Return the same between the means of ``cells`` x ``cells`` cells taken as one."""
+        if cells == 1:
+            return self
+        shape = math.ceil(self.shape[0] / cells), math.ceil(self.shape[1] / cells)
+        influence = self.influence
+        for axis, (count, merged) in enumerate(zip(self.shape, shape, strict=True), start=-2):
+            # a block acts on a block as the mean over all pairs of their cells
+            pairs = cells - np.abs(np.arange(-cells + 1, cells))
+            offsets = cells * np.arange(-merged + 1, merged)[:, None] + np.arange(-cells + 1, cells)
+            at = np.clip(offsets + count - 1, 0, 2 * count - 2)
+            held = np.abs(offsets) < count
+            weight = pairs / cells * held
+            taken = np.take(influence, at, axis=axis)
+            letters = "...abc,ab->...ac" if axis == -2 else "...cab,ab->...ca"
+            influence = np.einsum(letters, taken, weight)
+        return Convolution(influence, shape)

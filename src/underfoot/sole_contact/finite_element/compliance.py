@@ -67,6 +67,11 @@ class FiniteElementCompliance:
         return self._self
 
     @property
+    def short_waves(self) -> tuple[Array, float]:
+        """Weight (nx, ny) and modulus (Pa) of the half-space that short waves meet."""
+        return self._layers.short_waves
+
+    @property
     def covered(self) -> NDArray[np.bool_]:
         """Cells whose pressure the finite elements see, (nx, ny)."""
         return ~self._bare

@@ -1,0 +1,201 @@
+"""Long waves of a compliance put right by elements of the body's real shape.
+
+Layers in closed form know one thickness and free sides as if they were upright. Where a profile
+thins a heel they are a fifth too soft at its rear, and the gap under a bevel tilts by a third of a
+degree. So, with B hats of some mm, C the layers and D the elements,
+
+    u = C p + B K B^T p,   K = R (B^T D B - B^T C B) R,   R = (B^T B)^-1
+
+which is symmetric, D for what the hats resolve and C for all that is finer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array
+from underfoot.shoe.geometry import SoleMap
+
+from ._kernels.brick_elements import Bricks, rise_under_hats
+
+Box = tuple[slice, slice]
+SIDE = 6e-3
+"""Side of a brick and of a hat, m; larger where ``MOST_SQUARES`` do not cover the plan."""
+MOST_SQUARES = 200
+REACH = 6e-3
+"""Land higher above the floor than this (m) keeps the layers alone."""
+MARGIN = 1.5
+"""Thicknesses of the body around this land that are meshed."""
+GROWTH = 1.6  # from a layer of bricks to the next, from the floor up
+MIDSOLE_LAYERS = 2
+NEARLY_INCOMPRESSIBLE = 0.499
+FAINT = 0.02
+"""Overlap of a hat with itself, of that of a whole hat, below which its correction fades out."""
+
+
+@dataclass(frozen=True, slots=True)
+class LongWaves:
+    """Correction B K B^T of a deflection: ``hats`` B (cells, n), ``matrix`` K (n, n) in m/Pa."""
+
+    hats: sp.csr_matrix
+    matrix: Array
+
+    def apply(self, pressure: NDArray[Any]) -> NDArray[Any]:
+        """Return what is added to the deflection (nx, ny) under a pressure (nx, ny)."""
+        weight = self.hats.T @ pressure.ravel()
+        return (self.hats @ (self.matrix @ weight)).reshape(pressure.shape)
+
+    def own(self, shape: tuple[int, int]) -> Array:
+        """Return what is added to the deflection of a cell under its own unit pressure."""
+        product = self.hats.multiply(sp.csr_matrix(self.hats @ sp.csr_matrix(self.matrix)))
+        return np.asarray(product.sum(axis=1)).reshape(shape)
+
+    def within(self, shape: tuple[int, int], box: Box, dtype: Any = float) -> LongWaves:
+        """Return the same between the cells of a box of a map of ``shape``."""
+        cells = np.arange(shape[0] * shape[1]).reshape(shape)[box].ravel()
+        hats: Any = self.hats[cells].astype(dtype)
+        used = np.unique(hats.indices)
+        return LongWaves(hats[:, used], self.matrix[np.ix_(used, used)].astype(dtype))
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What carries the lugs: rubber of one thickness field, a midsole, a rigid foot.
+
+    ``thickness`` (nx, ny) in m along the shoe's normal, ``shoe_angle`` of its plane in rad;
+    ``midsole`` is its modulus (Pa), Poisson's ratio and thickness (m), None for none.
+    """
+
+    sole: SoleMap
+    thickness: Array
+    shoe_angle: float
+    modulus: float
+    poisson_ratio: float
+    midsole: tuple[float, float, float] | None = None
+
+
+def long_waves(body: Body, layers: Callable[[sp.csr_matrix], Array]) -> LongWaves | None:
+    """Return the correction of ``layers``: B to B^T C B (m/Pa); None where nothing is near."""
+    sole = body.sole
+    near = sole.inside & (sole.clearance - sole.clearance[sole.inside].min() < REACH)
+    if not near.any():
+        return None
+    bricks, corner_x, corner_y = _bricks(body, near)
+    hats = _hats(sole, corner_x, corner_y, near)
+    chosen = np.flatnonzero(np.diff(sp.csc_matrix(hats).indptr))
+    hats = sp.csr_matrix(hats[:, chosen])
+    work, _ = rise_under_hats(bricks, chosen)
+    cell = sole.spacing**2
+    overlap = (hats.T @ hats).toarray() * cell
+    whole = 4 / 9 * bricks.side**2
+    inverse = np.linalg.inv(overlap + FAINT * whole * np.eye(chosen.size))
+    matrix = inverse @ (work - layers(hats) * cell) @ inverse * cell
+    return LongWaves(hats, 0.5 * (matrix + matrix.T))
+
+
+def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
+    """Return the bricks and the places of their corners along x and across y."""
+    sole = body.sole
+    margin = MARGIN * (float(body.thickness.max()) + (body.midsole[2] if body.midsole else 0.0))
+    ends = []
+    for axis, places in ((0, sole.x), (1, sole.y)):
+        rim = np.asarray(sole.outline)[:, axis]
+        reached = places[near.any(axis=1 - axis)]
+        low = max(float(rim.min()), float(reached[0]) - margin)
+        ends.append((low, min(float(rim.max()), float(reached[-1]) + margin)))
+    (x0, x1), (y0, y1) = ends
+    side = max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
+    nx, ny = (max(1, math.ceil(length / side - 1e-9)) for length in (x1 - x0, y1 - y0))
+    corner_x = x0 + side * np.arange(nx + 1)
+    corner_y = 0.5 * (y0 + y1) + side * (np.arange(ny + 1) - 0.5 * ny)  # as its mirror image
+    cover = _covered(
+        np.asarray(sole.outline), _halves(corner_x), _halves(corner_y), (x0, x1), (y0, y1)
+    )
+    thickness = _at(sole, body.thickness, _halves(corner_x), _halves(corner_y))
+    shares = _graded(float(body.thickness[near].mean()), side)
+    levels = [thickness * share for share in _halves(shares)]
+    modulus, ratio = [body.modulus] * (shares.size - 1), [body.poisson_ratio] * (shares.size - 1)
+    if body.midsole is not None:
+        soft, soft_ratio, deep = body.midsole
+        steps = np.arange(1, 2 * MIDSOLE_LAYERS + 1) / (2 * MIDSOLE_LAYERS)
+        levels += [thickness + deep * step for step in steps]
+        modulus += [soft] * MIDSOLE_LAYERS
+        ratio += [soft_ratio] * MIDSOLE_LAYERS
+    sine, cosine = math.sin(body.shoe_angle), math.cos(body.shoe_angle)
+    x, y = np.meshgrid(_halves(corner_x), _halves(corner_y), indexing="ij")
+    base = np.stack([x, y, x * sine / cosine - thickness / cosine], axis=-1)
+    normal = np.array([-sine, 0.0, cosine])
+    nodes = np.stack([base + level[..., None] * normal for level in levels], axis=2)
+    capped = np.minimum(ratio, NEARLY_INCOMPRESSIBLE)
+    return Bricks(side, nodes, cover, np.array(modulus), capped), corner_x, corner_y
+
+
+def _halves(places: Array) -> Array:
+    """Return places with those halfway between them."""
+    return np.interp(np.arange(2 * places.size - 1) / 2, np.arange(places.size), places)
+
+
+def _graded(thickness: float, side: float) -> Array:
+    """Return the shares 0 to 1 of the outsole's thickness at which its layers of bricks end."""
+    steps = [side]
+    while sum(steps) < thickness or len(steps) < 2:
+        steps.append(steps[-1] * GROWTH)
+    return np.concatenate([[0.0], np.cumsum(steps) / sum(steps)])
+
+
+def _at(sole: SoleMap, field: Array, x: Array, y: Array) -> Array:
+    """Return a field of the map at the places of a grid, linear between cells."""
+    from scipy.ndimage import map_coordinates
+
+    at = np.meshgrid(
+        (x - sole.x[0]) / sole.spacing, (y - sole.y[0]) / sole.spacing, indexing="ij"
+    )
+    return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
+
+
+def _hats(sole: SoleMap, x: Array, y: Array, near: NDArray[np.bool_]) -> sp.csr_matrix:
+    """Return the hat of each corner at each cell, 0 away from what is near."""
+
+    def along(places: Array, corners: Array) -> sp.csr_matrix:
+        step = corners[1] - corners[0]
+        value = 1 - np.abs(places[:, None] - corners) / step
+        return sp.csr_matrix(np.maximum(value, 0.0))
+
+    every = sp.kron(along(sole.x, x), along(sole.y, y), format="csr")
+    return sp.csr_matrix(sp.diags(near.ravel().astype(float)) @ every)
+
+
+LINES = 8  # across a quarter of a square, along which the outline is followed
+
+
+def _covered(
+    outline: Array, x: Array, y: Array, x_ends: tuple[float, float], y_ends: tuple[float, float]
+) -> Array:
+    """Return the share of each box between the places x and y that a closed polygon covers.
+
+    Exact along ``LINES`` lines through each box; what lies beyond the ends counts as free.
+    """
+    step = x[1] - x[0]
+    at = (x[:-1, None] + step * (np.arange(LINES) + 0.5) / LINES).ravel()
+    start, end = outline[:-1], outline[1:]
+    low, high = np.minimum(start[:, 0], end[:, 0]), np.maximum(start[:, 0], end[:, 0])
+    line, edge = np.nonzero((low <= at[:, None]) & (at[:, None] < high))
+    share = (at[line] - start[edge, 0]) / (end[edge, 0] - start[edge, 0])
+    crossing = start[edge, 1] + share * (end[edge, 1] - start[edge, 1])
+    order = np.lexsort((crossing, line))
+    line, crossing = line[order], np.clip(crossing[order], *y_ends)
+    first = np.searchsorted(line, line)
+    inwards = np.where((np.arange(line.size) - first) % 2 == 0, 1.0, -1.0)
+    # length of the line inside the polygon below each place of y
+    below = np.zeros((at.size, y.size))
+    np.add.at(below, line, inwards[:, None] * np.maximum(y - crossing[:, None], 0.0))
+    below *= ((at > x_ends[0]) & (at < x_ends[1]))[:, None]
+    cover = np.diff(below, axis=1) / np.diff(y)
+    return cover.reshape(x.size - 1, LINES, -1).mean(axis=1)
