@@ -308,7 +308,7 @@ class FiniteElementCompliance(ComplianceOption):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
-        store = Cache("sole_compliance-1")
+        store = Cache("sole_compliance-2")
         return finite_element_compliance(
             sole, **_layers(context), cache=store, progress=context.progress
         )

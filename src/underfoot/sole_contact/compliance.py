@@ -39,10 +39,7 @@ from .long_waves import Body, LongWaves, long_waves
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
-BATCH = 32  # fields whose deflections are found at once
 LEAST_OWN = 0.05  # of the layers' self compliance is left by what the long waves take
-MERGED = 2e-3
-"""m: cells are merged up to this side to find what the layers say under hats of some mm."""
 THINNEST = 0.1  # share of the outsole left above the deepest profile
 REACHED = 1e-3
 """m: a channel deeper than this neither touches the floor nor holds a film (pools: 0.6 mm)."""
@@ -80,7 +77,7 @@ class ConvolutionCompliance:
     ) -> None:
         """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
-        self._long_waves: LongWaves | None = None
+        self._long_waves: tuple[LongWaves, ...] = ()
         self._modulus = modulus
         plain = np.ones(shape)
         self._weights = np.stack([plain if weight is None else weight for _, weight in parts])
@@ -109,35 +106,33 @@ class ConvolutionCompliance:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         weights = self._weights
         risen = np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
-        if self._long_waves is not None:
-            risen += self._long_waves.apply(pressure)
+        for correction in self._long_waves:
+            risen += correction.apply(pressure)
         return risen
 
     def corrected(self, long_waves: LongWaves | None) -> ConvolutionCompliance:
-        """Return the compliance with its long waves put right; itself for None."""
+        """Return the compliance with one more correction of its long waves; itself for None."""
         if long_waves is None:
             return self
         result = copy(self)
-        result._long_waves = long_waves
+        result._long_waves = (*self._long_waves, long_waves)
         own = self._self + long_waves.own(self._self.shape)
         result._self = np.maximum(own, LEAST_OWN * self._self)
         return result
 
-    def under_hats(self, hats: sp.csr_matrix, merged: int = 1) -> Array:
-        """Return B^T C B (m/Pa) of fields B (cells, n) on ``merged`` x ``merged`` cells as one."""
-        convolution = self._convolution.merged(merged)
-        (nx, ny), (mx, my) = self._self.shape, convolution.shape
-        i, j = np.divmod(np.arange(nx * ny), ny)
-        block = (i // merged) * my + j // merged
-        gather = sp.csr_matrix((np.ones(block.size), (block, np.arange(block.size))))
-        total = np.zeros((hats.shape[1], hats.shape[1]))
-        for part, weight in enumerate(self._weights):
-            loads = sp.csr_matrix(gather @ sp.diags(weight.ravel()) @ hats)
-            for first in range(0, hats.shape[1], BATCH):
-                some = loads[:, first : first + BATCH].toarray().T.reshape(-1, mx, my)
-                risen = convolution.part(part)(some / merged**2).reshape(len(some), -1)
-                total[:, first : first + BATCH] += loads.T @ risen.T
-        return total
+    def under_hats(self, hats: sp.csr_matrix) -> Array:
+        """Return B^T C B (m/Pa) of fields B (cells, n), in single precision."""
+        shape = self._self.shape
+        loaded = (np.diff(hats.indptr) > 0).reshape(shape)
+        rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        cells = np.arange(loaded.size).reshape(shape)[box]
+        part, fields = self.within(box, np.float32), sp.csc_matrix(hats[cells.ravel()])
+        risen = np.empty((cells.size, hats.shape[1]))
+        for k in range(hats.shape[1]):
+            field = fields[:, [k]].toarray().reshape(cells.shape).astype(np.float32)
+            risen[:, k] = part.apply(field).ravel()
+        return fields.T @ risen
 
     def within(self, box: Box, dtype: Any = float) -> ConvolutionCompliance:
         """Return the compliance between the cells of a box, whose cost is that of the box.
@@ -147,8 +142,8 @@ class ConvolutionCompliance:
         part = object.__new__(ConvolutionCompliance)
         part._symbol, part._self = self._symbol, self._self[box]
         part._modulus = self._modulus
-        long = self._long_waves
-        part._long_waves = long and long.within(self._self.shape, box, dtype)
+        shape = self._self.shape
+        part._long_waves = tuple(long.within(shape, box, dtype) for long in self._long_waves)
         part._weights = self._weights[:, *box].astype(dtype)
         part._convolution = self._convolution.within(part._self.shape, dtype)
         return part
@@ -303,7 +298,7 @@ def layered_compliance(
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
     long = long_waves(
         Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft),
-        partial(layers.under_hats, merged=max(1, round(MERGED / sole.spacing))),
+        layers.under_hats,
     )
     if depth == 0.0:
         return layers.corrected(long)

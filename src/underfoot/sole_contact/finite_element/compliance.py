@@ -12,6 +12,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
+from ..long_waves import LongWaves
 from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, sole_mesh
 from .plan import plan_of
@@ -26,73 +27,6 @@ REACH = 3.5e-3
 """Land higher above the floor than this (m) keeps the layered compliance alone."""
 FAINT = 0.02
 """Hats that the grid can't tell apart (relative eigenvalue of their overlap) are left out."""
-
-
-class FiniteElementCompliance:
-    """Finite elements for what varies over an element or more, layers for what is finer.
-
-    C = P D P + (1 - P) L (1 - P) with P the projection (on the grid's cells) to the hats of the
-    land nodes, D the finite-element compliance on them and L the layered compliance. So lugs, rim,
-    thickness and midsole act as they are; symmetric and positive as both parts are. Between cells
-    without finite elements (channels, land far above the floor) and the others L acts.
-    """
-
-    def __init__(
-        self, layers: ConvolutionCompliance, hats: sp.csr_matrix, inverse_gram: Array, exact: Array
-    ) -> None:
-        """``hats`` (cells, n); ``exact`` (n, n) rise of hat i by weight of hat j on the cells."""
-        self._layers = layers
-        self._hats = hats
-        self._transposed = sp.csr_matrix(hats.T)
-        self._inverse_gram = inverse_gram
-        self._exact = exact
-        self._bare = (np.diff(hats.indptr) == 0).reshape(layers.self_compliance.shape)
-        plain = layers.self_compliance
-        own, covered = (self._diagonal(matrix, plain.shape) for matrix in (exact, inverse_gram))
-        self._self = np.maximum(own + (1 - covered) ** 2 * plain, 0.05 * plain)
-
-    def _diagonal(self, matrix: Array, shape: tuple[int, ...]) -> Array:
-        """Return the diagonal of H M H^T as a map; H has its rows in CSR order."""
-        starts, columns, values = self._hats.indptr, self._hats.indices, self._hats.data
-        left = np.zeros(starts.size - 1)
-        for place in np.flatnonzero(np.diff(starts)):
-            nodes = columns[starts[place] : starts[place + 1]]
-            weight = values[starts[place] : starts[place + 1]]
-            left[place] = weight @ matrix[np.ix_(nodes, nodes)] @ weight
-        return left.reshape(shape)
-
-    @property
-    def self_compliance(self) -> Array:
-        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
-        return self._self
-
-    @property
-    def short_waves(self) -> tuple[Array, float]:
-        """Weight (nx, ny) and modulus (Pa) of the half-space that short waves meet."""
-        return self._layers.short_waves
-
-    @property
-    def covered(self) -> NDArray[np.bool_]:
-        """Cells whose pressure the finite elements see, (nx, ny)."""
-        return ~self._bare
-
-    def symbol(self, wavenumber: Array) -> Array:
-        """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
-        return self._layers.symbol(wavenumber)
-
-    def apply(self, pressure: Array) -> Array:
-        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
-        weight = self._transposed @ pressure.ravel()
-        coarse = (self._hats @ (self._inverse_gram @ weight)).reshape(pressure.shape)
-        rise = self._layers.apply(pressure - coarse)
-        over = self._exact @ weight - self._inverse_gram @ (self._transposed @ rise.ravel())
-        rise += (self._hats @ over).reshape(pressure.shape)
-        rise += np.where(self._bare, self._layers.apply(coarse), 0.0)
-        alone = np.where(self._bare, pressure, 0.0)
-        if alone.any():
-            pushed = self._transposed @ self._layers.apply(alone).ravel()
-            rise += (self._hats @ (self._inverse_gram @ pushed)).reshape(pressure.shape)
-        return rise
 
 
 class OutsoleAndMidsole(TypedDict):
@@ -114,8 +48,11 @@ def finite_element_compliance(
     cache: Cache | None = None,
     progress: Progress = silent,
     **body: Unpack[OutsoleAndMidsole],
-) -> FiniteElementCompliance:
+) -> ConvolutionCompliance:
     """Return the compliance of a sole from finite elements of its real shape.
+
+    Finite elements for what varies over an element or more, layers for what is finer and for land
+    far above the floor: ``LongWaves`` with the hats of the land nodes.
 
     Parameters:
         sole: Plan form, profile and tread; meshed as its cells show them.
@@ -143,7 +80,8 @@ def finite_element_compliance(
     # turns it into pressure, so that force is kept where cells cover a rim only in part.
     by_force = np.linalg.inv(land.overlap.toarray())
     exact = by_force @ land.work @ by_force * sole.spacing**2
-    return FiniteElementCompliance(layers, hats, inverse_gram, exact)
+    known = inverse_gram @ layers.under_hats(hats) @ inverse_gram
+    return layers.corrected(LongWaves(hats, exact - 0.5 * (known + known.T)))
 
 
 def sole_land(
