@@ -34,7 +34,7 @@ from ._kernels.elastic import (
     influence_from_symbol,
     wavenumbers,
 )
-from .long_waves import Body, LongWaves, long_waves
+from .long_waves import Body, BodyCorrection, LongWaves, body_correction
 
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
@@ -78,6 +78,7 @@ class ConvolutionCompliance:
         """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
         self._long_waves: tuple[LongWaves, ...] = ()
+        self.body: BodyCorrection | None = None
         self._modulus = modulus
         plain = np.ones(shape)
         self._weights = np.stack([plain if weight is None else weight for _, weight in parts])
@@ -110,10 +111,16 @@ class ConvolutionCompliance:
             risen += correction.apply(pressure)
         return risen
 
-    def corrected(self, long_waves: LongWaves | None) -> ConvolutionCompliance:
-        """Return the compliance with one more correction of its long waves; itself for None."""
-        if long_waves is None:
+    def corrected(self, body: BodyCorrection | None, sole: SoleMap) -> ConvolutionCompliance:
+        """Return the compliance with the long waves of its body put right; itself for None."""
+        if body is None:
             return self
+        result = self.plus(body.on(sole))
+        result.body = body
+        return result
+
+    def plus(self, long_waves: LongWaves) -> ConvolutionCompliance:
+        """Return the compliance with one more correction of its long waves."""
         result = copy(self)
         result._long_waves = (*self._long_waves, long_waves)
         own = self._self + long_waves.own(self._self.shape)
@@ -140,7 +147,7 @@ class ConvolutionCompliance:
         ``dtype`` is the precision of the transforms.
         """
         part = object.__new__(ConvolutionCompliance)
-        part._symbol, part._self = self._symbol, self._self[box]
+        part._symbol, part._self, part.body = self._symbol, self._self[box], self.body
         part._modulus = self._modulus
         shape = self._self.shape
         part._long_waves = tuple(long.within(shape, box, dtype) for long in self._long_waves)
@@ -216,6 +223,7 @@ def layered_compliance(
     midsole_thickness: float | None = None,
     midsole_poisson_ratio: float = 0.3,
     free_edges: bool = True,
+    known: BodyCorrection | None = None,
 ) -> ConvolutionCompliance:
     """Return the compliance of an outsole layer, its tread and the midsole under it.
 
@@ -229,6 +237,8 @@ def layered_compliance(
             rigid foot; both None for none. A Poisson's ratio of 0.3 stands for a foam (assumed).
         free_edges: Let the plan form and the lugs bulge at their edges. Without it the layer is
             endless and pressure peaks at edges are too high.
+        known: ``body`` of the compliance of another map of the same shoe, whose elements serve this
+            one too; None solves them.
 
     Bonded layer by its Fourier symbol; a midsole adds its own symbol, attenuated by
     (1 + k T) exp(-k T) through the outsole. Free edges: the part of the response that a block of
@@ -237,7 +247,9 @@ def layered_compliance(
     height at each place, more near a free side than in the middle. Lugs stand in series on the
     layer, which feels what of a wave of pressure gets through their mean height; where lugs are
     worn down to less of it, and in channels worn nearly through, it feels short waves too. Slits
-    (``SoleMap.slits``) are free sides of the lugs as far as they are deep and open.
+    (``SoleMap.slits``) are free sides of the lugs as far as they are deep and open. With free edges
+    the long waves of the body above the lugs are put right by elements of its real shape
+    (``long_waves``).
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -290,18 +302,15 @@ def layered_compliance(
     block = influence(footprint)
     plan_weight = balanced_weights(block, plan, give)
     base: list[tuple[Array, Array | None]] = [(influence(rest), None), (block, plan_weight)]
-    layers = ConvolutionCompliance(
-        shape, base, lambda q: rest(q) + footprint(q), modulus=plane
-    )
+    layers = ConvolutionCompliance(shape, base, lambda q: rest(q) + footprint(q), modulus=plane)
     soft = None
     if midsole_modulus is not None and midsole_thickness is not None:
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
-    long = long_waves(
-        Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft),
-        layers.under_hats,
-    )
+    if known is None:
+        real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+        known = body_correction(real, layers.under_hats)
     if depth == 0.0:
-        return layers.corrected(long)
+        return layers.corrected(known, sole)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -326,7 +335,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    ).corrected(long)
+    ).corrected(known, sole)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array
 from underfoot.shoe.geometry import SoleMap
 
-from ._kernels.brick_elements import Bricks, rise_under_hats
+from ._kernels.brick_elements import Bricks, work_of_hats
 
 Box = tuple[slice, slice]
 SIDE = 6e-3
@@ -36,8 +36,8 @@ MARGIN = 1.5
 GROWTH = 1.6  # from a layer of bricks to the next, from the floor up
 MIDSOLE_LAYERS = 2
 NEARLY_INCOMPRESSIBLE = 0.499
-FAINT = 0.02
-"""Overlap of a hat with itself, of that of a whole hat, below which its correction fades out."""
+FAINT = 0.1
+"""Share of what the rim cuts off a hat's overlap with itself by which its correction fades out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,23 +81,47 @@ class Body:
     midsole: tuple[float, float, float] | None = None
 
 
-def long_waves(body: Body, layers: Callable[[sp.csr_matrix], Array]) -> LongWaves | None:
+@dataclass(frozen=True, slots=True)
+class BodyCorrection:
+    """Correction of the layers of one shoe, for any map of it.
+
+    ``matrix`` K (n, n) in m/Pa per m^2 of the floor belongs to the hats of the corners ``chosen``,
+    numbers i n_y + j of the places ``x`` and ``y`` (m).
+    """
+
+    x: Array
+    y: Array
+    chosen: NDArray[np.int64]
+    matrix: Array
+
+    def on(self, sole: SoleMap) -> LongWaves:
+        """Return the correction on the cells of a map."""
+        hats = _hats(sole, self.x, self.y, near_floor(sole))[:, self.chosen]
+        return LongWaves(sp.csr_matrix(hats), self.matrix * sole.spacing**2)
+
+
+def near_floor(sole: SoleMap) -> NDArray[np.bool_]:
+    """Return the cells of the plan form that come near the floor."""
+    return sole.inside & (sole.clearance < REACH)
+
+
+def body_correction(body: Body, layers: Callable[[sp.csr_matrix], Array]) -> BodyCorrection | None:
     """Return the correction of ``layers``: B to B^T C B (m/Pa); None where nothing is near."""
-    sole = body.sole
-    near = sole.inside & (sole.clearance - sole.clearance[sole.inside].min() < REACH)
+    sole, near = body.sole, near_floor(body.sole)
     if not near.any():
         return None
-    bricks, corner_x, corner_y = _bricks(body, near)
-    hats = _hats(sole, corner_x, corner_y, near)
+    bricks, x, y = _bricks(body, near)
+    hats = _hats(sole, x, y, near)
     chosen = np.flatnonzero(np.diff(sp.csc_matrix(hats).indptr))
     hats = sp.csr_matrix(hats[:, chosen])
-    work, _ = rise_under_hats(bricks, chosen)
+    work = work_of_hats(bricks, chosen)
     cell = sole.spacing**2
     overlap = (hats.T @ hats).toarray() * cell
     whole = 4 / 9 * bricks.side**2
-    inverse = np.linalg.inv(overlap + FAINT * whole * np.eye(chosen.size))
-    matrix = inverse @ (work - layers(hats) * cell) @ inverse * cell
-    return LongWaves(hats, 0.5 * (matrix + matrix.T))
+    missing = np.maximum(whole - np.diagonal(overlap), 0.0)
+    inverse = np.linalg.inv(overlap + np.diag(FAINT * missing))
+    matrix = inverse @ (work - layers(hats) * cell) @ inverse
+    return BodyCorrection(x, y, chosen, 0.5 * (matrix + matrix.T))
 
 
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
@@ -154,9 +178,7 @@ def _at(sole: SoleMap, field: Array, x: Array, y: Array) -> Array:
     """Return a field of the map at the places of a grid, linear between cells."""
     from scipy.ndimage import map_coordinates
 
-    at = np.meshgrid(
-        (x - sole.x[0]) / sole.spacing, (y - sole.y[0]) / sole.spacing, indexing="ij"
-    )
+    at = np.meshgrid((x - sole.x[0]) / sole.spacing, (y - sole.y[0]) / sole.spacing, indexing="ij")
     return np.asarray(map_coordinates(field, at, order=1, mode="nearest"))
 
 

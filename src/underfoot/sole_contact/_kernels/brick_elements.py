@@ -63,20 +63,20 @@ class Bricks:
     poisson_ratio: Array
 
 
-def rise_under_hats(bricks: Bricks, hats: NDArray[np.int64]) -> tuple[Array, Array]:
-    """Return work and overlap of hats on the floor of the bricks, (n, n), m^3/Pa and m^2.
+def work_of_hats(bricks: Bricks, hats: NDArray[np.int64]) -> Array:
+    """Return the work of hats on the floor of the bricks, (n, n), m^3/Pa.
 
     ``hats`` are numbers of corners of the plan, i (ny + 1) + j: bilinear, 1 at a corner and 0 at
-    the others, 0 outside the body. work[a, b] is the integral of hat a times the rise under a
-    pressure that is hat b; overlap that of both. Small strain; reduced integration (2 x 2 x 2).
+    the others, 0 outside the body. [a, b] is the integral of hat a times the rise under a pressure
+    that is hat b. Small strain; reduced integration (2 x 2 x 2), so that nothing locks.
     """
     number, elements = _numbering(bricks)
     stiffness = _stiffness(bricks, elements, number)
-    load, overlap = _hat_loads(bricks, elements, number)
+    load = _hat_loads(bricks, elements, number)
     right = np.ascontiguousarray(load[:, hats].toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
     work = right.T @ factors.solve(right)
-    return 0.5 * (work + work.T), overlap[hats][:, hats].toarray()
+    return 0.5 * (work + work.T)
 
 
 def _numbering(bricks: Bricks) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -139,8 +139,8 @@ def _stiffness(
 
 def _hat_loads(
     bricks: Bricks, elements: NDArray[np.int64], number: NDArray[np.int64]
-) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Return the loads of all hats on the unknowns, and the hats' overlap."""
+) -> sp.csr_matrix:
+    """Return the loads of all hats on the unknowns."""
     ny = bricks.cover.shape[1] // 2
     count = (bricks.cover.shape[0] // 2 + 1) * (ny + 1)
     low = elements[elements[:, 2] == 0]
@@ -148,7 +148,6 @@ def _hat_loads(
     steps = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
     hats = (low[:, None, 0] + steps[:, 0]) * (ny + 1) + low[:, None, 1] + steps[:, 1]
     load = np.zeros((len(low), 20, 4))
-    overlap = np.zeros((len(low), 4, 4))
     inner = np.array([(a, b) for a in (-1, 1) for b in (-1, 1)]) * GAUSS
     for a, b in steps:  # the quarters of a square, each with its cover
         area = 0.0625 * bricks.side**2 * bricks.cover[2 * low[:, 0] + a, 2 * low[:, 1] + b]
@@ -156,11 +155,8 @@ def _hat_loads(
             value, _ = shape_functions(np.array([[*point, -1.0]]))
             bilinear = 0.25 * (1 + (2 * steps - 1) * point).prod(axis=1)
             load += area[:, None, None] * np.outer(value[0], bilinear)
-            overlap += area[:, None, None] * np.outer(bilinear, bilinear)
     size = 3 * (int(number.max()) + 1)
     rows = np.repeat(3 * numbers + 2, 4, axis=1).ravel()
     columns = np.tile(hats, (1, 20)).ravel()
     kept = rows >= 2
-    loads = sp.csr_matrix((load.reshape(-1)[kept], (rows[kept], columns[kept])), (size, count))
-    pairs = np.repeat(hats, 4, axis=1).ravel(), np.tile(hats, (1, 4)).ravel()
-    return loads, sp.csr_matrix((overlap.ravel(), pairs), (count, count))
+    return sp.csr_matrix((load.reshape(-1)[kept], (rows[kept], columns[kept])), (size, count))

@@ -15,8 +15,8 @@ from .mesh import SoleMesh
 
 Array = NDArray[np.float64]
 VOLUME_ORDER = 2
-"""Of the integration of the change in volume. At 4, which is exact, a block of nu = 0.49 is 4 to 7 %
-too stiff; so its compression is within 2 % of that by elements of order 4."""
+"""Of the integration of the change in volume. At 4, which is exact, a block of nu = 0.49 is 4 to
+7 % too stiff; so its compression is within 2 % of that by elements of order 4."""
 LARGEST_POISSON_RATIO = 0.495
 """Displacement elements of second order lock above it."""
 
