@@ -306,11 +306,10 @@ def layered_compliance(
     soft = None
     if midsole_modulus is not None and midsole_thickness is not None:
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
-    if known is None:
-        real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
-        known = body_correction(real, layers.under_hats)
+    real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+    correction = body_correction(real, layers.under_hats, known)
     if depth == 0.0:
-        return layers.corrected(known, sole)
+        return layers.corrected(correction, sole)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -335,7 +334,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    ).corrected(known, sole)
+    ).corrected(correction, sole)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

@@ -83,15 +83,18 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class BodyCorrection:
-    """Correction of the layers of one shoe, for any map of it.
+    """Correction of the layers of one shoe, for its maps on cells of ``spacing`` (m).
 
     ``matrix`` K (n, n) in m/Pa per m^2 of the floor belongs to the hats of the corners ``chosen``,
-    numbers i n_y + j of the places ``x`` and ``y`` (m).
+    numbers i n_y + j of the places ``x`` and ``y`` (m); ``work`` is that of the elements on any
+    cells, m^3/Pa.
     """
 
     x: Array
     y: Array
     chosen: NDArray[np.int64]
+    work: Array
+    spacing: float
     matrix: Array
 
     def on(self, sole: SoleMap) -> LongWaves:
@@ -105,23 +108,31 @@ def near_floor(sole: SoleMap) -> NDArray[np.bool_]:
     return sole.inside & (sole.clearance < REACH)
 
 
-def body_correction(body: Body, layers: Callable[[sp.csr_matrix], Array]) -> BodyCorrection | None:
-    """Return the correction of ``layers``: B to B^T C B (m/Pa); None where nothing is near."""
+def body_correction(
+    body: Body, layers: Callable[[sp.csr_matrix], Array], known: BodyCorrection | None = None
+) -> BodyCorrection | None:
+    """Return the correction of ``layers``: B to B^T C B (m/Pa); None where nothing is near.
+
+    ``known`` is that of another map of the same shoe, whose elements serve this one too.
+    """
     sole, near = body.sole, near_floor(body.sole)
+    if known is not None and known.spacing == sole.spacing:
+        return known
     if not near.any():
         return None
-    bricks, x, y = _bricks(body, near)
-    hats = _hats(sole, x, y, near)
-    chosen = np.flatnonzero(np.diff(sp.csc_matrix(hats).indptr))
-    hats = sp.csr_matrix(hats[:, chosen])
-    work = work_of_hats(bricks, chosen)
+    if known is None:
+        bricks, x, y = _bricks(body, near)
+        chosen = np.flatnonzero(np.diff(sp.csc_matrix(_hats(sole, x, y, near)).indptr))
+        work = work_of_hats(bricks, chosen)
+    else:
+        x, y, chosen, work = known.x, known.y, known.chosen, known.work
+    hats = sp.csr_matrix(_hats(sole, x, y, near)[:, chosen])
     cell = sole.spacing**2
     overlap = (hats.T @ hats).toarray() * cell
-    whole = 4 / 9 * bricks.side**2
-    missing = np.maximum(whole - np.diagonal(overlap), 0.0)
+    missing = np.maximum(4 / 9 * (x[1] - x[0]) ** 2 - np.diagonal(overlap), 0.0)
     inverse = np.linalg.inv(overlap + np.diag(FAINT * missing))
     matrix = inverse @ (work - layers(hats) * cell) @ inverse
-    return BodyCorrection(x, y, chosen, 0.5 * (matrix + matrix.T))
+    return BodyCorrection(x, y, chosen, work, sole.spacing, 0.5 * (matrix + matrix.T))
 
 
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
@@ -192,6 +203,17 @@ def _hats(sole: SoleMap, x: Array, y: Array, near: NDArray[np.bool_]) -> sp.csr_
 
     every = sp.kron(along(sole.x, x), along(sole.y, y), format="csr")
     return sp.csr_matrix(sp.diags(near.ravel().astype(float)) @ every)
+
+
+def wide_hats(sole: SoleMap, land: NDArray[np.bool_]) -> sp.csr_matrix:
+    """Return hats of ``SIDE`` on the cells of some land, those without land left out."""
+    corners = []
+    for axis, places in ((0, sole.x), (1, sole.y)):
+        reached = places[land.any(axis=1 - axis)]
+        count = max(1, round((reached[-1] - reached[0]) / SIDE))
+        corners.append(np.linspace(reached[0], reached[-1], count + 1))
+    hats = _hats(sole, *corners, land)
+    return sp.csr_matrix(hats[:, np.diff(sp.csc_matrix(hats).indptr) > 0])
 
 
 LINES = 8  # across a quarter of a square, along which the outline is followed

@@ -12,7 +12,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
-from ..long_waves import LongWaves
+from ..long_waves import LongWaves, wide_hats
 from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, sole_mesh
 from .plan import plan_of
@@ -26,7 +26,7 @@ FAR_ELEMENT = 4.0e-3
 REACH = 3.5e-3
 """Land higher above the floor than this (m) keeps the layered compliance alone."""
 FAINT = 0.02
-"""Hats that the grid can't tell apart (relative eigenvalue of their overlap) are left out."""
+"""Hats that the land can't tell apart (relative eigenvalue of their overlap) are left out."""
 
 
 class OutsoleAndMidsole(TypedDict):
@@ -51,8 +51,8 @@ def finite_element_compliance(
 ) -> ConvolutionCompliance:
     """Return the compliance of a sole from finite elements of its real shape.
 
-    Finite elements for what varies over an element or more, layers for what is finer and for land
-    far above the floor: ``LongWaves`` with the hats of the land nodes.
+    Finite elements for what varies over 6 mm or more, lug by lug too; layers for what is finer
+    and for land far above the floor: ``LongWaves`` with hats that the land cuts out.
 
     Parameters:
         sole: Plan form, profile and tread; meshed as its cells show them.
@@ -69,19 +69,18 @@ def finite_element_compliance(
     """
     land = sole_land(sole, cache=cache, progress=progress, **body)
     layers = layered_compliance(sole, **body)
-    hats = hats_on_cells(land, sole)
-    gram = (hats.T @ hats).toarray()
-    size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))  # each hat counts alike, however small
-    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    nodes, near = hats_on_cells(land, sole), sole.land & (sole.clearance < REACH)
+    fields = wide_hats(sole, near)
+    size = np.sqrt(np.asarray(fields.multiply(fields).sum(axis=0)).ravel())
+    values, vectors = np.linalg.eigh((fields.T @ fields).toarray() / np.outer(size, size))
     distinct = values > FAINT
     turn = vectors[:, distinct] / np.sqrt(values[distinct]) / size[:, None]
-    inverse_gram = turn @ turn.T
     # The sum of hat times pressure over the cells is the force on a node: the elements' own overlap
     # turns it into pressure, so that force is kept where cells cover a rim only in part.
-    by_force = np.linalg.inv(land.overlap.toarray())
-    exact = by_force @ land.work @ by_force * sole.spacing**2
-    known = inverse_gram @ layers.under_hats(hats) @ inverse_gram
-    return layers.plus(LongWaves(hats, exact - 0.5 * (known + known.T)))
+    pressure = np.linalg.solve(land.overlap.toarray(), (nodes.T @ fields).toarray() @ turn)
+    exact = pressure.T @ land.work @ pressure * sole.spacing**2
+    change = turn @ (exact - turn.T @ layers.under_hats(fields) @ turn) @ turn.T
+    return layers.plus(LongWaves(fields, 0.5 * (change + change.T)))
 
 
 def sole_land(
