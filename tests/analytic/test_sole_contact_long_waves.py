@@ -69,7 +69,7 @@ def bricks(side, height, count, layers, ratio):
     nodes = np.stack(np.meshgrid(place, place, level, indexing="ij"), axis=-1)
     full = np.ones((2 * count, 2 * count))
     same = np.full(layers, MODULUS), np.full(layers, ratio)
-    return Bricks(side / count, nodes, full, *same)
+    return Bricks(side / count, nodes, full, full, *same)
 
 
 def mean_compression(block: Bricks, side: float) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -111,11 +111,13 @@ class ConvolutionCompliance:
             risen += correction.apply(pressure)
         return risen
 
-    def corrected(self, body: BodyCorrection | None, sole: SoleMap) -> ConvolutionCompliance:
+    def corrected(
+        self, body: BodyCorrection | None, sole: SoleMap, plan: Mask
+    ) -> ConvolutionCompliance:
         """Return the compliance with the long waves of its body put right; itself for None."""
         if body is None:
             return self
-        result = self.plus(body.on(sole))
+        result = self.plus(body.on(sole, plan))
         result.body = body
         return result
 
@@ -306,10 +308,10 @@ def layered_compliance(
     soft = None
     if midsole_modulus is not None and midsole_thickness is not None:
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
-    real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+    real = Body(sole, plan, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
     correction = body_correction(real, layers.under_hats, known)
     if depth == 0.0:
-        return layers.corrected(correction, sole)
+        return layers.corrected(correction, sole, plan)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -334,7 +336,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    ).corrected(correction, sole)
+    ).corrected(correction, sole, plan)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

@@ -69,11 +69,13 @@ class LongWaves:
 class Body:
     """What carries the lugs: rubber of one thickness field, a midsole, a rigid foot.
 
-    ``thickness`` (nx, ny) in m along the shoe's normal, ``shoe_angle`` of its plane in rad;
+    ``plan`` are the cells that press on it; ``thickness`` (nx, ny) in m along the shoe's normal,
+    ``shoe_angle`` of its plane in rad;
     ``midsole`` is its modulus (Pa), Poisson's ratio and thickness (m), None for none.
     """
 
     sole: SoleMap
+    plan: NDArray[np.bool_]
     thickness: Array
     shoe_angle: float
     modulus: float
@@ -97,15 +99,10 @@ class BodyCorrection:
     spacing: float
     matrix: Array
 
-    def on(self, sole: SoleMap) -> LongWaves:
-        """Return the correction on the cells of a map."""
-        hats = _hats(sole, self.x, self.y, near_floor(sole))[:, self.chosen]
+    def on(self, sole: SoleMap, plan: NDArray[np.bool_]) -> LongWaves:
+        """Return the correction on the cells of a map of which ``plan`` press on the body."""
+        hats = _hats(sole, self.x, self.y, plan & (sole.clearance < REACH))[:, self.chosen]
         return LongWaves(sp.csr_matrix(hats), self.matrix * sole.spacing**2)
-
-
-def near_floor(sole: SoleMap) -> NDArray[np.bool_]:
-    """Return the cells of the plan form that come near the floor."""
-    return sole.inside & (sole.clearance < REACH)
 
 
 def body_correction(
@@ -115,7 +112,7 @@ def body_correction(
 
     ``known`` is that of another map of the same shoe, whose elements serve this one too.
     """
-    sole, near = body.sole, near_floor(body.sole)
+    sole, near = body.sole, body.plan & (body.sole.clearance < REACH)
     if known is not None and known.spacing == sole.spacing:
         return known
     if not near.any():
@@ -138,21 +135,21 @@ def body_correction(
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
     """Return the bricks and the places of their corners along x and across y."""
     sole = body.sole
+    whole = sole.whole or sole
     margin = MARGIN * (float(body.thickness.max()) + (body.midsole[2] if body.midsole else 0.0))
     ends = []
-    for axis, places in ((0, sole.x), (1, sole.y)):
-        rim = np.asarray(sole.outline)[:, axis]
-        reached = places[near.any(axis=1 - axis)]
-        low = max(float(rim.min()), float(reached[0]) - margin)
-        ends.append((low, min(float(rim.max()), float(reached[-1]) + margin)))
+    half = 0.5 * sole.spacing
+    for axis, places, across in ((0, sole.x, whole.x), (1, sole.y, whole.y)):
+        reached, rim = places[near.any(axis=1 - axis)], across[whole.inside.any(axis=1 - axis)]
+        low = max(float(rim[0]) - half, float(reached[0]) - margin)
+        ends.append((low, min(float(rim[-1]) + half, float(reached[-1]) + margin)))
     (x0, x1), (y0, y1) = ends
     side = max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
     nx, ny = (max(1, math.ceil(length / side - 1e-9)) for length in (x1 - x0, y1 - y0))
     corner_x = x0 + side * np.arange(nx + 1)
     corner_y = 0.5 * (y0 + y1) + side * (np.arange(ny + 1) - 0.5 * ny)  # as its mirror image
-    cover = _covered(
-        np.asarray(sole.outline), _halves(corner_x), _halves(corner_y), (x0, x1), (y0, y1)
-    )
+    boxes = _halves(corner_x), _halves(corner_y)
+    cover, loaded = _covered(whole, whole.inside, *boxes), _covered(sole, body.plan, *boxes)
     thickness = _at(sole, body.thickness, _halves(corner_x), _halves(corner_y))
     shares = _graded(float(body.thickness[near].mean()), side)
     levels = [thickness * share for share in _halves(shares)]
@@ -169,7 +166,7 @@ def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
     normal = np.array([-sine, 0.0, cosine])
     nodes = np.stack([base + level[..., None] * normal for level in levels], axis=2)
     capped = np.minimum(ratio, NEARLY_INCOMPRESSIBLE)
-    return Bricks(side, nodes, cover, np.array(modulus), capped), corner_x, corner_y
+    return Bricks(side, nodes, cover, loaded, np.array(modulus), capped), corner_x, corner_y
 
 
 def _halves(places: Array) -> Array:
@@ -216,30 +213,14 @@ def wide_hats(sole: SoleMap, land: NDArray[np.bool_]) -> sp.csr_matrix:
     return sp.csr_matrix(hats[:, np.diff(sp.csc_matrix(hats).indptr) > 0])
 
 
-LINES = 8  # across a quarter of a square, along which the outline is followed
-
-
-def _covered(
-    outline: Array, x: Array, y: Array, x_ends: tuple[float, float], y_ends: tuple[float, float]
-) -> Array:
-    """Return the share of each box between the places x and y that a closed polygon covers.
-
-    Exact along ``LINES`` lines through each box; what lies beyond the ends counts as free.
-    """
-    step = x[1] - x[0]
-    at = (x[:-1, None] + step * (np.arange(LINES) + 0.5) / LINES).ravel()
-    start, end = outline[:-1], outline[1:]
-    low, high = np.minimum(start[:, 0], end[:, 0]), np.maximum(start[:, 0], end[:, 0])
-    line, edge = np.nonzero((low <= at[:, None]) & (at[:, None] < high))
-    share = (at[line] - start[edge, 0]) / (end[edge, 0] - start[edge, 0])
-    crossing = start[edge, 1] + share * (end[edge, 1] - start[edge, 1])
-    order = np.lexsort((crossing, line))
-    line, crossing = line[order], np.clip(crossing[order], *y_ends)
-    first = np.searchsorted(line, line)
-    inwards = np.where((np.arange(line.size) - first) % 2 == 0, 1.0, -1.0)
-    # length of the line inside the polygon below each place of y
-    below = np.zeros((at.size, y.size))
-    np.add.at(below, line, inwards[:, None] * np.maximum(y - crossing[:, None], 0.0))
-    below *= ((at > x_ends[0]) & (at < x_ends[1]))[:, None]
-    cover = np.diff(below, axis=1) / np.diff(y)
-    return cover.reshape(x.size - 1, LINES, -1).mean(axis=1)
+def _covered(sole: SoleMap, plan: NDArray[np.bool_], x: Array, y: Array) -> Array:
+    """Return the share of each box between the places x and y that some cells of a map cover."""
+    total = np.pad(np.cumsum(np.cumsum(plan, axis=0), axis=1), ((1, 0), (1, 0)))
+    for axis, places, cells in ((0, x, sole.x), (1, y, sole.y)):
+        at = np.clip((places - cells[0]) / sole.spacing + 0.5, 0, cells.size)
+        low = np.minimum(at.astype(np.intp), cells.size - 1)
+        share = (at - low)[:, None] if axis == 0 else at - low
+        below, above = np.take(total, low, axis), np.take(total, low + 1, axis)
+        total = below + share * (above - below)
+    step = (x[1] - x[0]) * (y[1] - y[0]) / sole.spacing**2
+    return np.diff(np.diff(total, axis=0), axis=1) / step

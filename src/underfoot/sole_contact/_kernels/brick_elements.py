@@ -52,13 +52,14 @@ class Bricks:
     """Bodies over squares of side ``side`` (m), bonded to a rigid foot at their top.
 
     ``nodes`` (2 nx + 1, 2 ny + 1, 2 nz + 1, 3) are places in the floor's frame, corners at even
-    indices; ``cover`` (2 nx, 2 ny) is the share of each quarter of a square that the body covers;
-    ``modulus`` and ``poisson_ratio`` (nz,) are those of the layers, from the floor up.
+    indices; ``cover`` (2 nx, 2 ny) is the share of each quarter of a square that the body covers,
+    ``loaded`` that of what presses on it; ``modulus`` and ``poisson_ratio`` (nz,) are those of the layers, from the floor up.
     """
 
     side: float
     nodes: Array
     cover: Array
+    loaded: Array
     modulus: Array
     poisson_ratio: Array
 
@@ -149,8 +150,8 @@ def _hat_loads(
     hats = (low[:, None, 0] + steps[:, 0]) * (ny + 1) + low[:, None, 1] + steps[:, 1]
     load = np.zeros((len(low), 20, 4))
     inner = np.array([(a, b) for a in (-1, 1) for b in (-1, 1)]) * GAUSS
-    for a, b in steps:  # the quarters of a square, each with its cover
-        area = 0.0625 * bricks.side**2 * bricks.cover[2 * low[:, 0] + a, 2 * low[:, 1] + b]
+    for a, b in steps:  # the quarters of a square
+        area = 0.0625 * bricks.side**2 * bricks.loaded[2 * low[:, 0] + a, 2 * low[:, 1] + b]
         for point in 0.5 * inner + (np.array([a, b]) - 0.5):
             value, _ = shape_functions(np.array([[*point, -1.0]]))
             bilinear = 0.25 * (1 + (2 * steps - 1) * point).prod(axis=1)
