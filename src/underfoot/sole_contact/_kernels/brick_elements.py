@@ -53,7 +53,8 @@ class Bricks:
 
     ``nodes`` (2 nx + 1, 2 ny + 1, 2 nz + 1, 3) are places in the floor's frame, corners at even
     indices; ``cover`` (2 nx, 2 ny) is the share of each quarter of a square that the body covers,
-    ``loaded`` that of what presses on it; ``modulus`` and ``poisson_ratio`` (nz,) are those of the layers, from the floor up.
+    ``loaded`` that of what presses on it; ``modulus`` and ``poisson_ratio`` (nz,) are those of the
+    layers, from the floor up.
     """
 
     side: float
