@@ -1,0 +1,202 @@
+"""Values of a case as people set them: sliders that answer while moved, fields with units."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from itertools import count
+from math import degrees, log10
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+from underfoot.case import Case, unit_at
+from underfoot.core import InputError
+from underfoot.core.units import to_si
+
+from .session import Session
+
+SIGNS = {"deg": "°", "um": "µm"}
+"""How a unit is shown where it is not as it is written in a case."""
+CUSTOMARY = {
+    "mm": (25.4, "in"),
+    "um": (25.4, "mil"),
+    "m/s": (0.3048, "ft/s"),
+    "N": (4.4482216152605, "lbf"),
+}
+"""Size and sign of the US unit that is shown in place of one of a case."""
+GROOVES = "shoe.tread.grooves"
+_numbers = count()
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A value of a case with the unit and the range in which it is usually set.
+
+    Attributes:
+        path: In the case; its name is ``inputs.PATH`` in the text files.
+        unit: As a case file writes it, "" for a number.
+        low, high, step: In that unit; of a slider in decades (``log``) too.
+    """
+
+    path: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    log: bool = False
+
+    def shown_in(self, units: str) -> tuple[float, str]:
+        """Return size and sign of the unit that is shown."""
+        metric = (1.0, SIGNS.get(self.unit, self.unit))
+        return CUSTOMARY.get(self.unit, metric) if units == "us" else metric
+
+    def given(self, case: Case) -> float | None:
+        """Return the value of a case in the unit, None where it has none."""
+        value = case.value(self.path)
+        factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
+        return None if value is None else float(value) / factor
+
+    def read(self, typed: str, units: str, *, comma: bool) -> float:
+        """Return what was typed, in the unit of the input; without a unit it is in that shown.
+
+        Raises:
+            InputError: No number, a unit of another quantity, or a number that can be two.
+        """
+        if not self.unit:
+            return to_si(typed, "1", where="", comma=comma)
+        si, shown = unit_at(self.path), self.unit
+        if units == "us" and self.unit in CUSTOMARY:
+            shown = CUSTOMARY[self.unit][1]
+        return to_si(typed, si, where="", usual=shown, comma=comma) / to_si(
+            f"1 {self.unit}", si, where=""
+        )
+
+    def written(self, value: float) -> str | float:
+        """Return a value in the unit as a case takes it."""
+        return f"{value:.6g} {self.unit}" if self.unit else float(f"{value:.6g}")
+
+
+def changes(inputs: Sequence[Input], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of sliders as changes of a case; unknown names are left out."""
+    known = {each.path: each for each in inputs}
+    return {path: known[path].written(float(v)) for path, v in values.items() if path in known}
+
+
+def grooves_of(case: Case) -> list[dict[str, str]]:
+    """Return the grooves of a case's tread as its file writes them, in mm and degrees."""
+    grooves = []
+    for each in case.value(GROOVES) or ():
+        values = {name: getattr(each, name) for name in ("along", "across", "width", "length")}
+        written = {name: f"{1e3 * v:.9g} mm" for name, v in values.items() if v is not None}
+        grooves.append({**written, "angle": f"{degrees(each.angle):.9g} deg"})
+    return grooves
+
+
+def sliders(
+    session: Session,
+    inputs: Sequence[Input],
+    case: Case,
+    moving: Callable[[dict[str, Any]], Awaitable[dict[str, Any]]],
+    resting: Callable[[dict[str, Any]], object],
+    view: ui.element,
+    *,
+    keep: bool,
+) -> ui.element:
+    """Show a slider for each input that the case has, with what is done while they move.
+
+    ``moving`` gets the changes of the case and returns ``{"texts": {name: words}, "html": sole}``:
+    the words go to every element with ``data-live="name"``, the sole into ``view``; with
+    ``"unanswered": True`` the sole there is marked as of another setting. ``resting`` gets the
+    changes when a slider was let go, at once where it keeps them.
+    """
+    rows = []
+    for each in inputs:
+        value = each.given(case)
+        if value is not None:
+            rows.append(_row(session, each, value))
+    root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
+    root.classes("sliders")
+
+    async def asked(question: dict[str, Any]) -> dict[str, Any]:
+        changed = changes(inputs, question["values"])
+        if question["last"]:
+            resting(changed)
+            return {}
+        return await moving(changed)
+
+    link, keeps = session.answers(asked), "true" if keep else "false"
+    ui.run_javascript(f"askLive({root.html_id!r}, {link!r}, {view.html_id!r}, {keeps})")
+    return root
+
+
+def _row(session: Session, each: Input, value: float) -> str:
+    low, high, shown, step = each.low, max(each.high, value), value, each.step
+    size, sign = each.shown_in(session.units)
+    if each.log:
+        low, high, shown, step = log10(low), log10(high), log10(max(value, low)), 0.01
+    key = f"slider-{next(_numbers)}"
+    # the browser moves the thumb to the next step: the value stands beside it until it is moved
+    marks = f'data-unit="{sign}" data-size="{size}" data-given="{value:.6g}"'
+    marks += ' data-log="1"' * each.log
+    return (
+        f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}</label>'
+        f'<input type="range" id="{key}" name="{each.path}" min="{min(low, shown):.6g}" '
+        f'max="{high:.6g}" step="{step:g}" value="{shown:.6g}" {marks}>'
+        f'<output for="{key}"></output>'
+    )
+
+
+def read_count(session: Session, field: ui.input) -> int | None:
+    """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
+
+    Raises:
+        InputError: Another text, which the field tells, too.
+    """
+    field.error = None
+    if not (field.value or "").strip():
+        return None
+    try:
+        number = to_si(field.value, "1", where="", comma=session.text.comma)
+        if number < 1 or number != int(number):
+            raise InputError(f"{field.value} is no count", allowed="1, 2, 3 ...")
+    except InputError as error:
+        field.error = str(error)
+        raise
+    return int(number)
+
+
+def number_field(
+    session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
+) -> None:
+    """Show a value with its unit and where it comes from; ``change`` gets what is typed."""
+    value, origin = each.given(case), case.origins.get(each.path)
+    if value is None and origin is None and case.value(each.path.rpartition(".")[0]) is None:
+        return
+    size, sign = each.shown_in(session.units)
+    shown = None if value is None else value / size
+    label, text = session.text(f"inputs.{each.path}"), session.text.number(shown)
+    field = ui.input(label, value=text)
+    field.props(f'dense outlined suffix="{sign}" inputmode="decimal"').classes("number")
+
+    def typed(_: GenericEventArguments) -> None:
+        if not field.value or field.value == text:
+            return
+        try:
+            value = each.read(field.value, session.units, comma=session.text.comma)
+        except InputError as error:
+            field.error = str(error)
+            return
+        field.error = None
+        change({each.path: each.written(value)})
+
+    field.on("change", typed)
+    if origin is not None:
+        leaf = origin.leaf
+        kind = "assumed" if leaf.assumed else origin.kind
+        hint = session.text(f"origin.{kind}")
+        field.props(f'hint="{escape(hint)}"')
+        if leaf.source:
+            field.tooltip(leaf.source)
