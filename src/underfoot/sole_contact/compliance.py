@@ -136,7 +136,9 @@ class ConvolutionCompliance:
         rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.arange(loaded.size).reshape(shape)[box]
-        part, fields = self.within(box, np.float32), sp.csc_matrix(hats[cells.ravel()])
+        near: Any = hats[cells.ravel()]
+        fields: Any = sp.csc_matrix(near)
+        part = self.within(box, np.float32)
         risen = np.empty((cells.size, hats.shape[1]))
         for k in range(hats.shape[1]):
             field = fields[:, [k]].toarray().reshape(cells.shape).astype(np.float32)

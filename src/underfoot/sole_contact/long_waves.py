@@ -209,7 +209,8 @@ def wide_hats(sole: SoleMap, land: NDArray[np.bool_]) -> sp.csr_matrix:
         reached = places[land.any(axis=1 - axis)]
         count = max(1, round((reached[-1] - reached[0]) / SIDE))
         corners.append(np.linspace(reached[0], reached[-1], count + 1))
-    hats = _hats(sole, *corners, land)
+    along, across = corners
+    hats = _hats(sole, along, across, land)
     return sp.csr_matrix(hats[:, np.diff(sp.csc_matrix(hats).indptr) > 0])
 
 
