@@ -14,7 +14,9 @@ from underfoot.compute import numerical_error, solve
 from underfoot.compute.positions import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
+    PARTS,
     Place,
+    ShoeAngles,
     TreadPositions,
     carried,
     places,
@@ -28,7 +30,7 @@ from underfoot.compute.solve import solved_at
 from underfoot.compute.summary import cautions
 from underfoot.core import ConvergenceError, SourcedValue, Status
 from underfoot.friction.coefficient import FrictionCoefficients
-from underfoot.friction.sampled_cof import SampledCof
+from underfoot.friction.sampled_cof import LawDraws, SampledCof
 from underfoot.shoe import Sipes, Tread
 from underfoot.shoe.tread import PATTERNS
 
@@ -122,15 +124,64 @@ def test_numbers_of_two_grids_are_carried_on_by_the_first_order_of_the_cells(
     """A number a + b h on cells h, or 1 / (a + b h) where it shrinks, is found on any cells."""
     coarse = np.array(values)
     fine = coarse / grows if shrinks else coarse * grows
-    free = carried(coarse, coarse, fine, onward, math.inf)
-    even = grows + onward * (grows - 1)
-    assert free == pytest.approx(coarse / even if shrinks else coarse * even)
-    load = 300.0
-    bound = carried(coarse, coarse, fine, onward, load)
-    assert ((bound >= 0) & (bound <= load)).all()
-    assert (np.sign((bound - coarse).round(9)) != (1 if shrinks else -1)).all()
-    assert carried(coarse, coarse, coarse, onward, load) == pytest.approx(coarse)
-    assert carried(coarse, 0 * coarse, fine, onward, load) == pytest.approx(fine.mean())
+    even = 1 / (grows + onward * (grows - 1)) if shrinks else grows + onward * (grows - 1)
+
+    def numbers(film, adhesion, peak):
+        whole, zero = np.full_like(coarse, 300.0), np.zeros_like(coarse)
+        parts = {"cof_adhesion": adhesion, "cof_hysteresis": zero, "cof_viscous": peak}
+        loads = {"fluid_load": film, "contact_load": whole - film}
+        return {"cof": adhesion + peak, **parts, **loads, "peak": peak}
+
+    contact = 0.2 * (300.0 - coarse) / 300.0
+    before = numbers(coarse, contact, coarse)
+    same = carried(before, before, before, onward)
+    for name, each in before.items():
+        assert same[name] == pytest.approx(each), name
+    found = carried(before, before, numbers(coarse, contact, fine), onward)
+    assert found["cof_viscous"] == pytest.approx(coarse * even)
+    assert found["peak"] == pytest.approx(fine)  # not carried on
+    assert found["cof"] == pytest.approx(found["cof_adhesion"] + found["cof_viscous"])
+    film = np.minimum(fine, 299.0)
+    loads = carried(before, before, numbers(film, 0.2 * (1 - film / 300.0), coarse), onward)
+    assert loads["fluid_load"] + loads["contact_load"] == pytest.approx(300.0)
+    assert ((loads["fluid_load"] >= 0) & (loads["fluid_load"] <= 300.0)).all()
+    # the contact has the friction that its newtons have, however many the film takes
+    assert loads["cof_adhesion"] == pytest.approx(0.2 * loads["contact_load"] / 300.0)
+    odds = [(each.mean() / (300 - each.mean())) for each in (coarse, film)]
+    moved = np.sign(np.round(loads["fluid_load"] - coarse, 9))
+    assert (moved == np.sign(np.round(odds[1] - odds[0], 12))).all()
+
+
+def test_a_place_where_all_floats_says_nothing_of_the_friction_of_a_contact():
+    """A factor of COF from there would carry 0.2 of adhesion to 40 where the shoe touches."""
+    floats, touches = np.array([299.9]), np.array([0.0])
+    zero = np.zeros(1)
+
+    def numbers(film):
+        adhesion = 0.2 * (300.0 - film) / 300.0
+        parts = {"cof_adhesion": adhesion, "cof_hysteresis": zero, "cof_viscous": zero}
+        return {"cof": adhesion, **parts, "fluid_load": film, "contact_load": 300.0 - film}
+
+    before = {name: np.append(a, b) for (name, a), b in zip(
+        numbers(floats).items(), numbers(touches).values(), strict=True)}  # fmt: skip
+    fine = numbers(np.array([290.0]))
+    found = carried(before, numbers(floats), fine, 1.0)
+    assert found["cof_adhesion"].max() == pytest.approx(0.2)
+    own = {name: float(each[0]) for name, each in before.items()}
+    law = np.random.default_rng(0).lognormal(0, 0.3, 1000)
+    of_law = LawDraws(law, law, law, odds=np.random.default_rng(1).normal(0, 0.5, 1000))
+    parts = {name.removeprefix("cof_"): own[name] for name in PARTS}
+    sampled = SampledCof(
+        **of_law.at(own["contact_load"] / 300.0, **parts),
+        share={}, left_out=(), confidence=0.95, seed=0, law=of_law,
+    )  # fmt: skip
+    known = SourcedValue(own["cof"], "1", "", 0.02)
+    friction = FrictionCoefficients(known, known, known, known, 50.0, 300.0, 299.9)
+    _, draws = ShoeAngles(shoe_angles()[:2], before, 0, own).friction(friction, sampled)
+    assert draws is not None
+    assert draws.cof[1::2] == pytest.approx(0.2 * law[1::2])
+    assert draws.cof[::2].max() < 0.01
+    assert draws.contact.max() <= 1.0
 
 
 @pytest.mark.slow
@@ -157,15 +208,19 @@ def test_draws_take_every_position_and_its_spread_is_named():
         "cof_viscous": 0.25 * cof,
         "fluid_load": np.array([90.0, 10.0, 50.0, 50.0]),
     }
-    draws = np.random.default_rng(0).normal(0.1, 0.02, 4000)
-    sampled = SampledCof(
-        draws, 0.25 * draws, 0.5 * draws, 0.25 * draws, {"model": 1.0}, (), 0.95, 0
-    )
+    values["contact_load"] = 1e6 - values["fluid_load"]  # a film too small to move it
+    law = np.random.default_rng(0).normal(1, 0.2, 4000)
+    of_law, parts = LawDraws(law, law, law), {"adhesion": 0.025, "hysteresis": 0.05}
+    drawn = of_law.at(1 - 90e-6, **parts, viscous=0.025)
+    sampled = SampledCof(**drawn, share={"model": 1.0}, left_out=(), confidence=0.95, seed=0,
+                         law=of_law)  # fmt: skip
     known, open_part = SourcedValue(0.1, "1", "", 0.02), SourcedValue(0.025, "1", "")
     friction = FrictionCoefficients(known, known, known, open_part, 50.0, 500.0, 90.0)
     by_angle = {"cof": 0.005, "cof_adhesion": 0.0025, "cof_hysteresis": 0.0025, "cof_viscous": 0.0}
     own = {name: float(each[0]) for name, each in values.items()}
-    positions = TreadPositions(places(np.eye(2), 4), values, 0, own, by_angle=by_angle)
+    positions = TreadPositions(
+        places(np.eye(2), 4), values, 0, own, by_angle=by_angle, film_by_angle=0.05
+    )
     averaged, sampled = positions.friction(friction, sampled)
     assert averaged.cof.value == pytest.approx(0.12)
     assert averaged.friction_force == pytest.approx(60.0)
@@ -175,16 +230,17 @@ def test_draws_take_every_position_and_its_spread_is_named():
     assert sampled.cof.mean() == pytest.approx(0.12, rel=0.01)
     parts = sampled.adhesion + sampled.hysteresis + sampled.viscous
     assert sampled.cof == pytest.approx(parts)
-    # law, position and angle are independent: their relative variances add, and their products
-    law, place, angle = 0.2, float(np.std(cof)) / 0.12, 0.05
-    spread = 0.12 * math.sqrt((1 + law**2) * (1 + place**2) * (1 + angle**2) - 1)
+    # law and position are independent: their relative variances add, and their products
+    spread = 0.12 * math.sqrt((1 + 0.2**2) * (1 + (float(np.std(cof)) / 0.12) ** 2) - 1)
     assert averaged.cof.uncertainty == pytest.approx(spread, rel=0.03)
     assert sum(sampled.share.values()) == pytest.approx(1.0)
     whole = 0.0002 + 0.0004 + 0.000025
     assert sampled.share["tread_position"] == pytest.approx(0.0002 / whole, rel=0.1)
     assert sampled.share["shoe_angle"] == pytest.approx(0.000025 / whole, rel=0.1)
-    film = positions.drawn("fluid_load", 4000)  # not moved by the angle: each position in turn
-    assert film[:4].tolist() == values["fluid_load"].tolist()
+    film = positions.drawn("fluid_load", 4000)  # each position in turn, its odds moved
+    moved = np.log(film / (1e6 - film) * (1e6 / np.tile(values["fluid_load"], 1000) - 1))
+    assert np.std(moved) == pytest.approx(0.05, rel=0.01)
+    assert np.mean(moved) == pytest.approx(0.0, abs=1e-4)
 
 
 def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):

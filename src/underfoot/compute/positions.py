@@ -1,7 +1,7 @@
 """A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -31,7 +31,15 @@ LANDING = 0.1e-3
 """What lies at most this above the lowest quarter of a sole lands first, m."""
 FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
-CARRIED = ("fluid_load", "cof_adhesion", "cof_hysteresis", "cof_viscous")
+LOADS = ("fluid_load", "contact_load")
+ON_CONTACT = ("cof_adhesion", "cof_hysteresis")
+PARTS = (*ON_CONTACT, "cof_viscous")
+FAINT = 1e-6
+"""Share of the load that film and contact have at least where the odds of one are asked for."""
+CLOSEST = 1.25
+"""Cells of two grids, coarser over finer, from which their difference says how far both are off."""
+USUAL_STEP = 2 / 3
+"""(coarser - finer) / finer of the grids of a case as they are by default."""
 RATES = {1: 1.0, 2: 0.75}
 """Rate of the rule of positions by the number of periods of the tread, where the film jumps with
 the place (docs/physics/coupled_contact.md)."""
@@ -58,6 +66,8 @@ class TreadPositions:
         between: Name of a scalar: what the difference of two grids leaves unknown of its mean.
         by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
             case's own place; empty where that is not known or in the values.
+        film_by_angle: What it adds to ln F / (W - F), F the load on the film of W.
+        uncompared: Cells, m, where no other grid was compared with; else 0.
     """
 
     origin: ClassVar[str] = "tread_position"
@@ -70,32 +80,50 @@ class TreadPositions:
     at_own_place: Mapping[str, float]
     between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    film_by_angle: float = field(default=0.0, kw_only=True)
+    uncompared: float = field(default=0.0, kw_only=True)
 
     def answer(self, name: str) -> float:
         """Return the scalar of the result: its mean over the places."""
         return float(self.values[name].mean())
 
     def drawn(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at each place in turn, evenly over the band of the angle."""
-        at = np.arange(count)
-        turns = math.sqrt(3) * (2 * np.mod(GOLDEN * at, 1) - 1)
-        values = self.values[name][at % len(self.places)]
-        return np.maximum(values + self.by_angle.get(name, 0.0) * turns, 0)
+        """Return the scalar (count,) at each place in turn, evenly over the band of the angle.
+
+        The angle moves the load on the film by its odds, and adds to other numbers.
+        """
+        turns = self._turns(count)
+        if name != "fluid_load":
+            return np.maximum(self._each(name, count) + self.by_angle.get(name, 0.0) * turns, 0)
+        film, contact = (self._each(load, count) for load in LOADS)
+        more = film * np.exp(self.film_by_angle * turns)
+        return more * (film + contact) / (more + contact)
+
+    def _each(self, name: str, count: int) -> Array:
+        """Return the scalar (count,) at each place in turn, at the angle of the case."""
+        return self.values[name][np.arange(count) % len(self.places)]
+
+    def _turns(self, count: int) -> Array:
+        """Return turns (count,) evenly over the band of the angle, in its standard deviations."""
+        return math.sqrt(3) * (2 * np.mod(GOLDEN * np.arange(count), 1) - 1)
 
     def friction(
         self, friction: FrictionCoefficients, sampled: SampledCof | None
     ) -> tuple[FrictionCoefficients, SampledCof | None]:
-        """Return COF and its draws over the positions, which the draws take in turn."""
+        """Return COF and its draws over the positions, which the draws take in turn.
+
+        Each draw of the law meets the contact and the film of a place, turned by an angle.
+        """
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
         new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
-            draws = {}
-            for name in values:
-                part = name.removeprefix("cof_")
-                own = self.at_own_place[name]
-                factors = self.drawn(name, sampled.cof.size) / own if own else 1.0
-                draws[part] = getattr(sampled, part) * factors
-            draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
+            count = sampled.cof.size
+            film, contact = (self._each(load, count) for load in LOADS)
+            draws = sampled.law.at(
+                contact / (film + contact),
+                **{name.removeprefix("cof_"): self._each(name, count) for name in PARTS},
+                more_odds=self.film_by_angle * self._turns(count),
+            )
             more = {self.origin: float(np.var(values["cof"]))}
             if self.by_angle:
                 more["shoe_angle"] = self.by_angle["cof"] ** 2
@@ -118,7 +146,7 @@ class TreadPositions:
         if len(self.places) == 1:
             return means
         for name in self.values:
-            if not name.startswith("cof"):
+            if name in numbers and not name.startswith("cof"):
                 means[name] = replace(numbers[name], value=self.answer(name))
         over = f"over {len(self.places)} {self.several}"
         means["fluid_load"] = replace(
@@ -275,7 +303,6 @@ def tread_positions(
         [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
     ],
     *,
-    load: float,
     spacing: float,
     quick: bool,
 ) -> TreadPositions:
@@ -287,7 +314,7 @@ def tread_positions(
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
     case's own position.
 
-    ``load`` is the whole load, N; ``known`` are the numbers at the case's own place, and what is
+    ``known`` are the numbers at the case's own place, and what is
     known of others, on the grid of the run, of ``spacing`` (m); ``at_places`` solves places,
     each on a grid (m), and gives the index of each with its numbers as they end, None where a
     contact did not converge.
@@ -306,46 +333,87 @@ def tread_positions(
         coarse = spacing
     answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
     failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
-    onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and coarse > spacing else 0.0
+    each = _arrays(own, answers.values())
+    before, after = (_arrays(own, [at[p, h] for p in pairs]) for h in (coarse, spacing))
+    compared = coarse > spacing
+    onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and compared else 0.0
     rate = RATES[len(tread_on_sole(case)[0])] if lugs else 1.0
-    values, between = {}, {}
+    values, near = (carried(each, before, after, order) for order in (onward, 0.0))
+    # of a flat sole the first order of the cells, as the quick grid and that of a run tell it
+    onto = 1 + onward if lugs else USUAL_STEP * spacing / (coarse - spacing) if compared else 0.0
+    between = {}
     for name in own:
-        each = np.array([numbers[name] for numbers in answers.values()])
-        before, after = (np.array([at[p, h][name] for p in pairs]) for h in (coarse, spacing))
-        limit = load if name == "fluid_load" else math.inf
-        order = onward if name in CARRIED else 0.0
-        values[name] = carried(each, before, after, order, limit)
-        further = float((values[name] - carried(each, before, after, 0.0, limit)).mean())
-        apart = after - before
+        apart = after[name] - before[name]
         scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
-        between[name] = math.hypot(further / 2, (1 + order) * scatter / len(pairs) ** rate)
-    for whole in (values, between):
-        whole["cof"] = sum(whole[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    if not lugs:
-        return ShoeAngles(tuple(answers), values, len(failed), own, between=between)
-    by_angle = {}
-    if all((place, spacing) in at for place in angles):
+        further = float((values[name] - near[name]).mean())
+        further_on = onto if name in (*LOADS, *PARTS) or not lugs else 1.0
+        between[name] = math.hypot(further / 2, further_on * scatter / len(pairs) ** rate)
+    between["cof"] = sum(between[name] for name in PARTS)
+    by_angle, by_film = {}, 0.0
+    if lugs and all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
         by_angle = {name: (up[name] - down[name]) / 2 for name in own}
-    return TreadPositions(
-        tuple(answers), values, len(failed), own, between=between, by_angle=by_angle
+        by_film = (_film_odds(up) - _film_odds(down)) / 2
+    kind = TreadPositions if lugs else ShoeAngles
+    return kind(
+        tuple(answers),
+        values,
+        len(failed),
+        own,
+        between=between,
+        by_angle=by_angle,
+        film_by_angle=by_film,
+        uncompared=0.0 if compared else spacing,
     )
 
 
-def carried(each: Array, coarse: Array, fine: Array, onward: float, limit: float) -> Array:
-    """Return numbers (n,) of a coarse grid on a finer one, by some of both (m,).
+def _arrays(names: Iterable[str], numbers: Iterable[Mapping[str, float]]) -> dict[str, Array]:
+    listed = list(numbers)
+    return {name: np.array([each[name] for each in listed]) for name in names}
 
-    The odds v / (limit - v), v without a limit, are scaled as those of the mean over the m move
-    from ``coarse`` to ``fine``, and ``onward`` times as far again. What grows with finer cells
-    grows evenly, of what shrinks the inverse does.
+
+def _film_odds(numbers: Mapping[str, float]) -> float:
+    """Return ln F / (W - F) of the load on the film."""
+    film, contact = (numbers[load] for load in LOADS)
+    least = FAINT * (film + contact)
+    return math.log(max(film, least) / max(contact, least))
+
+
+def carried(
+    each: Mapping[str, Array], coarse: Mapping[str, Array], fine: Mapping[str, Array], onward: float
+) -> dict[str, Array]:
+    """Return numbers (n,) of a coarse grid on a finer one by name, by some of both (m,).
+
+    The odds of the loads on film and contact move as those of their means do, and ``onward`` times
+    as far again, and so does what a newton of the contact and the film have of friction; so contact
+    and film bear the load at each place. Other numbers move as their means do. What grows with
+    finer cells grows evenly, of what shrinks the inverse does.
     """
-    before, after = (float(one.mean()) for one in (coarse, fine))
-    if not (0 < before < limit and 0 < after < limit):
-        return each if before == after else np.full_like(each, after)
-    step = after / before * (1 - before / limit) / (1 - after / limit)
-    factor = step + onward * (step - 1) if step > 1 else step / (1 + onward * (1 - step))
-    share = np.minimum(each / limit, 1.0)
-    return each * factor / (1 - share + factor * share)
+
+    def total(numbers: Mapping[str, Array], name: str) -> float:
+        force = sum(numbers[load] for load in LOADS) if name in PARTS else 1.0
+        return float((numbers[name] * force).sum())
+
+    def factor(name: str, over: str = "", order: float = 0.0) -> float:
+        before, after = (total(numbers, name) for numbers in (coarse, fine))
+        if over:
+            before, after = before * total(fine, over), after * total(coarse, over)
+        if not (before > 0 and after > 0):  # it is there on one grid alone, or on none
+            return 1.0
+        step = after / before
+        return step + order * (step - 1) if step > 1 else step / (1 + order * (1 - step))
+
+    film, contact = (each[load] for load in LOADS)
+    more = film * factor(*LOADS, onward)
+    onto = (film + contact) / (more + contact)
+    result = {"fluid_load": more * onto, "contact_load": contact * onto}
+    for name in each.keys() - {*LOADS, "cof"}:
+        if name in ON_CONTACT:
+            result[name] = each[name] * onto * factor(name, "contact_load", onward)
+        else:
+            result[name] = each[name] * factor(name, order=onward if name in PARTS else 0.0)
+    result["cof"] = np.sum([result[name] for name in PARTS], axis=0)
+    return {name: result[name] for name in each}
 
 
 def _places_on_grids(
@@ -355,10 +423,12 @@ def _places_on_grids(
     coarse = case.numerics.quick_grid_spacing
     if treaded(case):
         all_places = case_places(case, quick=quick)
-        if quick or coarse <= spacing:
+        if quick or coarse < CLOSEST * spacing:
             return all_places, all_places, spacing
         return all_places, all_places[::2], coarse
-    return shoe_angles(), shoe_angles()[: 3 if quick else 1], spacing if quick else coarse
+    if quick or coarse < CLOSEST * spacing:
+        return shoe_angles(), shoe_angles(), spacing
+    return shoe_angles(), shoe_angles()[:1], coarse
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -416,8 +486,9 @@ def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, case.motion.speed)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     numbers, _ = scalars(case, contact, friction, sensor)
-    return {
+    values = {
         name: each.value
         for name, each in numbers.items()
         if each.value is not None and name not in ("normal_force", "slip_probability")
     }
+    return {**values, "contact_load": friction.normal_force - friction.fluid_load}
