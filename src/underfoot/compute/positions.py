@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,15 +21,22 @@ from .cost import cost
 from .numbers import scalars
 from .prepare import Prepared
 from .sensors import scanned
-from .sole import file_surface, tread_on_sole
+from .sole import bottom_surface, file_surface, landing_front, tread_on_sole
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
 ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
+YAW = math.radians(1)
+"""Angle of a tread against the corner of its heel, to either side, rad; assumed: neither a mould,
+a grinder nor wear holds it better. No standard says it."""
 GOLDEN = (math.sqrt(5) - 1) / 2
-LANDING = 0.1e-3
-"""What lies at most this above the lowest quarter of a sole lands first, m."""
+ACROSS = 6.0
+"""How much less a wave of the places across the shoe matters than one along it: lugs side by side
+have all its phases."""
+HANDED = 0.02
+"""Share of a tread's walls that leans to one side more than to the other, from which it tells a
+tread from its mirror image."""
 FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
 LOADS = ("fluid_load", "contact_load")
@@ -48,10 +56,14 @@ _HELD = "spread of the friction law, its inputs and the"
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad."""
+    """Where a tread lies: its pattern shifted by (x, y), m, and turned by ``yaw``, rad.
+
+    ``turn``, rad, is added to the shoe angle.
+    """
 
     shift: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
+    yaw: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +215,11 @@ class TreadPositions:
     def assumptions(self) -> tuple[str, ...]:
         """Return the band of the shoe angle, where it was used."""
         angle = bool(self.by_angle) or any(place.turn for place in self.places)
-        return ("motion.shoe_angle: ±1 deg",) * angle
+        yaw = any(place.yaw for place in self.places)
+        return (
+            *("motion.shoe_angle: ±1 deg",) * angle,
+            *("shoe.tread: turned ±1 deg against the heel's corner",) * yaw,
+        )
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -213,7 +229,9 @@ class TreadPositions:
 
         cof, film = ({"as_described": self.at_own_place[n]} for n in ("cof", "fluid_load"))
         shift = np.array([place.shift for place in self.places])
+        yaw = [place.yaw for place in self.places]
         return {
+            "position_yaw": at(yaw, "rad", "turn of the tread's pattern, anticlockwise"),
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
             "position_cof": at(self.values["cof"], "1", "coefficient of friction", **cof),
@@ -251,7 +269,9 @@ class ShoeAngles(TreadPositions):
         fields = super(ShoeAngles, self).fields()
         turn = [place.turn for place in self.places]
         about = {"units": "rad", "long_name": "change of the shoe angle"}
-        kept = {name: each for name, each in fields.items() if "shift" not in name}
+        kept = {
+            name: each for name, each in fields.items() if "shift" not in name and "yaw" not in name
+        }
         return {"position_turn": ("tread_position", turn, about), **kept}
 
 
@@ -269,16 +289,26 @@ def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Plac
     """Return ``count`` places of a pattern with the periods (n, 2), m.
 
     The first at ``begin``, shares (n,) of the periods; at rest without. Even along the first period
-    and along a second, where they follow the order of golden shares: no low wave across both meets
-    all of them in one phase, as it meets those of a lattice of 4 or 6. All at the shoe angle of the
+    and along a second, on the lattice whose shortest wave that it can't tell from none is
+    longest; one across the shoe counts ``ACROSS`` times its length. All at the shoe angle of the
     case: the film under bars is a saw-tooth along their period whose teeth the angle moves, and
     positions that have other angles leave a larger error of its mean.
     """
-    order = np.argsort(np.argsort(np.mod(GOLDEN * np.arange(count), 1)))
-    shares = np.column_stack([np.arange(count), order])[:, : len(periods)] / count
-    if begin is not None:
-        shares = np.mod(shares + begin, 1)
+    periods, at = np.asarray(periods, dtype=float), np.arange(count)
+    shares = np.column_stack([at, at * _step(periods, count)])[:, : len(periods)] / count
+    shares = np.mod(shares + (0.0 if begin is None else begin), 1)
     return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
+
+
+def _step(periods: Array, count: int) -> int:
+    """Return by how many parts of the second period a place lies beyond the one before it."""
+    if len(periods) == 1 or count == 1:
+        return 1
+    waves = np.array([h for h in product(range(-count, count + 1), repeat=2) if any(h)])
+    along, across = np.linalg.pinv(periods) @ waves.T
+    length = np.round(np.hypot(along, ACROSS * across) * np.abs(periods).max(), 6)
+    met = [length[waves @ (1, step) % count == 0].min() for step in range(1, count)]
+    return 1 + int(np.argmax(met))
 
 
 def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
@@ -286,14 +316,33 @@ def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
 
     The pattern begins at the front of what lands first, where the teeth of its film lie: so all
     treads meet them in nearly one phase, wherever they were drawn and however wide their lugs are.
+    There it is turned by ``YAW``, to either side alike: lugs that meet a
+    corner of the heel all at once are a tooth of the film that no real sole has. A mirrored sole
+    has the mirrored places.
     """
-    periods, begin, x, height = tread_on_sole(case)
-    clearance = height + math.tan(case.motion.shoe_angle) * x
-    over = np.nan_to_num(clearance, nan=math.inf) - np.nanquantile(clearance, 0.25) - LANDING
-    last = int(np.flatnonzero(over < 0)[-1])
-    front = np.interp(0.0, over[last : last + 2], x[last : last + 2])
-    at_front = np.array([front, 0.0]) @ np.linalg.pinv(periods)
-    return places(periods, position_count(case, quick=quick), at_front - begin)
+    periods, begin = tread_on_sole(case)[:2]
+    hand = _hand(case)
+    mirror = np.array([1, hand])
+    origin = (np.array([landing_front(case), 0.0]) - begin @ periods) * mirror
+    ahead = _reduced(periods * mirror)
+    lie = places(ahead, position_count(case, quick=quick), origin @ np.linalg.pinv(ahead))
+    signs = (1, -1, -1, 1)
+    return tuple(
+        Place((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
+        for k, place in enumerate(lie)
+    )
+
+
+def _reduced(periods: Array) -> Array:
+    """Return periods of the same pattern whose mirror images have the mirrored ones."""
+    first, *more = (each * (1 if tuple(each[::way]) > (0, 0) else -1)
+                    for each, way in zip(np.round(periods, 12), (1, -1), strict=False))  # fmt: skip
+    return np.array(
+        [
+            first,
+            *(each - math.floor(each @ first / (first @ first) + 1e-6) * first for each in more),
+        ]
+    )
 
 
 def tread_positions(
@@ -414,6 +463,21 @@ def carried(
             result[name] = each[name] * factor(name, order=onward if name in PARTS else 0.0)
     result["cof"] = np.sum([result[name] for name in PARTS], axis=0)
     return {name: result[name] for name in each}
+
+
+def _hand(case: Case) -> int:
+    """Return 1, of the mirrored case -1: where the walls of a tread lean to, else its plan form."""
+    surface = bottom_surface(case)
+    land, inside = surface.land, surface.inside
+    up, down = (
+        np.count_nonzero((land[a] != land[b]) & inside[a] & inside[b])
+        for a, b in ((np.s_[1:, 1:], np.s_[:-1, :-1]), (np.s_[1:, :-1], np.s_[:-1, 1:]))
+    )
+    lean = (up - down) / max(up + down, 1)
+    if abs(lean) < HANDED:
+        x, y = np.meshgrid(surface.x - surface.x.mean(), surface.y, indexing="ij")
+        lean = float((x * y)[inside].sum() + 1e-3 * (x * y)[land].sum())
+    return 1 if lean >= 0 else -1
 
 
 def _places_on_grids(

@@ -138,7 +138,7 @@ def solved_at(
 
     ``finer``: ``solver_settings``.
     """
-    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn)
+    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
     here = parts.on(sole, turn=place.turn)
     return here, solved_motion(here, finer=finer, progress=progress)
 
