@@ -167,7 +167,7 @@ _NO_NAME = set(
 
 def sourced_texts() -> Iterator[tuple[str, str]]:
     """Yield every source that code, data and pages of the physics state: the file and the text."""
-    for path in (*ROOT.glob("src/**/*.py"), *ROOT.glob("wings/*/underfoot*/**/*.py")):
+    for path in ROOT.glob("src/**/*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
                 for found in re.findall(
@@ -348,7 +348,7 @@ ROOMS = {
         "underfoot.surface", "underfoot.fluid",
     ),
     "Contact, film, friction": (
-        "underfoot.rough_contact", "underfoot_block", "underfoot.film", "underfoot.friction",
+        "underfoot.rough_contact", "underfoot.block", "underfoot.film", "underfoot.friction",
     ),
     "Whole shoe and slip": (
         "underfoot.shoe", "underfoot.shoe.files", "underfoot.shoe.parametric",
@@ -360,19 +360,20 @@ ROOMS = {
         "underfoot.questions.risk", "underfoot.questions.effects", "underfoot.questions.changes",
         "underfoot.questions.method", "underfoot.questions.wear", "underfoot.questions.sensitivity",
         "underfoot.questions.outcomes", "underfoot.calibrate", "underfoot.studies",
-        "underfoot.report", "underfoot_design_studies.study", "underfoot_design_studies.sweeps",
-        "underfoot_design_studies.plan", "underfoot_design_studies.study_file",
-        "underfoot_design_studies.goals", "underfoot_design_studies.result",
-        "underfoot_design_studies.surrogate", "underfoot_design_studies.effects",
-        "underfoot_design_studies.posterior",
+        "underfoot.report", "underfoot.explore.study", "underfoot.explore.sweeps",
+        "underfoot.explore.plan", "underfoot.explore.study_file",
+        "underfoot.explore.goals", "underfoot.explore.result",
+        "underfoot.explore.surrogate", "underfoot.explore.effects",
+        "underfoot.explore.posterior",
     ),
     "Measurements": (
-        "underfoot.trials", "underfoot.trials.protocols", "underfoot.trials.stribeck_fit",
-        "underfoot_trial_analysis.pressure_map", "underfoot_trial_analysis.folder",
-        "underfoot_trial_analysis.file_result", "underfoot_trial_analysis.study",
-        "underfoot_trial_analysis.tables", "underfoot_trial_analysis.pin_on_disk",
-        "underfoot_trial_analysis.boundary", "underfoot_trial_analysis.relaxation_test",
-        "underfoot_trial_analysis.statistics", "underfoot_simulator",
+        "underfoot.trials", "underfoot.trials.recording.protocols",
+        "underfoot.trials.machines.stribeck_fit", "underfoot.trials.machines.compression",
+        "underfoot.trials.machines.pressure_map", "underfoot.trials.study.folder",
+        "underfoot.trials.study.file_result", "underfoot.trials.study.study",
+        "underfoot.trials.study.tables", "underfoot.trials.machines.pin_on_disk",
+        "underfoot.trials.study.boundary", "underfoot.trials.machines.relaxation_test",
+        "underfoot.trials.statistics", "underfoot.trials.simulator",
     ),
 }  # fmt: skip
 LONGEST_PAGE = 150

@@ -14,10 +14,7 @@ from chromium import browser
 
 COMMAND = "from underfoot.cli import main; main()"
 REPOSITORY = Path(__file__).resolve().parents[2]
-PATHS = [
-    *map(str, (REPOSITORY / "src", *sorted((REPOSITORY / "wings").iterdir()))),
-    os.environ.get("PYTHONPATH", ""),
-]
+PATHS = [str(REPOSITORY / "src"), os.environ.get("PYTHONPATH", "")]
 
 
 class Served:
@@ -152,10 +149,10 @@ def begin(page, base):
 
 def project_of(folder, *names):
     """Return a new project whose variants are each computed in a second."""
+    from underfoot.app.project import Project
+    from underfoot.app.variant_bar import USUAL
     from underfoot.case.template import template
     from underfoot.core.catalogue import Catalogue
-    from underfoot_app.project import Project
-    from underfoot_app.variant_bar import USUAL
 
     made = Project(folder)
     for name in names:
