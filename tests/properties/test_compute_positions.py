@@ -14,7 +14,7 @@ from underfoot.compute import numerical_error, solve
 from underfoot.compute.positions import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
-    PARTS,
+    COF_PARTS,
     YAW,
     Place,
     ShoeAngles,
@@ -186,7 +186,7 @@ def test_a_place_where_all_floats_says_nothing_of_the_friction_of_a_contact():
     own = {name: float(each[0]) for name, each in before.items()}
     law = np.random.default_rng(0).lognormal(0, 0.3, 1000)
     of_law = LawDraws(law, law, law, odds=np.random.default_rng(1).normal(0, 0.5, 1000))
-    parts = {name.removeprefix("cof_"): own[name] for name in PARTS}
+    parts = {name.removeprefix("cof_"): own[name] for name in COF_PARTS}
     sampled = SampledCof(
         **of_law.at(own["contact_load"] / 300.0, **parts),
         share={}, left_out=(), confidence=0.95, seed=0, law=of_law,

@@ -41,7 +41,7 @@ FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
 LOADS = ("fluid_load", "contact_load")
 ON_CONTACT = ("cof_adhesion", "cof_hysteresis")
-PARTS = (*ON_CONTACT, "cof_viscous")
+COF_PARTS = (*ON_CONTACT, "cof_viscous")
 FAINT = 1e-6
 """Share of the load that film and contact have at least where the odds of one are asked for."""
 CLOSEST = 1.25
@@ -133,7 +133,7 @@ class TreadPositions:
             film, contact = (self._each(load, count) for load in LOADS)
             draws = sampled.law.at(
                 contact / (film + contact),
-                **{name.removeprefix("cof_"): self._each(name, count) for name in PARTS},
+                **{name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS},
                 more_odds=self.film_by_angle * self._turns(count),
             )
             more = {self.origin: float(np.var(values["cof"]))}
@@ -395,9 +395,9 @@ def tread_positions(
         apart = after[name] - before[name]
         scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
         further = float((values[name] - near[name]).mean())
-        further_on = onto if name in (*LOADS, *PARTS) or not lugs else 1.0
+        further_on = onto if name in (*LOADS, *COF_PARTS) or not lugs else 1.0
         between[name] = math.hypot(further / 2, further_on * scatter / len(pairs) ** rate)
-    between["cof"] = sum(between[name] for name in PARTS)
+    between["cof"] = sum(between[name] for name in COF_PARTS)
     by_angle, by_film = {}, 0.0
     if lugs and all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
@@ -440,7 +440,7 @@ def carried(
     """
 
     def total(numbers: Mapping[str, Array], name: str) -> float:
-        force = sum(numbers[load] for load in LOADS) if name in PARTS else 1.0
+        force = sum(numbers[load] for load in LOADS) if name in COF_PARTS else 1.0
         return float((numbers[name] * force).sum())
 
     def factor(name: str, over: str = "", order: float = 0.0) -> float:
@@ -460,8 +460,8 @@ def carried(
         if name in ON_CONTACT:
             result[name] = each[name] * onto * factor(name, "contact_load", onward)
         else:
-            result[name] = each[name] * factor(name, order=onward if name in PARTS else 0.0)
-    result["cof"] = np.sum([result[name] for name in PARTS], axis=0)
+            result[name] = each[name] * factor(name, order=onward if name in COF_PARTS else 0.0)
+    result["cof"] = np.sum([result[name] for name in COF_PARTS], axis=0)
     return {name: result[name] for name in each}
 
 
