@@ -364,7 +364,7 @@ ROOMS = {
         "underfoot.explore.plan", "underfoot.explore.study_file",
         "underfoot.explore.goals", "underfoot.explore.result",
         "underfoot.explore.surrogate", "underfoot.explore.effects",
-        "underfoot.explore.posterior",
+        "underfoot.explore.posterior", "underfoot.places.choice", "underfoot.places.machines",
     ),
     "Measurements": (
         "underfoot.trials", "underfoot.trials.recording.protocols",

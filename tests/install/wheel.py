@@ -105,8 +105,9 @@ def leg(name, wheel, pinned, folder):
     assert 'pip install "underfoot[app]"' in missing, missing
     assert size < LARGEST_MB, f"{name}: {size:.0f} MB, more than {LARGEST_MB} MB"
     print(
-        f"{name}: COF {cof:.6f}, {size:.0f} MB, help of {helped.strip()} commands, numpy {versions['numpy']}, scipy "
-        f"{versions['scipy']}; {installed:.0f} s of {time.monotonic() - began:.0f} s to install"
+        f"{name}: COF {cof:.6f}, {size:.0f} MB, help of {helped.strip()} commands, "
+        f"numpy {versions['numpy']}, scipy {versions['scipy']}; "
+        f"{installed:.0f} s of {time.monotonic() - began:.0f} s to install"
     )
     return cof
 
