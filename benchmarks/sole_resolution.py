@@ -87,7 +87,7 @@ def drawn() -> Iterator[tuple[str, Case]]:
     rng, number = np.random.default_rng(SEED), 0
     while number < DRAWN:
         try:
-            case = drawn_case(rng).replace("numerics.tread_positions", 4)
+            case = drawn_case(rng).replace("numerics.tread_positions", 6)
         except UnderfootError:
             continue
         number += 1

@@ -384,8 +384,8 @@ def test_grooves_are_in_case_and_hash_and_stay_in_their_lugs(bars):
 
 
 def test_the_number_of_positions_is_a_field_with_a_range(bars):
-    assert position_count(bars, quick=False) == 4
-    assert position_count(bars, quick=True) == 2
+    assert position_count(bars, quick=False) == 6
+    assert position_count(bars, quick=True) == 3
     plain = bars.replace("shoe.tread", {"pattern": "none"})
     assert position_count(plain, quick=False) == position_count(plain, quick=True) == 3
     assert position_count(plain.replace("numerics.tread_positions", 1), quick=False) == 1
@@ -396,8 +396,8 @@ def test_the_number_of_positions_is_a_field_with_a_range(bars):
 
 def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
     alone = bars.replace("numerics.tread_positions", 1)
-    # its own; four on the quick grid, two of them on that of the run
-    for quick, count in ((False, 3 + 4 * 0.6**2), (True, 3)):
+    # its own; six on the quick grid, three of them on that of the run
+    for quick, count in ((False, 4 + 6 * 0.6**2), (True, 4)):
         one, more = run_cost(alone, quick=quick), run_cost(bars, quick=quick)
         assert more.seconds == pytest.approx(np.multiply(count, one.seconds))
         assert more.memory == one.memory
@@ -480,7 +480,7 @@ def test_one_position_is_the_case_s_own(bars):
     one = run(coarse.replace("numerics.tread_positions", 1))
     more = run(coarse)
     cof, load = more.fields["position_cof"], more.fields["position_fluid_load"]
-    assert cof.size == 4
+    assert cof.size == 6
     assert cof.attrs["as_described"] == pytest.approx(one.value("cof"), rel=1e-12)
     assert f"(COF {one.value('cof'):.3g}, " in more.labels["tread_position"]
     assert more.value("cof") == pytest.approx(float(cof.mean()), rel=1e-12)
@@ -491,12 +491,12 @@ def test_one_position_is_the_case_s_own(bars):
     assert np.var(more.fields["cof_draws"]) > np.var(one.fields["cof_draws"])
     assert "mean over positions of the tread" in more.headline()[0]
     assert "tread_position" not in one.labels
-    assert "4 positions" in more.labels["tread_position"]
+    assert "6 positions" in more.labels["tread_position"]
     assert "position of the tread" in more.labels["cof_spread_from"]
     assert "spread over tread positions" in more.summary()
     assert any("shoe_angle: ±1 deg" in line for line in more.assumptions)
     assert any("tread: turned ±1 deg" in line for line in more.assumptions)
-    assert sorted(more.fields["position_yaw"].values) == pytest.approx([-YAW, -YAW, YAW, YAW])
+    assert sorted(more.fields["position_yaw"].values) == pytest.approx([-YAW] * 3 + [YAW] * 3)
 
 
 @pytest.mark.slow

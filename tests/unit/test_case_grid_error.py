@@ -105,7 +105,7 @@ def test_every_run_tells_its_numerical_error(name):
         assert "difference to cells of 3 mm, 8 along the sliding" in words
         assert result.scalars["fluid_load"].interval is not None
     else:
-        assert "4 positions of the tread, and finer grids" in words
+        assert "6 positions of the tread, and finer grids" in words
     assert "numerical error" in cof.note
 
 

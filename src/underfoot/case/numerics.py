@@ -37,7 +37,7 @@ class Numerics(Section):
         "errors",
     )
     tread_positions: Annotated[int, Field(ge=1, le=64, strict=True)] = default(
-        4, 4, "on the quick grid, every other one on the run's too; --quick: half; 1: as it lies"
+        6, 6, "on the quick grid, every other one on the run's too; --quick: half; 1: as it lies"
     )
     most_memory: Annotated[float, Quantity("B", 2e8, 1e13)] = default(
         2e9, "2 GB", "a run that would take more is refused before it starts"
