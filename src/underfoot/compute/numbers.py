@@ -121,13 +121,14 @@ def with_film_spread(
     """Return the numbers of the film with the spread of its load, and that over places.
 
     ln F / (W - F), F the load on the film, W the whole, is off by ``film_odds`` (n,); what sensors
-    read and peaks go with F. ``drawn`` gives a number over positions of the tread and shoe angles,
-    in the order of the draws of COF.
+    read and peaks go with F, place by place. ``drawn`` gives a number over positions of the tread
+    and shoe angles, in the order of the draws of COF.
     """
     load, whole = values["fluid_load"].value, values["normal_force"].value
     if not load or not whole:
         return dict(values)
-    share = min(load / whole, 1.0)
+    loads = load if drawn is None else drawn("fluid_load", film_odds.size)
+    share = np.minimum(np.asarray(loads) / whole, 1.0)
     factors = 1 / (share + (1 - share) * np.exp(-film_odds))
     result = dict(values)
     for name in GRID_NAMES[1:]:

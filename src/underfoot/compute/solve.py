@@ -138,7 +138,7 @@ def solved_at(
 
     ``finer``: ``solver_settings``.
     """
-    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn)
+    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
     here = parts.on(sole, turn=place.turn)
     return here, solved_motion(here, finer=finer, progress=progress)
 
@@ -184,10 +184,7 @@ def averaged(
     known = {Place(): place_numbers(parts, solution.contact)}
     if treaded(parts.case):
         known |= _turned(parts, solution.contact)
-    load = solution.contact.normal_force
-    return tread_positions(
-        parts.case, known, at_places, load=load, spacing=parts.spacing, quick=quick
-    )
+    return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
 def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, float]]:
