@@ -95,7 +95,8 @@ def test_missing_conditions_are_borne():
     rows = [i for i in range(len(y)) if not (who[i] == "S03" and shoe[i] == "B")]
     y, shoe, who = y[rows], [shoe[i] for i in rows], [who[i] for i in rows]
     mixed = mixed_model(y, {"shoe": shoe}, who)
-    assert (mixed.persons, mixed.within_df) == (12, 21)
+    assert mixed.persons == 12
+    assert 20 < mixed.tests[0].error_df < 22
     means = {m.level: m for m in least_squares_means(mixed, "shoe")}
     assert means["B"].n == 11
     assert means["B"].standard_error > means["A"].standard_error

@@ -4,7 +4,6 @@ Trials of one person are alike. A test that takes them as independent finds diff
 not there; here every person counts once in each condition.
 """
 
-import warnings as python_warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +13,8 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .linear import AnovaRow, FittedModel, linear_model, model_data, parts
+from .linear import AnovaRow, FittedModel, model_data, parts
+from .variance_components import VarianceComponents, variance_components
 
 
 def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
@@ -30,12 +30,16 @@ def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class PersonMeans:
-    """One row for each person in each condition: mean response, number of trials."""
+    """One row for each person in each condition: mean response, number of trials.
+
+    ``squares``: of the trials about their means, summed over all rows.
+    """
 
     person: tuple[str, ...]
     factors: Mapping[str, tuple[str, ...]]
     mean: np.ndarray
     trials: np.ndarray
+    squares: float
 
 
 def person_means(
@@ -60,42 +64,40 @@ def person_means(
         dict(zip(factors, columns[1:], strict=True)),
         np.array([np.mean(values) for values in cells.values()]),
         np.array([len(values) for values in cells.values()]),
+        sum(float(np.sum((np.array(v) - np.mean(v)) ** 2)) for v in cells.values()),
     )
 
 
 @dataclass(frozen=True, slots=True)
 class MixedModel(FittedModel):
-    """Linear model of person means with a random intercept for each person (REML).
+    """Linear model of trials in which persons differ, and react to conditions in their own way.
 
-    ``person_sd`` and ``residual_sd``: standard deviations between persons, and of a person's mean
-    in one condition about it. ``within_df`` and ``between_df``: degrees of freedom of what varies
-    within persons and of what only differs between them. ``within``: factors of which at least one
-    person has several levels.
+    ``variances``: of what is random: "person" (between persons), "person:shoe" (a person's own
+    reaction to the shoe), "trial" (a person's repeats); NaN where the data hold it and a later one
+    as one. One below zero says that trials of a person differ more than those of two.
+    ``within``: factors of which at least one person has several levels.
     """
 
-    person_sd: float
-    residual_sd: float
-    within_df: int
-    between_df: int
+    fit: VarianceComponents
+    variances: Mapping[str, float]
     within: frozenset[str]
     persons: int
     trials: int
 
-    def df(self, factor: str) -> float:
-        """Return those within persons where a person has several levels, else those between."""
-        inside = any(name in self.within for name in parts(factor))
-        return self.within_df if inside else self.between_df
+    def df(self, contrasts: np.ndarray) -> float:
+        """Return Satterthwaite's degrees of freedom: of the variances that the contrasts hold."""
+        return round(self.fit.error_df(contrasts), 6)  # to which the variances are found
 
     @property
     def tests(self) -> tuple[AnovaRow, ...]:
-        """F tests of the terms (type III, Wald, degrees of freedom between and within persons)."""
+        """F tests of the terms (type III, Wald), each with its own error."""
         from scipy import stats
 
         rows = []
         for term in self.design.terms:
             at = self.design.slices[term]
             b, c = self.coefficients[at], self.covariance[at, at]
-            q, df = len(b), self.df(term)
+            q, df = len(b), self.df(np.eye(len(self.coefficients))[at])
             f = float(b @ np.linalg.solve(c, b)) / q
             rows.append(AnovaRow(term, np.nan, q, f, float(stats.f.sf(f, q, df)), df))
         return tuple(rows)
@@ -111,20 +113,20 @@ def mixed_model(
 ) -> MixedModel:
     """Return the mixed model of a study in which persons repeat.
 
-    Trials are averaged first for each person and condition, so that repeating trials does not
-    make persons more. The means are modelled with fixed factors and a random intercept for each
-    person; its variance is that of statsmodels' REML fit. In complete data the tests are those
-    of repeated measures (with two levels, the paired t test). Degrees of freedom: persons -
-    parameters for what differs between persons, rows - persons - parameters within.
+    Fixed factors; random are the person, the person's own reaction to each term of which it has
+    several levels and to the whole condition, and the trial (REML). So a factor is tested against
+    how differently persons react to it, and repeating trials does not make persons more. In
+    complete data the tests are those of repeated measures (with two levels, the paired t test),
+    since a variance may be negative.
 
     ``response`` and ``person``: shape (n,), one row a trial. ``factors``: columns of length n, as
     names. ``terms``: all crossed by default.
 
-    DataError: fewer persons than the model needs; no person with two conditions and none repeated;
-    combinations of levels without a person.
+    DataError: fewer persons than the model needs; no scatter; combinations of levels without a
+    trial.
 
-    Source: J. C. Pinheiro, D. M. Bates, Mixed-Effects Models in S and S-PLUS, Springer 2000
-    (degrees of freedom: section 2.4.2).
+    Source: D. J. Barr et al., J. Mem. Lang. 68 (2013) 255 (which effects are random); see
+    ``variance_components``.
     """
     means = person_means(response, factors, person)
     y, built, notes = model_data(means.mean, means.factors, terms, name)
@@ -132,60 +134,40 @@ def mixed_model(
         raise DataError(
             notes[0], where=name, remedy="Name fewer factors, or leave out interactions"
         )
-    people = list(dict.fromkeys(means.person))
-    who = np.array([people.index(p) for p in means.person])
-    x = built.matrix
-    varies = np.array([np.ptp(x[who == i], axis=0) > 0 for i in range(len(people))])
-    inside = int(varies.any(axis=0).sum())
+    people = tuple(dict.fromkeys(means.person))
     within = frozenset(
         factor
         for factor, levels in means.factors.items()
         if len(set(zip(means.person, levels, strict=True))) > len(people)
     )
-    between_df = len(people) - (x.shape[1] - inside)
-    within_df = len(y) - len(people) - inside
-    if between_df < 1 or (varies.any() and within_df < 1):
+    shared = dict.fromkeys(
+        tuple(part for part in parts(term) if part in within) for term in ("", *built.terms)
+    )
+    shared |= {tuple(factor for factor in means.factors if factor in within): None}
+    groups = {
+        ":".join(("person", *own)): _numbered(means.person, *(means.factors[part] for part in own))
+        for own in sorted(shared, key=len)
+    }
+    try:
+        fit = variance_components(
+            y, means.trials, means.squares, built.matrix, tuple(groups.values())
+        )
+    except DataError as error:
         raise DataError(
-            f"{len(people)} persons leave nothing to estimate the scatter of {x.shape[1]} "
-            "parameters",
-            where=name,
-            remedy="Measure more persons, or name fewer factors",
-        )
-    counted = within, len(people), int(means.trials.sum())
-    if not varies.any():
-        # Nobody repeats a condition: the means of persons are independent.
-        plain = linear_model(y, means.factors, built.terms, name=name)
-        fixed = plain.coefficients, plain.covariance, plain.warnings
-        spread = float(np.sqrt(plain.residual_mean_square))
-        return MixedModel(name, built, *fixed, spread, 0.0, 0, plain.residual_df, *counted)
-    person_sd, residual_sd = _standard_deviations(y, x, who)
-    share = person_sd**2 / residual_sd**2
-    shrink = share / (1.0 + share * np.bincount(who)[who])
-    inverse = (np.eye(len(y)) - shrink * (who[:, None] == who)) / residual_sd**2
-    covariance = np.linalg.inv(x.T @ inverse @ x)
-    warning = ()
-    if person_sd < 1e-3 * residual_sd:
-        warning = ("persons differ no more than by chance: their variance is estimated as zero",)
-    fixed = covariance @ (x.T @ inverse @ y), covariance, warning
-    return MixedModel(name, built, *fixed, person_sd, residual_sd, within_df, between_df, *counted)
+            error.what, where=name, remedy="Measure more persons, or name fewer factors"
+        ) from error
+    variances = dict(zip((*groups, "trial"), fit.variances.tolist(), strict=True))
+    return MixedModel(
+        name, built, fit.coefficients, fit.covariance, (), fit, variances, within, len(people),
+        int(means.trials.sum()),
+    )  # fmt: skip
 
 
-def _standard_deviations(y: np.ndarray, x: np.ndarray, who: np.ndarray) -> tuple[float, float]:
-    from statsmodels.regression.mixed_linear_model import MixedLM
-
-    scale = float(y.std())
-    with python_warnings.catch_warnings():
-        # A variance of zero is an answer here, said in the model's own warnings.
-        python_warnings.simplefilter("ignore")
-        fit: Any = MixedLM((y - y.mean()) / scale, x, groups=who).fit(
-            reml=True, method=["powell"], ftol=1e-13, xtol=1e-10
-        )
-    person, residual = float(np.asarray(fit.cov_re).ravel()[0]), float(fit.scale)
-    if not np.isfinite([person, residual]).all() or residual <= 1e-18:
-        raise DataError(
-            "persons explain everything: no scatter is left within them", where="mixed model"
-        )
-    return scale * float(np.sqrt(max(person, 0.0))), scale * float(np.sqrt(residual))
+def _numbered(*columns: Sequence[str]) -> np.ndarray:
+    """Return a number for each combination that stands in the columns, shape (n,)."""
+    rows = list(zip(*columns, strict=True))
+    order = {row: i for i, row in enumerate(dict.fromkeys(rows))}
+    return np.array([order[row] for row in rows])
 
 
 @dataclass(frozen=True, slots=True)
