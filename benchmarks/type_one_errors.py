@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot_trial_analysis.statistics import mixed_model
+from underfoot.trials.statistics import mixed_model
 
 PERSON, RESIDUAL = 0.02, 0.008  # SD of RCOF between persons, and of a person's condition or trial
 STUDIES, SEED = 2000, 1

@@ -1,5 +1,5 @@
 # Makes trials.csv and tests.csv beside this script: studies of persons who repeat, and what
-# lme4 and lmerTest (type III, Satterthwaite) find in them. Rscript make.R
+# lme4 and lmerTest (type III, Kenward and Roger by pbkrtest) find in them. Rscript make.R
 suppressMessages({library(lmerTest)})
 options(contrasts = c("contr.sum", "contr.poly"), digits = 12)
 study <- function(name, persons, shoes, floors, sides, missing, group, seed) {
@@ -38,7 +38,7 @@ for (i in seq_along(studies)) {
   d$person <- factor(d$person)
   fit <- lmer(models[[i]], d, control = tight)
   message(d$study[1], ": singular ", isSingular(fit))
-  a <- anova(fit, type = 3, ddf = "Satterthwaite")
+  a <- anova(fit, type = 3, ddf = "Kenward-Roger")
   tests <- rbind(tests, data.frame(study = d$study[1], term = rownames(a), df = a$NumDF,
                                    error_df = a$DenDF, f = a$`F value`, p = a$`Pr(>F)`))
 }
@@ -47,4 +47,4 @@ folder <- dirname(here)
 all <- do.call(rbind, studies)[, c("study", "person", "shoe", "floor", "side", "group", "y")]
 write.csv(all, file.path(folder, "trials.csv"), row.names = FALSE, quote = FALSE)
 write.csv(tests, file.path(folder, "tests.csv"), row.names = FALSE, quote = FALSE)
-message(R.version.string, ", lme4 ", packageVersion("lme4"), ", lmerTest ", packageVersion("lmerTest"))
+message(R.version.string, ", pbkrtest ", packageVersion("pbkrtest"), ", lme4 ", packageVersion("lme4"), ", lmerTest ", packageVersion("lmerTest"))

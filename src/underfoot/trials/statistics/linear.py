@@ -202,8 +202,8 @@ class FittedModel(ABC):
     warnings: tuple[str, ...]
 
     @abstractmethod
-    def df(self, contrasts: np.ndarray) -> float:
-        """Return the degrees of freedom of the error of contrasts, shape (p,) or (q, p)."""
+    def df(self, contrast: np.ndarray) -> float:
+        """Return the degrees of freedom of the error of a contrast, shape (p,)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +249,7 @@ class LinearModel(FittedModel):
         """Fitted values, shape (n,)."""
         return self.design.matrix @ self.coefficients
 
-    def df(self, contrasts: np.ndarray) -> float:
+    def df(self, contrast: np.ndarray) -> float:
         """Return those of the residual."""
         return self.residual_df
 

@@ -6,14 +6,14 @@ not there; here every person counts once in each condition.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .linear import AnovaRow, FittedModel, model_data, parts
+from .linear import AnovaRow, FittedModel, crossed, model_data, parts
+from .samples import ROUNDING
 from .variance_components import VarianceComponents, variance_components
 
 
@@ -84,22 +84,21 @@ class MixedModel(FittedModel):
     persons: int
     trials: int
 
-    def df(self, contrasts: np.ndarray) -> float:
-        """Return Satterthwaite's degrees of freedom: of the variances that the contrasts hold."""
-        return round(self.fit.error_df(contrasts), 6)  # to which the variances are found
+    def df(self, contrast: np.ndarray) -> float:
+        """Return the degrees of freedom of the variances that the contrast holds."""
+        return round(self.fit.error_df(contrast), 6)  # to which the variances are found
 
     @property
     def tests(self) -> tuple[AnovaRow, ...]:
-        """F tests of the terms (type III, Wald), each with its own error."""
+        """F tests of the terms (type III), each with its own error (Kenward and Roger)."""
         from scipy import stats
 
         rows = []
         for term in self.design.terms:
-            at = self.design.slices[term]
-            b, c = self.coefficients[at], self.covariance[at, at]
-            q, df = len(b), self.df(np.eye(len(self.coefficients))[at])
-            f = float(b @ np.linalg.solve(c, b)) / q
-            rows.append(AnovaRow(term, np.nan, q, f, float(stats.f.sf(f, q, df)), df))
+            chosen = np.eye(len(self.coefficients))[self.design.slices[term]]
+            f, df = self.fit.wald_test(chosen)
+            p = float(stats.f.sf(f, len(chosen), df))
+            rows.append(AnovaRow(term, np.nan, len(chosen), f, p, round(df, 6)))
         return tuple(rows)
 
 
@@ -174,52 +173,56 @@ def _numbered(*columns: Sequence[str]) -> np.ndarray:
 class RepeatedMeasures:
     """Repeated-measures analysis of variance of person means.
 
-    ``epsilon`` is Greenhouse and Geisser's, for one factor: ``rows`` hold p without it,
-    ``p_corrected`` is p with it.
+    ``rows`` hold p without a correction; ``epsilon`` (Greenhouse and Geisser's) and
+    ``p_corrected``, p with it, go with them.
     """
 
     rows: tuple[AnovaRow, ...]
-    epsilon: float | None
-    p_corrected: float | None
+    epsilon: tuple[float, ...]
+    p_corrected: tuple[float, ...]
     persons: int
 
 
 def repeated_measures(
     response: ArrayLike, factors: Mapping[str, Sequence[str]], person: Sequence[object]
 ) -> RepeatedMeasures:
-    """Return the repeated-measures analysis of variance (statsmodels' AnovaRM) of person means.
+    """Return the repeated-measures analysis of variance of person means.
 
-    DataError: a person lacks a combination of levels: use ``mixed_model``.
+    Each term is tested against how differently persons react to it: with the contrasts z of a term
+    (d of them, orthonormal) in n persons, F = n |mean z|^2 / trace S, S the covariance of z;
+    epsilon = (trace S)^2 / (d trace S^2).
+
+    DataError: a person lacks a combination of levels: use ``mixed_model``; no scatter.
 
     Source: S. W. Greenhouse, S. Geisser, Psychometrika 24 (1959) 95.
     """
-    import pandas as pd
     from scipy import stats
-    from statsmodels.stats.anova import AnovaRM
 
     means = person_means(response, factors, person)
-    # Neutral column names: statsmodels builds formulas of them.
-    named = {f"factor{i}": name for i, name in enumerate(means.factors)}
-    levels = {column: means.factors[name] for column, name in named.items()}
-    frame = pd.DataFrame({"person": means.person, "y": means.mean, **levels})
-    cells = int(np.prod([len(set(column)) for column in levels.values()]))
-    persons = len(set(means.person))
-    if len(frame) != cells * persons or persons < 2 or cells < 2:
+    people = list(dict.fromkeys(means.person))
+    levels = [list(dict.fromkeys(column)) for column in means.factors.values()]
+    shape = [len(people), *map(len, levels)]
+    if len(means.mean) != np.prod(shape) or len(people) < 2 or np.prod(shape[1:]) < 2:
         where, remedy = "repeated measures", "Use the mixed model"
         raise DataError("not every person has every condition", where=where, remedy=remedy)
-    table: Any = AnovaRM(frame, "y", "person", within=list(named)).fit().anova_table
-    rows = []
-    for term, row in table.iterrows():
-        name = ":".join(named[part] for part in str(term).split(":"))
-        f, p, error_df = (float(row[key]) for key in ("F Value", "Pr > F", "Den DF"))
-        rows.append(AnovaRow(name, np.nan, int(row["Num DF"]), f, p, error_df))
-    if len(named) > 1:
-        return RepeatedMeasures(tuple(rows), None, None, persons)
-    wide = frame.pivot(index="person", columns="factor0", values="y").to_numpy()
-    k = wide.shape[1]
-    centring = np.eye(k) - 1.0 / k
-    inner = centring @ np.atleast_2d(np.cov(wide.T)) @ centring
-    epsilon = min(float(np.trace(inner) ** 2 / ((k - 1) * np.sum(inner**2))), 1.0)
-    own: Any = rows[0]  # with F and the degrees of freedom of its error
-    p = float(stats.f.sf(own.f, epsilon * own.df, epsilon * own.error_df))
-    return RepeatedMeasures(tuple(rows), epsilon, p, persons)
+    wide = np.empty(shape)
+    columns = zip((means.person, *means.factors.values()), (people, *levels), strict=True)
+    wide[tuple([names.index(one) for one in column] for column, names in columns)] = means.mean
+    rows, epsilon, corrected = [], [], []
+    for term in crossed(*means.factors):
+        z = wide
+        for axis, name in enumerate(means.factors, start=1):
+            k = shape[axis]
+            basis = np.linalg.qr(np.column_stack((np.ones(k), np.eye(k)[:, 1:])))[0]
+            chosen = basis[:, 1:] if name in parts(term) else basis[:, :1]
+            z = np.moveaxis(np.tensordot(z, chosen, (axis, 0)), -1, axis)
+        z = z.reshape(len(people), -1)
+        d, spread = z.shape[1], np.atleast_2d(np.cov(z.T))
+        scatter, error_df = float(np.trace(spread)), (len(people) - 1) * z.shape[1]
+        if scatter <= ROUNDING**2 * float(np.max(wide**2)):
+            raise DataError("persons react all alike: no scatter", where=term)
+        f = len(people) * float(np.sum(z.mean(axis=0) ** 2)) / scatter
+        rows.append(AnovaRow(term, np.nan, d, f, float(stats.f.sf(f, d, error_df)), error_df))
+        epsilon.append(min(scatter**2 / (d * float(np.sum(spread**2))), 1.0))
+        corrected.append(float(stats.f.sf(f, epsilon[-1] * d, epsilon[-1] * error_df)))
+    return RepeatedMeasures(tuple(rows), tuple(epsilon), tuple(corrected), len(people))

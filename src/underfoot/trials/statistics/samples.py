@@ -9,6 +9,10 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 
+ROUNDING = 1e-12
+"""Differences below this share of the largest value are those of rounding: no instrument reads
+twelve digits."""
+
 KINDS = {
     "welch": "Welch's t test (variances may differ)",
     "pooled": "Student's t test (pooled variance)",
@@ -34,6 +38,19 @@ class TTest:
         return KINDS[self.kind]
 
 
+def resolved(values: ArrayLike) -> np.ndarray:
+    """Return the values, with those that differ by rounding alone made equal (0.3, 0.1 + 0.2)."""
+    x = np.asarray(values, dtype=float)
+    order = np.argsort(x, axis=None)
+    flat = x.ravel()[order]
+    if not len(flat):
+        return x
+    apart = np.diff(flat, prepend=flat[0]) > ROUNDING * np.abs(flat).max()
+    made = np.empty_like(flat)
+    made[order] = flat[np.maximum.accumulate(np.where(apart, np.arange(len(flat)), 0))]
+    return made.reshape(x.shape)
+
+
 def t_test(
     first: ArrayLike, second: ArrayLike, *, kind: str = "welch", confidence: float = 0.95
 ) -> TTest:
@@ -54,7 +71,7 @@ def t_test(
     if kind == "paired" and len(a) != len(b):
         raise DataError(f"{len(a)} against {len(b)} values can't be paired", where=kind)
     scatter = np.ptp(a - b) if kind == "paired" else max(np.ptp(a), np.ptp(b))
-    if scatter == 0:
+    if scatter <= ROUNDING * max(np.abs(a).max(), np.abs(b).max()):
         raise DataError("the samples do not scatter", where=kind)
     test: Any = (
         stats.ttest_rel(a, b)

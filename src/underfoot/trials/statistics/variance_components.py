@@ -21,34 +21,50 @@ _ALIKE = 1e-9  # what is left of a grouping, or of what the data say of its vari
 class VarianceComponents:
     """Fixed effects, variances and what their tests need.
 
-    ``coefficients`` (p,) and ``covariance`` (p, p): of the fixed effects. ``variances``: of each
-    grouping, then of a single value; NaN where a later one is the same in these data. ``slopes``
-    (k, p, p): of ``covariance`` against each variance that is estimated. ``uncertainty`` (k, k):
-    covariance of those.
+    ``coefficients`` (p,) and ``covariance`` (p, p): of the fixed effects, the covariance with what
+    the estimate of the variances adds; ``plain`` is without. ``variances``: of each grouping, then
+    of a single value; NaN where a later one is the same in these data. ``slopes`` (k, p, p): of
+    ``plain`` against each variance that is estimated. ``uncertainty`` (k, k): covariance of those.
     """
 
     coefficients: np.ndarray
     covariance: np.ndarray
+    plain: np.ndarray
     variances: np.ndarray
     slopes: np.ndarray
     uncertainty: np.ndarray
 
-    def error_df(self, contrasts: np.ndarray) -> float:
-        """Return the degrees of freedom of the error of contrasts, shape (p,) or (q, p).
+    def wald_test(self, contrasts: np.ndarray) -> tuple[float, float]:
+        """Return F of q contrasts, shape (q, p), and the degrees of freedom of its error."""
+        q = len(contrasts)
+        value = contrasts @ self.coefficients
+        f = float(value @ np.linalg.solve(contrasts @ self.covariance @ contrasts.T, value)) / q
+        df, factor = self._error(contrasts)
+        return factor * f, df
 
-        Satterthwaite's for one; for several those of Fai and Cornelius.
-        """
-        rows = np.atleast_2d(contrasts)
-        size, turn = np.linalg.eigh(rows @ self.covariance @ rows.T)
-        rows = turn.T @ rows
-        slope = np.einsum("ip,kpq,iq->ik", rows, self.slopes, rows)
-        single = 2.0 * size**2 / np.einsum("ik,kl,il->i", slope, self.uncertainty, slope)
-        if np.ptp(single) <= 1e-6 * single.max():
-            return float(single.mean())
-        if single.min() <= 2.0:
-            return float(single.min())
-        total = float(np.sum(single / (single - 2.0)))
-        return 2.0 * total / (total - len(single))
+    def error_df(self, contrast: np.ndarray) -> float:
+        """Return the degrees of freedom of the error of one contrast, shape (p,)."""
+        return self._error(contrast[None])[0]
+
+    def _error(self, contrasts: np.ndarray) -> tuple[float, float]:
+        """Return degrees of freedom and what F is multiplied by, after Kenward and Roger."""
+        q = len(contrasts)
+        middle = np.linalg.inv(contrasts @ self.plain @ contrasts.T)
+        moved = np.array([middle @ contrasts @ one @ contrasts.T for one in self.slopes])
+        traces = np.trace(moved, axis1=1, axis2=2)
+        first = float(traces @ self.uncertainty @ traces)
+        second = float(np.einsum("kl,kij,lji->", self.uncertainty, moved, moved))
+        b = (first + 6.0 * second) / (2.0 * q)
+        g = ((q + 1.0) * first - (q + 4.0) * second) / ((q + 2.0) * second)
+        c = np.array((g, q - g, q + 2.0 - g)) / (3.0 * q + 2.0 * (1.0 - g))
+        mean = 1.0 - second / q
+        spread = (1.0 + c[0] * b) / ((1.0 - c[1] * b) ** 2 * (1.0 - c[2] * b)) / q
+        ratio = spread * mean**2
+        if not (ratio * q > 1.0 and mean > 0.0):
+            # beyond the range of the expansion: the fewest that a single contrast can have
+            return max(2.0 / second, 1.0), 1.0
+        df = 4.0 + (q + 2.0) / (q * ratio - 1.0)
+        return df, df * mean / (df - 2.0)
 
 
 def variance_components(
@@ -68,9 +84,8 @@ def variance_components(
 
     DataError: a variance that these data can't tell from the fixed effects, or no scatter.
 
-    Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545 (likelihood); F. E. Satterthwaite,
-    Biometrics Bull. 2 (1946) 110, A. H.-T. Fai, P. L. Cornelius, J. Stat. Comput. Simul. 54 (1996)
-    363 (degrees of freedom).
+    Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545 (likelihood); M. G. Kenward, J. H.
+    Roger, Biometrics 53 (1997) 983 (tests).
     """
     free, middle = float(count.sum() - len(mean)), float(mean.mean())
     scale = float(np.sqrt((np.sum(count * (mean - middle) ** 2) + squares) / count.sum()))
@@ -97,13 +112,14 @@ def variance_components(
         if np.abs(step * np.sqrt(np.diagonal(state.expected))).max() <= _CLOSE:
             variances = np.full(len(parts), np.nan)
             variances[kept] = scale**2 * theta
-            known = np.linalg.eigvalsh(state.observed)[0] > 0
-            information = state.observed if known else state.expected
+            uncertainty = np.linalg.inv(state.expected)
+            plain = state.covariance
+            added = 2.0 * np.einsum("kl,klpq->pq", uncertainty, state.bends)
             coefficients = scale * state.coefficients
             coefficients[0] += middle
             return VarianceComponents(
-                coefficients, scale**2 * state.covariance, variances, state.slopes,
-                scale**4 * np.linalg.inv(information),
+                coefficients, scale**2 * (plain + added), scale**2 * plain, variances,
+                state.slopes, scale**4 * uncertainty,
             )  # fmt: skip
     raise DataError("no scatter is left to test with", where="mixed model")
 
@@ -127,15 +143,18 @@ def _distinct(parts: Sequence[np.ndarray], single: bool) -> list[int]:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """The likelihood at some variances: deviance, slope and information against each of them."""
+    """The likelihood at some variances: deviance, slope and information against each of them.
+
+    ``slopes`` and ``bends``: of ``covariance`` against each, and against each two.
+    """
 
     deviance: float
     score: np.ndarray
     expected: np.ndarray
-    observed: np.ndarray
     coefficients: np.ndarray
     covariance: np.ndarray
     slopes: np.ndarray
+    bends: np.ndarray
 
     @classmethod
     def of(
@@ -164,7 +183,6 @@ class _State:
         pulls = [project @ part for part in parts]
         pushed = np.array([part @ rest for part in parts])
         expected = 0.5 * np.array([[np.sum(a * b.T) for b in pulls] for a in pulls])
-        observed = pushed @ project @ pushed.T - expected
         score = 0.5 * (pushed @ rest - [np.trace(pull) for pull in pulls])
         deviance = 2.0 * np.log(np.diagonal(root)).sum() + y @ rest
         deviance -= np.linalg.slogdet(covariance)[1]
@@ -172,8 +190,9 @@ class _State:
             deviance += free * np.log(error) + squares / error
             score[-1] += 0.5 * (squares / error - free) / error
             expected[-1, -1] += 0.5 * free / error**2
-            observed[-1, -1] += (squares / error - 0.5 * free) / error**2
         bent = weighed @ covariance
-        slopes = np.array([bent.T @ part @ bent for part in parts])
+        sides = np.array([part @ bent for part in parts])
+        slopes = np.einsum("np,knq->kpq", bent, sides)
+        bends = np.einsum("knp,lnq->klpq", sides, np.einsum("nm,lmq->lnq", project, sides))
         coefficients = covariance @ (weighed.T @ y)
-        return cls(float(deviance), score, expected, observed, coefficients, covariance, slopes)
+        return cls(float(deviance), score, expected, coefficients, covariance, slopes, bends)
