@@ -1,6 +1,6 @@
 """Samples: t tests, straight line, repeatability and reproducibility (ISO 5725-2)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,6 +49,14 @@ def resolved(values: ArrayLike) -> np.ndarray:
     made = np.empty_like(flat)
     made[order] = flat[np.maximum.accumulate(np.where(apart, np.arange(len(flat)), 0))]
     return made.reshape(x.shape)
+
+
+def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
+    """Return p corrected for their number: Holm's method, or another of statsmodels."""
+    from statsmodels.stats.multitest import multipletests
+
+    corrected: Any = multipletests(p, method=method)[1] if p else []
+    return [float(each) for each in corrected]
 
 
 def t_test(

@@ -175,7 +175,7 @@ def equivalence_findings(
             rows.append([*cells, test.not_lower, test.not_higher, p, test.verdict])
         if not rows:
             continue
-        for row, p in zip(rows, corrected_p([float(row[7] or 0.0) for row in rows]), strict=True):
+        for row, p in zip(rows, statistics.corrected_p([float(row[7] or 0.0) for row in rows]), strict=True):
             row[7] = p
         columns = (
             "first", "second", "difference", "90 % low", "90 % high", "p (lower by the margin)",
@@ -190,14 +190,6 @@ def equivalence_findings(
         name = f"equivalence_{response}_{factor}".replace(" ", "_")
         findings.append(finding(name, title, columns, list(map(tuple, rows)), note))
     return findings
-
-
-def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
-    """Return p corrected for their number: Holm's method, or another of statsmodels."""
-    from statsmodels.stats.multitest import multipletests
-
-    corrected: Any = multipletests(p, method=method)[1] if p else []
-    return [float(each) for each in corrected]
 
 
 def rank_findings(
@@ -252,7 +244,7 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     if len({outcome for outcome, *_ in named}) < 2:
         return []
     p = [float(value) for *_, value in named if isinstance(value, float)]
-    both = corrected_p(p), corrected_p(p, "fdr_bh")
+    both = statistics.corrected_p(p), statistics.corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
     columns = ("outcome", "term", "p", "p (Holm)", "p (Benjamini-Hochberg)")
     note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
@@ -331,7 +323,7 @@ def curve_findings(
             rows.append([first, second, len(both), test.threshold, where, test.p, None])
         if not rows:
             continue
-        for row, p in zip(rows, corrected_p(wholes), strict=True):
+        for row, p in zip(rows, statistics.corrected_p(wholes), strict=True):
             row[-1] = p
         columns = (
             "first", "second", "persons", "t beyond chance", "differs at (stance)",
