@@ -31,13 +31,17 @@ class Design:
     trials: int = 1
     label: bool = False
 
-    def study(self, random: np.random.Generator) -> tuple[np.ndarray, dict[str, list[str]], list[str]]:
+    def study(
+        self, random: np.random.Generator
+    ) -> tuple[np.ndarray, dict[str, list[str]], list[str]]:
         """Return responses, factors and persons of one study without a difference.
 
         ``label``: a column of two labels at random, which means nothing.
         """
         cells = list(product(range(self.persons), *map(range, self.levels)))
-        rows = [cell for cell in cells if random.random() >= self.missing for _ in range(self.trials)]
+        rows = [
+            cell for cell in cells if random.random() >= self.missing for _ in range(self.trials)
+        ]
         who, *within = map(np.array, zip(*rows, strict=True))
         y = random.normal(0.2, PERSON, self.persons)[who] + random.normal(0, RESIDUAL, len(rows))
         for column, count in zip(within, self.levels, strict=True):
@@ -95,7 +99,8 @@ def table(studies: int = STUDIES) -> Iterator[str]:
         failed = told.pop("not done")
         words = ", ".join(f"{term} {100 * share:.1f}" for term, share in told.items())
         tail = f"; not done {100 * failed:.1f}" if failed else ""
-        yield f"{design.persons:3} persons, {design.name}, own reaction {design.own:g}: {words}{tail}"
+        name = f"{design.persons:3} persons, {design.name}, own reaction {design.own:g}"
+        yield f"{name}: {words}{tail}"
 
 
 def main() -> None:

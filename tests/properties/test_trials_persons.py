@@ -43,9 +43,9 @@ def test_mixed_model_of_complete_data_is_repeated_measures():
     (test,), (row,) = mixed.tests, repeated.rows
     assert (test.df, test.error_df) == (row.df, row.error_df) == (2, 22)
     assert test.f == pytest.approx(row.f, rel=1e-6)
-    assert repeated.epsilon is not None
-    assert 0.5 <= repeated.epsilon <= 1.0
-    assert repeated.p_corrected > row.p
+    (epsilon,), (corrected,) = repeated.epsilon, repeated.p_corrected
+    assert 0.5 <= epsilon <= 1.0
+    assert corrected > row.p
     # The plain analysis of variance gives another F: trials are not persons.
     plain = analysis_of_variance(y, {"shoe": shoe})["shoe"]
     assert plain.error_df == 141

@@ -109,13 +109,12 @@ def paired_curve_test(first: ArrayLike, second: ArrayLike, *, alpha: float = 0.0
     return CurveTest(t, u, fwhm, tuple(clusters), whole, n, still)
 
 
-def smoothness(residuals: np.ndarray, moves: np.ndarray | None = None) -> float:
+def smoothness(residuals: np.ndarray, moves: np.ndarray) -> float:
     """Return the full width at half maximum (samples) of residuals (persons, m).
 
     fwhm = sqrt(4 ln 2) / mean of sqrt(sum of squared gradients / sum of squares), over the samples
     that move, ``moves`` (m,); gradients are those between them.
     """
-    moves = (residuals**2).sum(axis=0) > 0 if moves is None else moves
     at = np.flatnonzero(moves)
     gradient = np.gradient(residuals[:, at], at.astype(float), axis=1)
     rate = np.sqrt((gradient**2).sum(axis=0) / (residuals[:, at] ** 2).sum(axis=0))

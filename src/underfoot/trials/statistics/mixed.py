@@ -133,6 +133,9 @@ def mixed_model(
         raise DataError(
             notes[0], where=name, remedy="Name fewer factors, or leave out interactions"
         )
+    if np.linalg.matrix_rank(built.matrix) < built.matrix.shape[1]:
+        text = "conditions that can't be told apart"
+        raise DataError(text, where=name, remedy="Leave one out (told_apart says which)")
     people = tuple(dict.fromkeys(means.person))
     within = frozenset(
         factor

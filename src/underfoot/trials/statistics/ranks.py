@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
+from .linear import Pair
 from .mixed import person_means
 from .samples import ROUNDING, corrected_p, resolved
 
@@ -21,21 +22,12 @@ _ORDERS = 100_000  # orders of several groups up to which all are counted, else 
 
 
 @dataclass(frozen=True, slots=True)
-class PairedRanks:
-    """Two levels: the median of their differences, and p after Holm."""
-
-    first: str
-    second: str
-    difference: float
-    p: float
-
-
-@dataclass(frozen=True, slots=True)
 class RankTest:
     """Name of the test, its statistic, p (two-sided), and how many persons it compares.
 
     ``how``: "exact" (all orders counted), "drawn" (random orders; ``p_error`` is the standard error
-    of p) or "large sample". ``pairs``: of three levels and more, each two, p after Holm.
+    of p) or "large sample". ``pairs``: of three levels and more, each two: the
+    median of their differences, p after Holm.
     """
 
     name: str
@@ -44,7 +36,7 @@ class RankTest:
     persons: int
     how: str = "exact"
     p_error: float | None = None
-    pairs: tuple[PairedRanks, ...] = ()
+    pairs: tuple[Pair, ...] = ()
 
 
 def rank_test(
@@ -85,15 +77,15 @@ def rank_test(
         words = f"{fewest} persons have every level" if several else "fewer than three in a level"
         allowed = "five or more" if several else "three or more"
         raise DataError(words, where="rank test", allowed=allowed)
-    whole = _of_two(*columns, several) if len(names) == 2 else _of_many(columns, several)
     if len(names) == 2:
-        return replace(whole, persons=len(table))
+        return replace(_of_two(columns[0], columns[1], several), persons=len(table))
+    whole = _of_many(columns, several)
     couples = list(combinations(range(len(names)), 2))
     single = [_of_two(columns[i], columns[j], several).p for i, j in couples]
     pairs = []
     for (i, j), p in zip(couples, corrected_p(single), strict=True):
         shift = columns[i] - columns[j] if several else np.subtract.outer(columns[i], columns[j])
-        pairs.append(PairedRanks(names[i], names[j], float(np.median(shift)), p))
+        pairs.append(Pair(names[i], names[j], float(np.median(shift)), p))
     return replace(whole, persons=len(table), pairs=tuple(pairs))
 
 
@@ -101,14 +93,16 @@ def _of_two(a: np.ndarray, b: np.ndarray, several: bool) -> RankTest:
     """Return Wilcoxon's test of pairs (without those that are equal), or Mann and Whitney's."""
     from scipy import stats
 
+    difference = a - b if several else np.zeros(0)
     if several:
-        difference = resolved(np.concatenate((a - b, b - a)))[: len(a)]
-        difference[np.abs(difference) <= ROUNDING * max(np.abs(a).max(), np.abs(b).max())] = 0.0
-        size, above = np.abs(difference), difference > 0
-        ranks, chosen = stats.rankdata(resolved(size[size > 0])), None
-        if not len(ranks):
+        largest = max(np.abs(a).max(), np.abs(b).max())
+        difference = difference[np.abs(difference) > ROUNDING * largest]
+        if not len(difference):
             raise DataError("no person differs between the levels", where="rank test")
-        up = float(ranks[above[size > 0]].sum())
+        # sizes are as exact as what they are differences of
+        sizes = resolved(np.append(np.abs(difference), largest))[:-1]
+        ranks, chosen = stats.rankdata(sizes), None
+        up = float(ranks[difference > 0].sum())
         name, statistic, observed = "Wilcoxon signed ranks W", min(up, ranks.sum() - up), up
     else:
         ranks, chosen = stats.rankdata(np.concatenate((a, b))), len(a)

@@ -84,8 +84,8 @@ def variance_components(
 
     DataError: a variance that these data can't tell from the fixed effects, or no scatter.
 
-    Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545 (likelihood); M. G. Kenward, J. H.
-    Roger, Biometrics 53 (1997) 983 (tests).
+    Source: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545 (likelihood); M. G. Kenward,
+    J. H. Roger, Biometrics 53 (1997) 983 (tests).
     """
     free, middle = float(count.sum() - len(mean)), float(mean.mean())
     scale = float(np.sqrt((np.sum(count * (mean - middle) ** 2) + squares) / count.sum()))
@@ -98,7 +98,8 @@ def variance_components(
     state = _State.of(theta, *data)
     told = np.sqrt(np.diagonal(state.expected)) if state is not None else np.zeros(1)
     if state is None or told.min() < _ALIKE * told.max() or _singular(state.expected, told):
-        raise DataError("so few persons leave nothing to estimate a scatter from", where="mixed model")
+        text = "so few persons leave nothing to estimate a scatter from"
+        raise DataError(text, where="mixed model")
     for _ in range(_STEPS):
         step = np.linalg.solve(state.expected, state.score)
         for _ in range(_HALVINGS):
