@@ -40,11 +40,11 @@ class VarianceComponents:
         value = contrasts @ self.coefficients
         f = float(value @ np.linalg.solve(contrasts @ self.covariance @ contrasts.T, value)) / q
         df, factor = self._error(contrasts)
-        return factor * f, df
+        return float(factor * f), float(df)
 
     def error_df(self, contrast: np.ndarray) -> float:
         """Return the degrees of freedom of the error of one contrast, shape (p,)."""
-        return self._error(contrast[None])[0]
+        return float(self._error(contrast[None])[0])
 
     def _error(self, contrasts: np.ndarray) -> tuple[float, float]:
         """Return degrees of freedom and what F is multiplied by, after Kenward and Roger."""
