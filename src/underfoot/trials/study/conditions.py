@@ -45,8 +45,8 @@ _RANGES = {
 """Least and largest number, its unit, and headings with a unit, by the name of a column."""
 _ANGLES = QUANTITIES["angle"]
 _SCALE = re.compile(
-    r"(shore|asker)[ -]?(a|am|b|c|d|do|e|m|o|oo|0|00|000)?|irhd|ptv|srv|bpn|hr[a-z]|h[vb]|ra|points?"
-    r"|scores?|steps?|count|#|n|no|nr",
+    r"(shore|asker)[ -]?(a|am|b|c|d|do|e|m|o|oo|0|00|000)?|irhd|ptv|srv|bpn|hr[a-z]|points?|scores?"
+    r"|count|#|no|nr",
     re.IGNORECASE,
 )
 """Scales that have no SI unit: their numbers stay as they are."""

@@ -15,6 +15,7 @@ from ..recording.protocols import Protocol
 from ..statistics import precision
 from . import tables
 from .boundary import alpha_beta, friction_split
+from .circumstances import circumstance_table
 from .conditions import NUMBERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
@@ -318,6 +319,8 @@ def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
         # The table of all trials says nothing that one by conditions does not.
         table = condition_table(files, (), numbers, person=person)
         made = [table] if table else []
+    walked = circumstance_table(files, keys, person)
+    made += [walked] if walked else []
     findings, curves = slip_findings(files, protocol, keys)
     return Study((*made, tables.steps_table(files)), tuple(findings), curves)
 
@@ -345,6 +348,8 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     made = [table] if table else []
     if len(factors) > 1:
         made += _condition_tables(with_rcof, tuple(factors), numbers, person)
+    walked = circumstance_table(with_rcof, tuple(factors), person)
+    made += [walked] if walked else []
     if person:
         made.append(_person_table(with_rcof, tuple(factors), person))
     return Study((*made, tables.steps_table(files)), tuple(findings))
