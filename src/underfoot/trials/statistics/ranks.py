@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import combinations, permutations
 from math import factorial, prod
 from typing import Any
@@ -163,7 +164,7 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
     count = factorial(len(twice)) // prod(map(factorial, sizes))
     name = "Kruskal-Wallis H"
     if count <= _ORDERS:
-        sums = _group_sums(tuple(twice.tolist()), tuple(sizes))
+        sums = _group_sums(tuple(sorted(twice.tolist())), tuple(sizes))
         far = float(np.mean(spread(np.array(sums, dtype=float)) >= least))
         return RankTest(name, statistic, far, 0)
     draws = np.random.default_rng(0).permuted(np.tile(twice, (_ORDERS, 1)), axis=1)
@@ -172,6 +173,7 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
     return RankTest(name, statistic, far, 0, "drawn", float(np.sqrt(far * (1.0 - far) / _ORDERS)))
 
 
+@lru_cache(maxsize=16)
 def _group_sums(ranks: tuple[int, ...], sizes: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Return the sums of ranks in each group, for each way to deal them out."""
     if len(sizes) == 1:

@@ -14,6 +14,7 @@ import numpy as np
 from underfoot.core import DataError
 
 _STEPS, _HALVINGS, _CLOSE = 100, 40, 1e-9
+_LEAST = 1e-8  # standard deviation over that of all values: below is rounding
 _ALIKE = 1e-9  # what is left of a grouping, or of what the data say of its variance: rounding
 
 
@@ -174,7 +175,7 @@ class _State:
         except np.linalg.LinAlgError:
             return None
         error = theta[-1]
-        if free and error <= 0:
+        if np.diagonal(root).min() < _LEAST or (free and error < _LEAST**2):
             return None
         inverse = np.linalg.inv(variance)
         weighed = inverse @ x

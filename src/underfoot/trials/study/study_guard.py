@@ -361,8 +361,12 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     within, between = {}, {}
     for name in names:
         values = [np.log(body[name]) for body in usual.values() if body.get(name, 0.0) > 0.0]
-        off = [np.log(b[name] / usual[who][name]) for who, own in bodies.items() for b in own
-               if len(own) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0]  # fmt: skip
+        off = [
+            np.log(b[name] / usual[who][name])
+            for who, own in bodies.items()
+            for b in own
+            if len(own) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
+        ]
         if len(off) < 3 or len(values) < 2:
             continue
         within[name] = max(1.4826 * float(np.median(np.abs(off))), _SAME)
@@ -383,8 +387,11 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A person whose difference of two levels is that of all others with its sign turned."""
     for key, having in _compared(files, person).items():
-        values = [(str(o.conditions[person]), str(o.conditions[key]), np.log(o.main["rcof"]))
-                  for o in having if person in o.conditions and o.main.get("rcof", 0.0) > 0.0]  # fmt: skip
+        values = [
+            (str(o.conditions[person]), str(o.conditions[key]), np.log(o.main["rcof"]))
+            for o in having
+            if person in o.conditions and o.main.get("rcof", 0.0) > 0.0
+        ]
         cells: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
         for who, level, value in values:
             cells[who][level].append(float(value))

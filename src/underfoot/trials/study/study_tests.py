@@ -42,21 +42,21 @@ def comparison_findings(
     """Return tests of factors on a response, and Tukey's comparisons of the levels.
 
     Factors that can't be told apart are named, and all but one of them left out. Where persons
-    repeat, repeated measures come first where every person has every condition, and the mixed
-    model; Tukey's comparisons are then its. The analysis of variance
-    that takes trials as independent follows with a warning. Otherwise it stands alone. Rank tests
-    follow where the scatter is not normal, tests of equivalence where there is a ``margin``, and
-    the reliability of repeated trials.
+    repeat, repeated measures come first where every person has every condition, then the mixed
+    model; Tukey's comparisons are its. The analysis of variance that takes trials as independent
+    follows with a warning. Otherwise it stands alone. Rank tests follow where the scatter is not
+    normal, tests of equivalence where there is a ``margin``, and the reliability of repeated
+    trials.
     """
+    factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
+    if not factors:
+        return repeated
     if margin:
         repeated = [*equivalence_findings(response, values, factors, persons, margin), *repeated]
     repeated = [*rank_findings(response, values, factors, persons), *repeated]
     warning = statistics.independence_warning(persons)
     name = quantity_name(response)
-    factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
-    if not factors:
-        return repeated
     findings, model = _mixed(response, values, factors, persons) if warning else ([], None)
     try:
         table = _crossed(
