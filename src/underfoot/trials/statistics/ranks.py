@@ -164,8 +164,8 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
     count = factorial(len(twice)) // prod(map(factorial, sizes))
     name = "Kruskal-Wallis H"
     if count <= _ORDERS:
-        sums = _group_sums(tuple(sorted(twice.tolist())), tuple(sizes))
-        far = float(np.mean(spread(np.array(sums, dtype=float)) >= least))
+        sums = _all_sums(tuple(sorted(twice.tolist())), tuple(sizes))
+        far = float(np.mean(spread(sums) >= least))
         return RankTest(name, statistic, far, 0)
     draws = np.random.default_rng(0).permuted(np.tile(twice, (_ORDERS, 1)), axis=1)
     sums = np.add.reduceat(draws, [0, *ends.tolist()], axis=1)
@@ -173,7 +173,11 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
     return RankTest(name, statistic, far, 0, "drawn", float(np.sqrt(far * (1.0 - far) / _ORDERS)))
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=4)
+def _all_sums(ranks: tuple[int, ...], sizes: tuple[int, ...]) -> np.ndarray:
+    return np.array(_group_sums(ranks, sizes), dtype=float)
+
+
 def _group_sums(ranks: tuple[int, ...], sizes: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Return the sums of ranks in each group, for each way to deal them out."""
     if len(sizes) == 1:
