@@ -18,11 +18,11 @@ _SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
 in the session from which a condition goes with it; assumed."""
 
 
-def walking_speed(one: FileResult) -> float | None:
+def walking_speed(result: FileResult) -> float | None:
     """Return the mean speed (m/s) of the steps of a file that count, or None."""
     speeds = [
         float(step["walking_speed"])
-        for step in one.steps
+        for step in result.steps
         if step.get("rcof") is not None and step.get("walking_speed") is not None
     ]
     return float(np.mean(speeds)) if speeds else None
@@ -47,8 +47,8 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
     return places
 
 
-def _number(one: FileResult, key: str) -> float | None:
-    text = str(one.conditions.get(key, "")) if key else one.file.rsplit(".", 1)[0]
+def _number(result: FileResult, key: str) -> float | None:
+    text = str(result.conditions.get(key, "")) if key else result.file.rsplit(".", 1)[0]
     found = re.search(r"(\d+)(\.0+)?$", text)
     return float(found[1]) if found else None
 
