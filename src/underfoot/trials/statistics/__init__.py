@@ -56,6 +56,7 @@ from .samples import OutlierTest as OutlierTest
 from .samples import Precision as Precision
 from .samples import TTest as TTest
 from .samples import corrected_p as corrected_p
+from .samples import drift as drift
 from .samples import mean_interval as mean_interval
 from .samples import precision as precision
 from .samples import regression_line as regression_line

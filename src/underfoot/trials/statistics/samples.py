@@ -91,6 +91,22 @@ def t_test(
     return TTest(kind, *map(float, numbers))
 
 
+def drift(values: ArrayLike, *, alpha: float = 0.01, least: float = 0.05) -> float | None:
+    """Return the rise over a series of readings as a share of their mean, or None where none is.
+
+    The slope of a straight line over the order, where t calls it significant at ``alpha`` and the
+    rise is ``least`` of the mean and more: a floor that was not cleaned, a fluid that dries.
+
+    ``values``: shape (n,), in the order in which they were read; None from fewer than four.
+    """
+    x = resolved(values)
+    if len(x) < 4 or x.mean() == 0 or np.ptp(x) == 0:
+        return None
+    line = regression_line(np.arange(len(x)), x)
+    rise = line.slope * (len(x) - 1) / abs(float(x.mean()))
+    return rise if line.p < alpha and abs(rise) >= least else None
+
+
 def mean_interval(
     values: ArrayLike, *, positive: bool = False, confidence: float = 0.95
 ) -> tuple[float, float] | None:

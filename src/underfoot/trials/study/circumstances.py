@@ -47,6 +47,17 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
     return places
 
 
+def run_numbers(files: Sequence[FileResult]) -> dict[str, float]:
+    """Return the place of each file in the order of runs: by a column, else by its name."""
+    for key in (*ORDERS, ""):
+        numbers = [_number(one, key) for one in files]
+        known = [number for number in numbers if number is not None]
+        if len(known) == len(files) == len(set(known)):
+            return {one.file: number for one, number in zip(files, known, strict=True)}
+    names = sorted(one.file for one in files)
+    return {one.file: float(names.index(one.file)) for one in files}
+
+
 def _number(result: FileResult, key: str) -> float | None:
     text = str(result.conditions.get(key, "")) if key else result.file.rsplit(".", 1)[0]
     found = re.search(r"(\d+)(\.0+)?$", text)

@@ -15,6 +15,7 @@ from ..readers.text import is_number
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import TesterCalibration
+from ..statistics import drift
 from .conditions import LARGEST, QUANTITIES, one_spelling, table_columns
 from .file_result import Draft, FileResult, refer_to
 from .floor_classes import class_scheme
@@ -195,6 +196,11 @@ def _one_sample(
         flags.append(
             caution(f"readings differ by {np.ptp(readings):g}, expected at most {widest:g}")
         )
+    rise = drift(readings)
+    if rise is not None:
+        way = "rise" if rise > 0 else "fall"
+        words = f"readings {way} by {100 * abs(rise):.0f} % from the first to the last"
+        flags.append(caution(f"{words}: is the floor cleaned, does the fluid dry, does it wear?"))
     missing = [
         asked
         for asked in protocol.texts("noted")

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ..recording.protocols import Protocol
-from ..statistics import told_apart
-from .circumstances import ORDERS, gone_with
+from ..statistics import drift, told_apart
+from .circumstances import ORDERS, gone_with, run_numbers
 from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
@@ -156,7 +156,7 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
         doubts += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
         doubts += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
     if protocol.kind == "slip_tester":
-        doubts += _repeats(usable, protocol)
+        doubts += [*_repeats(usable, protocol), *_drifts(usable, protocol)]
     if protocol.kind in ("slip_tester", "readings"):
         doubts += _not_on_record(usable, protocol)
     return doubts
@@ -531,6 +531,19 @@ def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]
             if away > max(6.0 * usual, 0.15 * middle):
                 words = f"COF {one.main['cof']:.3f} against {middle:.3f} of the other repeats"
                 yield Doubt(f"{', '.join(level)}: {words}: gain or sample?", (one.file,))
+
+
+def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
+    """Repeats of one shoe, floor and fluid that rise or fall from the first to the last."""
+    keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
+    for level, own in grouped([f for f in files if "cof" in f.main], keys).items():
+        places = run_numbers(own)
+        rise = drift([one.main["cof"] for one in sorted(own, key=lambda f: places[f.file])])
+        if rise is not None:
+            way = "rises" if rise > 0 else "falls"
+            words = f"COF {way} by {100 * abs(rise):.0f} % from the first run to the last: is the "
+            words += "floor cleaned, does the fluid dry, does the sole wear?"
+            yield Doubt(f"{', '.join(level) or 'all runs'}: {words}", _names(own))
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
