@@ -5,6 +5,8 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.statistics import drift
+from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.conditions import conditions_of
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
@@ -180,3 +182,47 @@ def test_units_of_friction_and_scales_are_known(tmp_path):
     assert noted["acof"] == pytest.approx(0.21)
     assert noted["hardness"] == 67
     assert noted["ramp angle"] == pytest.approx(np.radians(18))
+
+
+def readings(tmp_path, name, text):
+    (tmp_path / "table.csv").write_text(text)
+    return analyse_folder(tmp_path, protocol(name), processes=1)
+
+
+def test_a_tile_has_one_class_of_all_who_walked_on_it(tmp_path):
+    rows = "".join(
+        f"tile,{who},{a}\n" for who, a in (("A", 19.2), ("A", 18.9), ("B", 18.9), ("B", 18.8))
+    )
+    found = readings(tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\n" + rows)
+    tables = {table.name: table for table in found.study.tables}
+    assert "class" not in tables["samples"].columns
+    (row,) = tables["walkers"].rows
+    told = dict(zip(tables["walkers"].columns, row, strict=True))
+    assert (told["class"], told["2 u reaches"]) == ("R10", "R11")
+    assert told["angle (deg)"] == pytest.approx(18.95)
+    alone = readings(tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\ntile,A,20\ntile,A,21\n")
+    (row,) = next(table for table in alone.study.tables if table.name == "walkers").rows
+    assert "1 of 2" in row
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ((0.120, 0.108, 0.096, 0.084), True), ((0.120, 0.132, 0.144, 0.1561), True),
+        ((0.120, 0.119, 0.121, 0.120), False), ((0.12, 0.12, 0.12, 0.12), False),
+        ((0.120, 0.1203, 0.1206, 0.1209), False),
+    ],
+)  # fmt: skip
+def test_readings_that_rise_or_fall_are_said(values, told):
+    assert (drift(values) is not None) == told
+    files = [
+        FileResult(f"run_{i}.csv", main={"cof": value}, conditions={"shoe": "A", "floor": "tile"})
+        for i, value in enumerate(values)
+    ]
+    said = [str(one) for one in study_doubts(files[::-1], protocol("en_iso_13287"))]
+    assert any("from the first run to the last" in text for text in said) == told
+
+
+def test_scatter_is_no_drift():
+    rng = np.random.default_rng(3)
+    assert np.mean([drift(rng.normal(0.2, 0.02, 5)) is not None for _ in range(2000)]) < 0.02
