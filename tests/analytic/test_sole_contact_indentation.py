@@ -171,7 +171,7 @@ def soft_ehl():
         viscosity=viscosity,
         speed=speed,
         normal_force=load,
-        settings=SolverSettings(pool_depth=1.0, start_film=2e-5, steady=True),
+        settings=SolverSettings(pool_depth=1.0, start_film=2e-5, end_time=None),
     )
     film = lubrication.soft_ehl_film(
         viscosity=viscosity,

@@ -141,8 +141,9 @@ def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -
     kept, walked = risk_assessment(fine, result=result, changes=[same, slower]).changes
     for name in ("cof", "fluid_load"):
         assert kept.number(name) == pytest.approx(result.value(name), rel=1e-6)
+    # by draws about the preview of the coarse grid
     assert kept.number("slip_probability") == pytest.approx(
-        result.value("slip_probability"), abs=0.01
+        result.value("slip_probability"), abs=0.02
     )
     assert walked.scalars["cof"] == result.scalars["cof"]
     assert (

@@ -200,7 +200,9 @@ def test_a_tile_has_one_class_of_all_who_walked_on_it(tmp_path):
     told = dict(zip(tables["walkers"].columns, row, strict=True))
     assert (told["class"], told["2 u reaches"]) == ("R10", "R11")
     assert told["angle (deg)"] == pytest.approx(18.95)
-    alone = readings(tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\ntile,A,20\ntile,A,21\n")
+    alone = readings(
+        tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\ntile,A,20\ntile,A,21\n"
+    )
     (row,) = next(table for table in alone.study.tables if table.name == "walkers").rows
     assert "1 of 2" in row
 

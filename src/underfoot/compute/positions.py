@@ -21,6 +21,7 @@ from .numbers import scalars
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import file_surface, tread_on_sole
+from .steadiness import later_numbers
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
@@ -416,6 +417,7 @@ def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, case.motion.speed)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     numbers, _ = scalars(case, contact, friction, sensor)
+    numbers |= later_numbers(parts, contact)
     return {
         name: each.value
         for name, each in numbers.items()

@@ -57,6 +57,8 @@ RESOLVED = 8
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
 LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+SUMMITS = 3.0
+"""Times Rq: how far summits stand out of the mean plane."""
 FOREFOOT_RIGID = Range(
     math.radians(-7.5),
     math.radians(60.0),
@@ -456,6 +458,17 @@ def forefoot_breaches(case: Case, sole: SoleMap) -> list[Breach]:
     name = "shoe angle of a sole whose forefoot does not bend"
     return breaches(
         "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}
+    )
+
+
+def tread_breaches(sole: SoleMap, rq: float) -> list[Breach]:
+    """Return whether the summits of a roughness of ``rq`` (m) fill the channels of a tread."""
+    depth = float(sole.tread_depth.max())
+    deeper = Range(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
+    return (
+        breaches("tread", {"depth of the channels": deeper}, {"depth of the channels": depth})
+        if depth
+        else []
     )
 
 

@@ -248,7 +248,6 @@ def solver_settings(
         start_film=motion.start_film,
         rise_time=motion.force_rise_time,
         end_time=motion.end_time,
-        steady=motion.to_steady_state,
         tolerance=case.numerics.tolerance,
         film=None if isinstance(film, NewtonianFilm) else film,
     )
@@ -282,7 +281,9 @@ def solved_motion(
     }
     if history is not None:
         return solve_history(*on, history, map_angle=motion.shoe_angle, **common)
-    return solve_sliding(*on, speed=motion.speed, normal_force=motion.normal_force, **common)
+    return solve_sliding(
+        *on, speed=motion.sliding_speed, normal_force=motion.normal_force, **common
+    )
 
 
 def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list[SoleContact]:
@@ -301,10 +302,10 @@ def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list
         parts.compliance,
         parts.asperities,
         viscosity=parts.viscosity,
-        speed=parts.case.motion.speed,
+        speed=parts.case.motion.sliding_speed,
         normal_force=parts.case.motion.normal_force,
         turn=turn,
-        duration=settings.end_time,
+        duration=start.time,
         steps=2,
         settings=settings,
         inlet=_inlet(parts),

@@ -73,7 +73,13 @@ class SlipPopulation(Presentable):
                 "One walker has no spread, so no interval.",
             )
         share, low, high = study.slipped()
-        floor = "" if self.wet else " The case has no fluid: no film."
+        floor = " The case has no fluid: no film."
+        if self.wet:
+            start = quantity_text(study.setting.settings.start_film, "m")
+            floor = (
+                f" The film that a heel traps at touch-down hangs on its assumed height of {start} "
+                "when loading begins, which is not drawn."
+            )
         return (
             f"{round(share * count)} of {count} walkers slip (heel faster than 0.2 m/s): "
             f"{percent(share)} (95 %: {percent(low)} to {percent(high)}).",

@@ -53,7 +53,6 @@ QUICK_DEPTHS = (0.0, 0.3e-3, 0.8e-3, 1.5e-3, 3.0e-3)
 DECIDING = (
     "shoe.heel.facet_angle",
     "interface.roughness_beyond_cutoff",
-    "motion.start_film",
     "shoe.tread.lug_width",
 )
 """Open inputs varied under treaded shoes, where others move readings near 0 by less, and with
