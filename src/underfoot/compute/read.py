@@ -86,6 +86,7 @@ def readings(
     remarks = {
         "drainage": drainage.advice() if drainage else "",
         "overload": numbers.overload_words(overload),
+        "slope": numbers.slope_words(case),
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)

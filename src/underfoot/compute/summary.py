@@ -55,6 +55,7 @@ LUGS_SHOWN = 6
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "film_spread": "Spread of the film",
+    "slope": "Slope",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
     "grid_error": "Numerical error",
