@@ -68,8 +68,8 @@ class Condition:
 
     ``cof`` is the mean over the method's averaging window with the standard deviation of the
     friction law and of the open inputs; ``low`` and ``high`` bound 95 % of it. ``probability`` is
-    that of ``cof`` at or above ``limit``, by the same spread; None where the method sets no limit or where the COF was
-    not determined.
+    that of ``cof`` at or above ``limit``, by the same spread; None where the method sets no limit
+    or where the COF was not determined.
     """
 
     name: str

@@ -355,7 +355,7 @@ def conclusions(studies: Mapping[str, SlipStudy], passages: Mapping[str, Array])
     return (
         f"Treaded: {100 * tread.of('slipped').mean():.0f} % slip here, nobody in the report.",
         f"Untreaded: {100 * bare.of('slipped').mean():.0f} % slip. Tread takes the fluid pressure "
-        f"at the sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa with nothing else changed.",
+        f"at the sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa, all else alike.",
         f"Mean peak speed untreaded if 0.06 / 0.114 / 0.17 of the body moved: {text} m/s.",
         f"{passages['peak'].size} passages of a heel over a sensor stand behind Table 7.",
     )
