@@ -21,15 +21,15 @@ import numpy as np
 import psutil
 
 from underfoot.compute.run import run
-from underfoot_design_studies import Study, StudyResult
-from underfoot_design_studies.computing import crashed
-from underfoot_design_studies.engines import engine
-from underfoot_design_studies.plan import StudyPlan
-from underfoot_design_studies.record import Job, Record
-from underfoot_design_studies.result import Design
-from underfoot_design_studies.status import study_status
-from underfoot_design_studies.study_file import read_plan
-from underfoot_design_studies.surrogate import fitted
+from underfoot.explore import Study, StudyResult
+from underfoot.explore.computing import crashed
+from underfoot.explore.engines import engine
+from underfoot.explore.plan import StudyPlan
+from underfoot.explore.record import Job, Record
+from underfoot.explore.result import Design
+from underfoot.explore.status import study_status
+from underfoot.explore.study_file import read_plan
+from underfoot.explore.surrogate import fitted
 
 from .study_store import jobs, record
 
@@ -160,7 +160,7 @@ def numbers(result: StudyResult) -> dict[str, tuple[object, ...]]:
 
 def ready() -> Iterator[str]:
     """Yield the CPU time until a worker is ready for its first case."""
-    code = "import time, underfoot_design_studies.computing; print(time.process_time())"
+    code = "import time, underfoot.explore.computing; print(time.process_time())"
     runs = [
         float(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout)
         for _ in range(3)

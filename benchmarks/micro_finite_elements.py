@@ -12,16 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.material import RelaxationSpectrum
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
     MicroMaterial,
     MicroSurface,
 )
-from underfoot_block._kernels import generate, names
-from underfoot_block.assembly import Assembly, assembled
+from underfoot.block._kernels import generate, names
+from underfoot.block.assembly import Assembly, assembled
+from underfoot.material import RelaxationSpectrum
 
 MESHES = ((26, 16, 9), (64, 40, 20), (128, 80, 50))
 """The report's block, then about 51 000 and 512 000 elements."""

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot_design_studies import proposals
-from underfoot_design_studies.result import StudyResult
+from underfoot.explore import proposals
+from underfoot.explore.result import StudyResult
 
 SEEDS = int(os.environ.get("UNDERFOOT_BENCH_SEEDS", "8"))
 BUDGET = int(os.environ.get("UNDERFOOT_BENCH_CASES", "40"))

@@ -5,8 +5,8 @@ import tomllib
 from pathlib import Path
 
 from benchmarks._table import Row
-from underfoot_places.choice import chosen
-from underfoot_places.place import place_of
+from underfoot.places.choice import chosen
+from underfoot.places.place import place_of
 
 KITCHEN = Path(__file__).parents[1] / "examples" / "places" / "kitchen.toml"
 FLUIDS = {"dry": 0.8, "water": 0.06, "detergent": 0.05, "canola_oil": 0.05, "glycerol_50pct": 0.04}

@@ -3,8 +3,8 @@
 import tomllib
 from pathlib import Path
 
-from underfoot_places.choice import chosen
-from underfoot_places.place import place_of
+from underfoot.places.choice import chosen
+from underfoot.places.place import place_of
 
 FOLDER = Path(__file__).parents[1] / "examples" / "places"
 PLACES = ("hospital_corridor", "kitchen")

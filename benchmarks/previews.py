@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from underfoot import Case, run
+from underfoot.app.run_preview import preview_of_run
 from underfoot.core import UnderfootError
-from underfoot_app.run_preview import preview_of_run
 
 EXAMPLES = (
     "athletic_shoe_full_tread_detergent",

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot_design_studies.live import PAGE, write_live_page
-from underfoot_design_studies.plan import StudyPlan
-from underfoot_design_studies.record import Ending, Job, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore.plan import StudyPlan
+from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
+from underfoot.report.live_study import PAGE, write_live_page
 
 from .study_store import OUTPUTS
 

@@ -26,10 +26,10 @@ from typing import Any
 
 import numpy as np
 
-from underfoot_design_studies.record import Ending, Job, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CASES = int(os.environ.get("UNDERFOOT_BENCH_CASES", "20000"))
@@ -155,7 +155,7 @@ def in_process(function: Callable[..., None], folder: Path, count: int = 1) -> l
 
 def main() -> None:
     """Print CPU, operations, memory and opening time."""
-    from underfoot_design_studies import records
+    from underfoot.explore import records
 
     print(f"{CASES} made-up cases, 40 numbers and 500 draws each; {WORKERS} workers")
     with tempfile.TemporaryDirectory() as place:

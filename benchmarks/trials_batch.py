@@ -9,11 +9,11 @@ from pathlib import Path
 
 import psutil
 
-from underfoot.trials.protocols import protocol
-from underfoot_simulator import simulated_folder
-from underfoot_simulator.folder import NAMES
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.report import STORE, write_trials_report
+from underfoot.trials.pages.report import STORE, write_trials_report
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.simulator.folder import NAMES
+from underfoot.trials.study import analyse_folder
 
 TRIALS = 500
 WALKS = 2004

@@ -30,8 +30,8 @@ from underfoot.trials import (
     required_frictions,
     walkway_of,
 )
-from underfoot.trials.likelihood import UNLIKELY, Reference, references
-from underfoot.trials.step_features import _PELVIS, VERTICAL, _shapes, step_features
+from underfoot.trials.walking.likelihood import UNLIKELY, Reference, references
+from underfoot.trials.walking.step_features import _PELVIS, VERTICAL, _shapes, step_features
 
 REPOSITORY = Path(__file__).parents[1]
 DATA = REPOSITORY / "tests" / "data" / "trials"
@@ -142,7 +142,7 @@ def learned(rows: Sequence[tuple[int, dict[str, float]]]) -> tuple[Reference, ..
 def features_of(trial: Trial) -> list[dict[str, float]]:
     """Features of the steps of a trial, whatever the packaged reference says of them."""
     walk = walkway_of(trial)
-    with patch("underfoot.trials.likelihood.references", tuple):
+    with patch("underfoot.trials.walking.likelihood.references", tuple):
         steps = required_frictions(walk)
     return [step_features(walk, s.stance) for s in steps if s.measurement.value is not None]
 
@@ -407,7 +407,7 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
     for seed, (index, (laboratory, trial)) in itertools.product(seeds, enumerate(cases)):
         rng = draws[seed]
         others = learned([(person, f) for lab, person, f in rows if lab != laboratory])
-        with patch("underfoot.trials.likelihood.references", lambda known=others: known):
+        with patch("underfoot.trials.walking.likelihood.references", lambda known=others: known):
             plain = _verdicts(trial)
             for kind, made in (
                 ("recorded", [trial] if seed == seeds[0] else []),

@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 from pages import ROOT, blocks_of, command_output, reader
 from web_app import begin, drawn, page_of, served
 
-from underfoot_places.choice import chosen
-from underfoot_places.place import read_place
+from underfoot.places.choice import chosen
+from underfoot.places.place import read_place
 
 IMAGES = ROOT / "docs" / "images"
 

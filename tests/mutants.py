@@ -64,7 +64,7 @@ SAMPLED, SPREAD = "friction/sampled_cof.py", "friction/propagation.py"
 PAIR, EDGES = "friction/pair_contact.py", "sole_contact/lug_edges.py"
 WORN, SLIDE, SLIPS = "shoe/worn/archard.py", "trials/slip_friction.py", "trials/slips.py"
 STRIKE, PATIR, WALKER = "film/pad_strike.py", "film/patir_cheng_1978.py", "slip/dynamics/walker.py"
-LAW, TREADS = "wings/studies/underfoot_studies/pair_law.py", "friction/tread_error.py"
+LAW, TREADS = "wings/studies/underfoot.studies/pair_law.py", "friction/tread_error.py"
 
 # what earlier tests let pass
 SURVIVORS = (

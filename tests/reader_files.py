@@ -14,12 +14,12 @@ from underfoot.case import Case, load
 from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import UnderfootError
+from underfoot.explore.study_file import load_plan
 from underfoot.material import read
 from underfoot.shoe.files.read import read_mesh
 from underfoot.slip.dynamics.gait import load_history
 from underfoot.surface.read import read_surface
 from underfoot.trials import read_trial
-from underfoot_design_studies.study_file import load_plan
 
 TESTS = Path(__file__).parent
 EXAMPLES = TESTS.parent / "examples"

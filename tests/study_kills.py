@@ -20,13 +20,13 @@ import numpy as np
 import psutil
 
 from underfoot.cli import main
-from underfoot_design_studies import live, proposals, records, study
-from underfoot_design_studies import plan as plan_module
-from underfoot_design_studies import report as report  # once, for all processes
-from underfoot_design_studies.lines import whole_lines
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
+from underfoot.explore import plan as plan_module
+from underfoot.explore import proposals, records, study
+from underfoot.explore.lines import whole_lines
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.report import live_study as live
 
 BASE = (Path(__file__).parents[1] / "examples" / "work_shoe_untreaded_glycerol.toml").as_posix()
 TEXT = f"""\

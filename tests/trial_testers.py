@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.trials.protocols import protocol
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import analyse_folder
 
 Columns = dict[str, np.ndarray]
 DATE = "2026-03-12"

@@ -11,18 +11,20 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from .case import Case, load
-    from .case.explanation import explain
-    from .compute.result import Result
-    from .compute.run import run
-    from .core.catalogue import catalogue
-    from .questions.comparison import compare
+from underfoot.core.moved import answer_old_paths
 
-    Study: Any
-    optimise: Any
-    sweep: Any
+if TYPE_CHECKING:
+    from underfoot.case import Case, load
+    from underfoot.case.explanation import explain
+    from underfoot.compute.result import Result
+    from underfoot.compute.run import run
+    from underfoot.core.catalogue import catalogue
+    from underfoot.explore import Study, optimise, sweep
+    from underfoot.questions.comparison import compare
+
     __version__: str
+
+answer_old_paths()
 
 __all__ = [
     "Case",
@@ -41,21 +43,20 @@ __all__ = [
 _HOMES = {
     "Case": ".case",
     "Result": ".compute.result",
+    "Study": ".explore",
     "catalogue": ".core.catalogue",
     "compare": ".questions.comparison",
     "explain": ".case.explanation",
     "load": ".case",
+    "optimise": ".explore",
     "run": ".compute.run",
+    "sweep": ".explore",
 }
-_OFFERED = ("Study", "optimise", "sweep")
-"""Names of the wing of design studies."""
 
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module(".core.provenance", __name__).version()
-    if name in _OFFERED:
-        return import_module(".core.registry", __name__).offered("names", name)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_HOMES[name], __name__), name)

@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from underfoot.material import RelaxationSpectrum, power_law_spectrum, young_from_shear
-from underfoot.rough_contact import steady_sliding
-from underfoot.surface import checkerboard
-from underfoot_block import (
+from underfoot.block import (
     MicroBlock,
     MicroLoading,
     MicroMaterial,
@@ -17,7 +14,10 @@ from underfoot_block import (
     condensed_poisson_ratio,
     condensed_sliding,
 )
-from underfoot_block._kernels.hexahedron import stiffness_matrices
+from underfoot.block._kernels.hexahedron import stiffness_matrices
+from underfoot.material import RelaxationSpectrum, power_law_spectrum, young_from_shear
+from underfoot.rough_contact import steady_sliding
+from underfoot.surface import checkerboard
 
 CUBE = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
@@ -205,7 +205,7 @@ def test_sideways_motion_lowers_the_swing_of_shear_and_makes_no_friction():
 def test_explicit_finite_elements_agree_where_strains_are_small():
     # two formulations of the element and of the march; roughness and pressure a tenth of the
     # report's, where finite strain plays no part
-    from underfoot_block import ExplicitSettings, explicit_sliding
+    from underfoot.block import ExplicitSettings, explicit_sliding
 
     block = MicroBlock(elements=(18, 12, 6), roughness=MicroSurface.checkerboard(3.51e-6, 0.5e-3))
     floor = MicroSurface.checkerboard(3.51e-6, 0.4e-3)

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.material import RelaxationSpectrum
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
     MicroMaterial,
     MicroSurface,
 )
-from underfoot_block._kernels import loops, names
-from underfoot_block.assembly import Assembly, assembled
+from underfoot.block._kernels import loops, names
+from underfoot.block.assembly import Assembly, assembled
+from underfoot.material import RelaxationSpectrum
 
 pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
 
@@ -85,7 +85,7 @@ def test_element_loops_without_any_cache_folder_work_and_say_so(tmp_path, monkey
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "__pycache__"))
     with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
         made = loops.element_loops.__wrapped__()
-    monkeypatch.setattr("underfoot_block.assembly.element_loops", lambda: made)
+    monkeypatch.setattr("underfoot.block.assembly.element_loops", lambda: made)
     assembly = block_at_rest()
     turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) - np.eye(3)
     forces = internal_forces(assembly, turned @ assembly.mesh.nodes)

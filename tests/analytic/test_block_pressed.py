@@ -6,9 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from underfoot.core import InputError
-from underfoot.material import RelaxationSpectrum
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -21,7 +19,9 @@ from underfoot_block import (
     pressed_block,
     pressure_ratio_of,
 )
-from underfoot_block._kernels.hexahedron import MODES, forces_and_tangents, mean_gradient
+from underfoot.block._kernels.hexahedron import MODES, forces_and_tangents, mean_gradient
+from underfoot.core import InputError
+from underfoot.material import RelaxationSpectrum
 
 CUBE = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],

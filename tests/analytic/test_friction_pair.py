@@ -29,8 +29,8 @@ from underfoot.friction.pair_contact import HIGHEST_WET, ROUGHNESS, real_slope
 from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
 from underfoot.shoe import Heel
 from underfoot.shoe.parametric import write_sole
-from underfoot_studies.corpus import readings
-from underfoot_studies.pair_law import fitted, law_named
+from underfoot.studies.corpus import readings
+from underfoot.studies.pair_law import fitted, law_named
 
 TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), family="aqueous")
 KNOWN = {

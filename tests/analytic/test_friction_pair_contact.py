@@ -17,8 +17,8 @@ from underfoot.friction.pair_contact import (
     real_slope,
     relative_area,
 )
-from underfoot_studies.corpus import readings
-from underfoot_studies.pair_law import (
+from underfoot.studies.corpus import readings
+from underfoot.studies.pair_law import (
     _covariance,
     features,
     fitted,
@@ -31,7 +31,7 @@ from underfoot_studies.pair_law import (
     scored,
     weights,
 )
-from underfoot_studies.sources import Condition, Reading, Span
+from underfoot.studies.sources import Condition, Reading, Span
 
 ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}

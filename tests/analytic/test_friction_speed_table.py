@@ -12,7 +12,7 @@ from underfoot.friction import (
     sampled_cof,
     stribeck_cof,
 )
-from underfoot.trials.stribeck_fit import stribeck_fit
+from underfoot.trials.machines.stribeck_fit import stribeck_fit
 
 SPEED = np.array([0.1, 0.2, 0.4, 0.8])
 COF = np.array([0.6, 0.5, 0.3, 0.08])

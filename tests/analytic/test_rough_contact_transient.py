@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from underfoot.core import Cancelled, Status
-from underfoot.material import RelaxationSpectrum
-from underfoot.reference import sliding_sinusoid_cof
-from underfoot.rough_contact import steady_sliding
-from underfoot.rough_contact._kernels.periodic import ShiftedMap
-from underfoot_block.prony_march import (
+from underfoot.block.prony_march import (
     advance_memory,
     known_displacement,
     prony_step,
     relaxed_memory,
 )
-from underfoot_studies.transient import TransientSettings as Settings
-from underfoot_studies.transient import transient_sliding
+from underfoot.core import Cancelled, Status
+from underfoot.material import RelaxationSpectrum
+from underfoot.reference import sliding_sinusoid_cof
+from underfoot.rough_contact import steady_sliding
+from underfoot.rough_contact._kernels.periodic import ShiftedMap
+from underfoot.studies.transient import TransientSettings as Settings
+from underfoot.studies.transient import transient_sliding
 
 LENGTH = 0.4e-3
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5, 6e5], [1e-3, 1e-4, 1e-5])

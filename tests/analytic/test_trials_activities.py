@@ -7,7 +7,7 @@ import pytest
 
 from underfoot.trials import Trial, axes_of, body_weight, finished_plate, read_trial
 from underfoot.trials import required_frictions as steps_of
-from underfoot_simulator.activities import ACTIVITIES, activity, activity_c3d
+from underfoot.trials.simulator.activities import ACTIVITIES, activity, activity_c3d
 
 UP = np.array([0.0, 0.0, 1.0])
 

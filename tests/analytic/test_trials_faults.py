@@ -24,8 +24,8 @@ from underfoot.trials import (
     slip_of,
     stances,
 )
-from underfoot.trials.slips import Outcome
-from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
+from underfoot.trials.simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
+from underfoot.trials.walking.slips import Outcome
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 TRUTH = {"plate 2": 0.216, "plate 1": 0.252}
@@ -360,7 +360,7 @@ def test_forces_turned_against_the_markers_are_no_steps(turns):
 
 
 def test_a_marker_of_noise_alone_does_not_leap():
-    from underfoot.trials.slips import marker_jumps
+    from underfoot.trials.walking.slips import marker_jumps
 
     still = np.random.default_rng(0).normal(0.0, 3e-4, (4000, 3)) + 0.5
     assert not marker_jumps(still).any()

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from
-from underfoot.trials.protocols import protocol
 from underfoot.trials.readers import read_trial
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.floor_classes import SCHEMES, class_scheme, cof_of_pendulum
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.floor_classes import SCHEMES, class_scheme, cof_of_pendulum
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,16 @@ import numpy as np
 import pytest
 from scipy.signal import freqz, savgol_coeffs
 
-from underfoot.trials import tester_calibration
-from underfoot.trials.protocols import protocol
-from underfoot.trials.slip_friction import calibrated, mean_friction, slide_friction, slide_plate
-from underfoot.trials.slips import SlipDefinition, _half_window, heel_motion
-from underfoot.trials.trial import Channel, Marker, Plate, Trial
+from underfoot.trials.machines.slip_friction import (
+    calibrated,
+    mean_friction,
+    slide_friction,
+    slide_plate,
+)
+from underfoot.trials.recording import tester_calibration
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.recording.trial import Channel, Marker, Plate, Trial
+from underfoot.trials.walking.slips import SlipDefinition, _half_window, heel_motion
 
 RATE, UP = 1000.0, np.array([0.0, 0.0, 1.0])
 CHANNELS = {"normal": (1.1, 0.03, 500.0), "friction": (0.9, 0.04, 300.0)}

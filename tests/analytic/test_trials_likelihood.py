@@ -8,15 +8,15 @@ import pytest
 from scipy import stats
 
 from underfoot.trials import finished_plate, read_trial, required_frictions, walkway_of
-from underfoot.trials.likelihood import (
+from underfoot.trials.walking.likelihood import (
     UNLIKELY,
     Reference,
     impossible,
     references,
     unlikely_flags,
 )
-from underfoot.trials.plausibility import judged_features
-from underfoot.trials.step_features import VERTICAL, step_features
+from underfoot.trials.walking.plausibility import judged_features
+from underfoot.trials.walking.step_features import VERTICAL, step_features
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 SOUND = ["biomechzoo/HC030A05.c3d", "bmc/Gait.c3d", "kineticstoolkit/c3d_sample.c3d"]

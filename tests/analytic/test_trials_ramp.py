@@ -10,14 +10,14 @@ import pytest
 from commands import called
 from underfoot.core import InputError
 from underfoot.trials import read_trial
-from underfoot.trials.axes import LEVEL, Direction, DirectionSource, Ramp, ramp_from
-from underfoot.trials.events import Stance
-from underfoot.trials.gait import RcofDefinition, required_friction, required_frictions
-from underfoot.trials.protocols import protocol
-from underfoot.trials.trial import Plate, Trial
-from underfoot.trials.walkway import walkway_of
-from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.axes import LEVEL, Direction, DirectionSource, Ramp, ramp_from
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.recording.trial import Plate, Trial
+from underfoot.trials.simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.walking.events import Stance
+from underfoot.trials.walking.gait import RcofDefinition, required_friction, required_frictions
+from underfoot.trials.walking.walkway import walkway_of
 
 WEIGHT = 700.0
 FORWARD, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])

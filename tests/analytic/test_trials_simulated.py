@@ -8,8 +8,9 @@ import pytest
 
 from underfoot.core import DataError, InputError
 from underfoot.trials import Channel, Marker, read_profile, read_trial
-from underfoot.trials.protocols import protocol
-from underfoot_simulator import (
+from underfoot.trials.machines.pressure_map import pressure_map, pressure_scan
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator import (
     Defects,
     ScanTruth,
     SlipTruth,
@@ -19,8 +20,7 @@ from underfoot_simulator import (
     walk_c3d,
     walk_with_slip,
 )
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.pressure_map import pressure_map, pressure_scan
+from underfoot.trials.study import analyse_folder
 
 
 def _truth(folder: Path) -> dict[str, dict[str, str]]:
@@ -229,7 +229,7 @@ def test_simulated_folders_are_labelled_and_repeatable(tmp_path):
 
 def test_boundary_folder(tmp_path):
     """Forces built from known adhesion and hysteresis: Eq. 22 to 26 must give them back."""
-    from underfoot_simulator.folder import disk_run
+    from underfoot.trials.simulator.folder import disk_run
 
     rng = np.random.default_rng(9)
     pairs = {
@@ -279,7 +279,7 @@ def test_boundary_folder(tmp_path):
 
 def test_boundary_folder_tells_shoe_floor_and_lubricant_apart():
     """Adhesion made of a shoe, a lubricant and one interaction: the terms that are there show."""
-    from underfoot_trial_analysis.study import _crossed_findings
+    from underfoot.trials.study.study import _crossed_findings
 
     rng = np.random.default_rng(2)
     readings = [
@@ -306,7 +306,7 @@ def test_boundary_folder_tells_shoe_floor_and_lubricant_apart():
 
 def test_pin_on_disk_tells_fluid_and_roughness_apart(tmp_path):
     """G.2's second question: COF_BL by fluid and by the roughness of the pin, and both together."""
-    from underfoot_simulator.folder import disk_run
+    from underfoot.trials.simulator.folder import disk_run
 
     rng = np.random.default_rng(4)
     lines = ["file,fluid,roughness,repeat,speed (m/s)"]

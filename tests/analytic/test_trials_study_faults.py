@@ -16,11 +16,11 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.trials import Plate, read_trial
-from underfoot.trials.protocols import protocol
-from underfoot_simulator import walk_c3d
-from underfoot_simulator.folder import simulated_study
-from underfoot_simulator.walk import WalkRecording
-from underfoot_trial_analysis import FolderAnalysis, analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator import walk_c3d
+from underfoot.trials.simulator.folder import simulated_study
+from underfoot.trials.simulator.walk import WalkRecording
+from underfoot.trials.study import FolderAnalysis, analyse_folder
 
 Rows = list[dict[str, str]]
 MASSES = ("61", "72", "70", "75", "76")

@@ -12,9 +12,9 @@ import pytest
 from trial_testers import sound_log, write_log
 from underfoot.core import InputError
 from underfoot.trials import Plate, Trial, finished_plate, read_trial, required_frictions
-from underfoot.trials.protocols import protocol
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.conditions import study_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.conditions import study_folder
 
 WALK = Path(__file__).parents[1] / "data" / "trials" / "biomechzoo" / "HC030A05.c3d"
 TRUTH = {"plate 2": 0.216, "plate 1": 0.252}

@@ -18,11 +18,11 @@ from trial_testers import (
     write_log,
 )
 from underfoot.core import InputError
-from underfoot.trials.protocols import protocol
-from underfoot.trials.tester_calibration import FAILED, read_calibration
-from underfoot_simulator import simulated_folder
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.tester_checks import log_kind
+from underfoot.trials.machines.tester_checks import log_kind
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.recording.tester_calibration import FAILED, read_calibration
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.study import analyse_folder
 
 SEEDS = (7001, 7002, 7003)
 

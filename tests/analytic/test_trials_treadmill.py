@@ -8,10 +8,10 @@ import pytest
 
 from underfoot.core import DataError
 from underfoot.trials import mean_of, read_trial, required_frictions, walkway_of
-from underfoot.trials.protocols import protocol
-from underfoot.trials.trial import MADE_UP
-from underfoot_simulator import simulated_folder, treadmill_walk, walk_c3d
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.recording.trial import MADE_UP
+from underfoot.trials.simulator import simulated_folder, treadmill_walk, walk_c3d
+from underfoot.trials.study import analyse_folder
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 

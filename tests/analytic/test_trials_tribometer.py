@@ -5,14 +5,14 @@ import pytest
 
 from underfoot.core import DataError
 from underfoot.trials import Channel, Trial
-from underfoot.trials.stribeck_fit import master_curve
-from underfoot_trial_analysis.pin_on_disk import (
+from underfoot.trials.machines.pin_on_disk import (
     correlated_error,
     friction_point,
     reduced_radius,
     steady_window,
 )
-from underfoot_trial_analysis.relaxation_test import relaxation_reading
+from underfoot.trials.machines.relaxation_test import relaxation_reading
+from underfoot.trials.machines.stribeck_fit import master_curve
 
 
 def _run(cof, load=-20.9, rate=100.0, speed=0.3):

@@ -178,9 +178,9 @@ def test_a_table_that_is_none_or_another_is_refused(folder):
 
 
 def test_the_app_takes_compound_and_rubber_test(folder, monkeypatch):
-    app = pytest.importorskip("underfoot_app.project")
-    from underfoot_app.pages.measured_file import FILES
-    from underfoot_app.work import compound
+    app = pytest.importorskip("underfoot.app.project")
+    from underfoot.app.pages.measured_file import FILES
+    from underfoot.app.work import compound
 
     project = app.Project(folder / "project")
     parts = ("floor = 'matt_tile'", "shoe = 'work_shoe_full_tread'", "motion = 'whole_shoe_g6'")

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from commands import called
+from underfoot.calibrate.compound import compound_from_files
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.core import InputError, to_si
 from underfoot.material import power_law_spectrum, shear_modulus
-from underfoot_trial_analysis.compound import compound_from_files
 
 ROOT = Path(__file__).parents[2]
 MEASURED = ROOT / "examples" / "measured"

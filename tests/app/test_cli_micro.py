@@ -5,10 +5,10 @@ import json
 import pytest
 from typer.testing import CliRunner
 
+from underfoot.block import MicroBlock
+from underfoot.block.command_input import TEMPLATE, micro_case
 from underfoot.cli.app import app
 from underfoot.core import silent
-from underfoot_block import MicroBlock
-from underfoot_block.command_input import TEMPLATE, micro_case
 
 SMALL = """
 name = "small"

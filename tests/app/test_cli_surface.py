@@ -211,7 +211,7 @@ def test_dead_pixels_are_filled_and_told(tmp_path):
 
 
 def test_the_app_takes_a_dropped_scan(folder):
-    project = pytest.importorskip("underfoot_app.project").Project(folder / "project")
+    project = pytest.importorskip("underfoot.app.project").Project(folder / "project")
     project.add(
         "Fliese", CASE.replace('[floor.roughness]\nfile = "boden.csv"\n', 'floor = "vinyl_g4"\n')
     )

@@ -20,13 +20,13 @@ from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.core import DataError, InputError
 from underfoot.core.fields import Fields, from_xarray
+from underfoot.report.designed_sole import FINEST, DesignedSole
 from underfoot.report.drawn_sole import drawn_sole
+from underfoot.report.sole_export import export_result
+from underfoot.report.sole_mesh import sole_mesh
 from underfoot.shoe import Facet, Heel, Tread, WearPlane, heel_surface
 from underfoot.shoe.files import outsole_from_file
 from underfoot.shoe.worn import WornMap, WornPatch
-from underfoot_readers.designed_sole import FINEST, DesignedSole
-from underfoot_readers.sole_export import export_result
-from underfoot_readers.sole_mesh import sole_mesh
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError
-from underfoot_design_studies import Study, posterior
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import Study, posterior
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

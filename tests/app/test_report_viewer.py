@@ -13,12 +13,12 @@ from chromium import opened
 
 from underfoot.core import SourcedValue, Status
 from underfoot.core.fields import from_xarray
+from underfoot.core.html import environment
 from underfoot.questions.comparison import case_differences, compare
 from underfoot.questions.outcomes import Outcome
 from underfoot.questions.wear import WearSeries
 from underfoot.questions.wear_limit import WearPoint
 from underfoot.report import page_text, write_report
-from underfoot.report.html import environment
 from underfoot.report.viewer import (
     colour_tables,
     scene_section,

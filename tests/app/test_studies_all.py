@@ -19,6 +19,8 @@ from underfoot.studies import (
     Quantity,
     StudyResult,
     Table,
+    g2,
+    g3,
     headline,
     judged,
     read_results,
@@ -30,7 +32,6 @@ from underfoot.studies import (
     write_summary,
 )
 from underfoot.studies.summary import figure_rows
-from underfoot_studies import g2, g3
 
 ROOT = Path(__file__).parents[2]
 

@@ -13,8 +13,8 @@ import pytest
 
 from commands import COMMAND, called
 from underfoot.case import load
-from underfoot_design_studies import Study
-from underfoot_design_studies.store import Store
+from underfoot.explore import Study
+from underfoot.explore.store import Store
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = f"""\

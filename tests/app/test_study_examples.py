@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot_design_studies import Study
-from underfoot_design_studies.effects import effects
-from underfoot_design_studies.posterior import posterior
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import Study
+from underfoot.explore.effects import effects
+from underfoot.explore.posterior import posterior
+from underfoot.explore.study_file import read_plan
 
 STUDIES = Path(__file__).parents[2] / "examples" / "studies"
 

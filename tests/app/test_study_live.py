@@ -10,11 +10,11 @@ from chromium import opened
 
 from commands import called
 from underfoot.core.progress import silent
-from underfoot_design_studies import live
-from underfoot_design_studies import study as module
-from underfoot_design_studies.result import front_places
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Stopped, Study
+from underfoot.explore import study as module
+from underfoot.explore.result import front_places
+from underfoot.explore.store import Store
+from underfoot.explore.study import Stopped, Study
+from underfoot.report import live_study as live
 
 COUNT = 4000
 

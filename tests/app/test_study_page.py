@@ -7,12 +7,12 @@ import pytest
 from chromium import opened
 
 from underfoot.case import load
-from underfoot_design_studies import Study
-from underfoot_design_studies.proposals import next_batch
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.report import write_study_report
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import Study
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study_file import read_plan
+from underfoot.report.design_study import write_study_report
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = """\

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from commands import COMMAND
-from underfoot_design_studies.store import Store
+from underfoot.explore.store import Store
 
 CASE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
@@ -26,7 +26,7 @@ outputs = {{ maximise = ["cof"] }}
 """
 WORKER = f"""\
 from pathlib import Path
-from underfoot_app import work
+from underfoot.app import work
 from underfoot.core.worker import Worker
 
 if __name__ == "__main__":

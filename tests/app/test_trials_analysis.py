@@ -16,13 +16,13 @@ from typer.testing import CliRunner
 
 from underfoot.core import InputError
 from underfoot.trials import Profile
-from underfoot.trials.protocols import QUANTITIES, protocol, protocol_names
-from underfoot_simulator import simulated_folder
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis import folder as folder_module
-from underfoot_trial_analysis.conditions import conditions_of
-from underfoot_trial_analysis.methods import methods_paragraphs
-from underfoot_trial_analysis.report import STORE, write_trials_report
+from underfoot.trials.pages.report import STORE, write_trials_report
+from underfoot.trials.recording.protocols import QUANTITIES, protocol, protocol_names
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study import folder as folder_module
+from underfoot.trials.study.conditions import conditions_of
+from underfoot.trials.study.methods import methods_paragraphs
 
 
 @pytest.fixture(scope="module")
@@ -59,8 +59,8 @@ def test_the_same_folder_gives_the_same_bytes(tester, tmp_path):
 def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
     import openpyxl
 
-    from underfoot_trial_analysis import Table
-    from underfoot_trial_analysis.report import csv_text, write_spreadsheet
+    from underfoot.trials.pages.report import csv_text, write_spreadsheet
+    from underfoot.trials.study import Table
 
     rows = (("=1+1", 1.5, None, ""), ("plain", float("nan"), 3, "-x"))
     table = Table("odd: name/1", "A title", ("text", "number", "count", "more"), rows, ("note",))
@@ -163,8 +163,8 @@ def test_scripts_without_a_guard_work_too(tester, tmp_path):
     script = tmp_path / "plain.py"
     script.write_text(
         "from pathlib import Path\n"
-        "from underfoot_trial_analysis import analyse_folder\n"
-        "from underfoot.trials.protocols import protocol\n"
+        "from underfoot.trials.study import analyse_folder\n"
+        "from underfoot.trials.recording.protocols import protocol\n"
         f"found = analyse_folder(Path({str(tester)!r}), protocol('report_g4'), processes=2)\n"
         "print(sum(one.usable for one in found.files))\n"
     )

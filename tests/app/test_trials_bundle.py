@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from trial_testers import FAULTS, sound_log, write_log
 from underfoot.cli.trials import trials_app
 from underfoot.core import InputError
-from underfoot_trial_analysis.court_bundle import bundle_faults
+from underfoot.trials.pages.court_bundle import bundle_faults
 
 
 def bundled(folder, out, *more):

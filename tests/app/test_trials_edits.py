@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from underfoot.trials import Edit, read_trial, required_frictions, stances
-from underfoot.trials.events import EditError
-from underfoot.trials.protocols import protocol
-from underfoot_simulator import simulated_folder
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.walking.events import EditError
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 WALK = DATA / "biomechzoo" / "HC030A05.c3d"

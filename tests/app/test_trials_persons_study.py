@@ -7,9 +7,9 @@ from itertools import combinations
 import pytest
 
 from commands import process
-from underfoot.trials.protocols import protocol
-from underfoot_simulator.folder import NAMES, SHOES, simulated_study
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator.folder import NAMES, SHOES, simulated_study
+from underfoot.trials.study import analyse_folder
 
 
 def findings(analysis):

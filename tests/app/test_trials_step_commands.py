@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 
 from underfoot.cli.trials import trials_app
 from underfoot.trials import joined, read_trial, required_frictions
-from underfoot.trials.protocols import protocol
-from underfoot_trial_analysis import analyse_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.study import analyse_folder
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 WALK = DATA / "biomechzoo" / "HC030A05.c3d"

@@ -5,10 +5,10 @@ import shutil
 import pytest
 
 from underfoot.core import InputError
-from underfoot.trials.protocols import protocol
-from underfoot_simulator import simulated_folder
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.conditions import study_folder
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.conditions import study_folder
 
 PATTERN = r"S(?P<subject>\d+)_(?P<shoe>[A-Za-z]+)_(?P<n>\d+)"
 

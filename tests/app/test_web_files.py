@@ -15,10 +15,10 @@ from outsole_bodies import grooved, heel_body, triangles, write_stl
 
 pytest.importorskip("nicegui")
 
+from underfoot.app import work_sole
+from underfoot.app.project import Project
+from underfoot.app.uploads import received
 from underfoot.core import InputError, silent
-from underfoot_app import work_sole
-from underfoot_app.project import Project
-from underfoot_app.uploads import received
 
 SOLES = "input[type=file][accept*=stl]"
 

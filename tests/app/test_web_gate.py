@@ -6,10 +6,10 @@ import pytest
 
 pytest.importorskip("nicegui")
 
+from underfoot.app.gate import Gate, own_name
+from underfoot.app.project import Project
+from underfoot.app.uploads import received, revisions, upload_path
 from underfoot.core import InputError
-from underfoot_app.gate import Gate, own_name
-from underfoot_app.project import Project
-from underfoot_app.uploads import received, revisions, upload_path
 
 TOKEN, PORT = "t" * 40, 8642
 COOKIE = f"underfoot-{PORT}={TOKEN}"
@@ -121,7 +121,7 @@ def test_files_arrive_whole_or_not_at_all(tmp_path, monkeypatch):
     path = asyncio.run(received(project, "soles/heel.stl", stream(b"ab", b"c")))
     assert path == tmp_path / "soles" / "heel.stl"
     assert path.read_bytes() == b"abc"
-    monkeypatch.setattr("underfoot_app.uploads.MOST_BYTES", 4)
+    monkeypatch.setattr("underfoot.app.uploads.MOST_BYTES", 4)
     with pytest.raises(InputError, match="Allowed: at most"):
         asyncio.run(received(project, "soles/heel.stl", stream(b"abc", b"def")))
     with pytest.raises(InputError, match="empty"):

@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("nicegui")
 
+from underfoot.app.jobs import Jobs, Lane
 from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
-from underfoot_app.jobs import Jobs, Lane
 
 HERE = "test_web_jobs:"
 

@@ -15,7 +15,7 @@ from outsole_bodies import grooved, heel_body, triangles, write_stl
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
-text = pytest.importorskip("underfoot_app.text")
+text = pytest.importorskip("underfoot.app.text")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide"
 WORD = re.compile(r"(?<![\w./])[^\W\d_]{2,}(?![\w/]|\.\w)")

@@ -66,7 +66,7 @@ def test_small_server_without_scipy_and_outside_requests(app):
 
 def test_start_takes_little_processor_time():
     code = (
-        "import time\nimport underfoot_app.serve\nprint(time.process_time())\nimport sys\n"
+        "import time\nimport underfoot.app.serve\nprint(time.process_time())\nimport sys\n"
         "print(*(m for m in ('scipy', 'pandas', 'xarray', 'matplotlib') if m in sys.modules))"
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(PATHS)}
@@ -413,7 +413,7 @@ def test_two_hundred_random_actions_lose_no_variant_and_raise_no_error(app):
         history = (app.folder / "history.jsonl").read_text().splitlines()
         made = {json.loads(line)["variant"] for line in history}
         assert seen <= made  # one may come and go between two looks
-        from underfoot_app.project import Project
+        from underfoot.app.project import Project
 
         project = Project(app.folder)
         assert made == {*project.variants(), *project.removed()}

@@ -8,7 +8,7 @@ pytest.importorskip("nicegui")
 
 from web_app import page_of, served
 
-from underfoot_places.place import KEYS
+from underfoot.places.place import KEYS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

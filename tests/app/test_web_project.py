@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 pytest.importorskip("nicegui")
 
+from underfoot.app.project import Project
+from underfoot.app.variant_bar import USUAL
+from underfoot.app.work import zipped
 from underfoot.case import Case, CaseError
 from underfoot.case.template import template
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
-from underfoot_app.project import Project
-from underfoot_app.variant_bar import USUAL
-from underfoot_app.work import zipped
 
 TEXT = template(**USUAL, catalogue=Catalogue.load(), name="one")
 

@@ -153,7 +153,7 @@ def test_the_lug_that_floats_is_found(app, page):
 
 
 def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
-    from underfoot_app.work_sole import LAND_EQUAL, _land_share
+    from underfoot.app.work_sole import LAND_EQUAL, _land_share
 
     project = project_of(tmp_path / "project", "A", "B")
     project.change("B", {"shoe.tread.pattern": "hexagons", "shoe.tread.channel_width": "4 mm"})
@@ -184,8 +184,8 @@ def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
 
 
 def test_land_that_no_channel_width_gives_is_refused_with_a_remedy(tmp_path):
+    from underfoot.app.work_sole import equal_land
     from underfoot.core import InputError, silent
-    from underfoot_app.work_sole import equal_land
 
     body = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
     project = project_of(tmp_path / "project", "A", "B", "file")
@@ -245,10 +245,10 @@ def test_the_advised_groove_is_cut_by_its_row_and_taken_out_again(tmp_path):
 
 
 def test_the_advised_groove_lies_where_the_advice_was(tmp_path):
+    from underfoot.app.work_sole import advised_groove
     from underfoot.compute.run import run
     from underfoot.core import silent
     from underfoot.report import write_report
-    from underfoot_app.work_sole import advised_groove
 
     project = project_of(tmp_path / "project", "A")
     case = project.change("A", LARGE_LUGS)

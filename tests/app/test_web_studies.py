@@ -11,13 +11,13 @@ pytest.importorskip("nicegui")
 
 from web_app import drawn, page_of, served
 
+from underfoot.app import work_studies as work
+from underfoot.app.pages.studies import FIELDS, KINDS, _fields, _value
+from underfoot.app.project import Project
 from underfoot.case import Case, CaseError, load
 from underfoot.compute.run import run
 from underfoot.core.progress import silent
 from underfoot.report import write_report
-from underfoot_app import work_studies as work
-from underfoot_app.pages.studies import FIELDS, KINDS, _fields, _value
-from underfoot_app.project import Project
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = """\

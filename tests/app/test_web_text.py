@@ -8,10 +8,10 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-import underfoot_app
-from underfoot_app.text import LANGUAGES, Text, catalogue, chosen_language
+import underfoot.app
+from underfoot.app.text import LANGUAGES, Text, catalogue, chosen_language
 
-SOURCE = Path(underfoot_app.__file__).parent
+SOURCE = Path(underfoot.app.__file__).parent
 
 
 def placeholders(words):
@@ -34,8 +34,8 @@ def test_every_key_that_the_source_names_exists():
 
 
 def test_words_of_inputs_and_patterns_are_there():
+    from underfoot.app.pages import PAGES, answer, design
     from underfoot.case.sole import TreadPattern
-    from underfoot_app.pages import PAGES, answer, design
 
     words = Text("en")
     inputs = [

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from underfoot.app import work_trials
 from underfoot.cli.trials import trials_app
 from underfoot.core import InputError
-from underfoot.trials.events import EditError
-from underfoot_app import work_trials
-from underfoot_simulator import simulated_folder
-from underfoot_trial_analysis.edit_table import edit_text, edits_of, with_edit_row
-from underfoot_trial_analysis.record_signals import Signal
+from underfoot.trials.simulator import simulated_folder
+from underfoot.trials.study.edit_table import edit_text, edits_of, with_edit_row
+from underfoot.trials.study.record_signals import Signal
+from underfoot.trials.walking.events import EditError
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 WALK, OTHER = "HC030A05.c3d", "HC036A23.c3d"

@@ -14,7 +14,7 @@ from outsole_bodies import grooved, heel_body, triangles, write_stl
 
 pytest.importorskip("nicegui")
 
-from underfoot_app.project import Project
+from underfoot.app.project import Project
 
 Error = pytest.importorskip("playwright.sync_api").Error
 pytestmark = [pytest.mark.browser, pytest.mark.slow]

@@ -152,10 +152,10 @@ def begin(page, base):
 
 def project_of(folder, *names):
     """Return a new project whose variants are each computed in a second."""
+    from underfoot.app.project import Project
+    from underfoot.app.variant_bar import USUAL
     from underfoot.case.template import template
     from underfoot.core.catalogue import Catalogue
-    from underfoot_app.project import Project
-    from underfoot_app.variant_bar import USUAL
 
     made = Project(folder)
     for name in names:

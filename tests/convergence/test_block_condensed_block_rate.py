@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from underfoot.block import MicroBlock, MicroSurface, condensed_block, edge_corrected_contact_area
+from underfoot.block._kernels.active_set import contact_under_load
 from underfoot.rough_contact import steady_sliding
 from underfoot.surface import checkerboard
-from underfoot_block import MicroBlock, MicroSurface, condensed_block, edge_corrected_contact_area
-from underfoot_block._kernels.active_set import contact_under_load
 
 WAVE, RZ, YOUNG, NU = 0.4e-3, 35e-6, 3e6, 0.499
 

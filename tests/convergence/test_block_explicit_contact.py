@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from underfoot.core import Status, silent
-from underfoot.material import RelaxationSpectrum
-from underfoot.rough_contact import steady_sliding
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -16,8 +13,11 @@ from underfoot_block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot_block.assembly import Assembly, assembled
-from underfoot_block.march import BlockMarch
+from underfoot.block.assembly import Assembly, assembled
+from underfoot.block.march import BlockMarch
+from underfoot.core import Status, silent
+from underfoot.material import RelaxationSpectrum
+from underfoot.rough_contact import steady_sliding
 
 pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
 

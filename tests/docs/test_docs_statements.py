@@ -27,12 +27,12 @@ from underfoot.case.explanation import explanation
 from underfoot.case.parts import FILE_VERSION, field_at, keys, paths, slot_table
 from underfoot.core import InputError
 from underfoot.core.catalogue import KINDS, catalogue
+from underfoot.explore.study_file import FILE_VERSION as STUDY_VERSION
 from underfoot.questions.method import NICKNAMES
 from underfoot.questions.wear import MODES
 from underfoot.studies import studies
 from underfoot.trials import RcofDefinition
-from underfoot.trials.protocols import protocol_names
-from underfoot_design_studies.study_file import FILE_VERSION as STUDY_VERSION
+from underfoot.trials.recording.protocols import protocol_names
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -431,7 +431,7 @@ DEFAULTS = {
     "| `report_g6` (default)": lambda: usual("risk") == "report_g6",
     "The default, 0.20 with a standard deviation of 0.03": assumed_rcof,
     "Welch (default), pooled": lambda: of_call(
-        "underfoot_trial_analysis.statistics.t_test", "kind") == "welch",
+        "underfoot.trials.statistics.t_test", "kind") == "welch",
     "It is the default where both surfaces are scans": measured_contact,
     "the default of measured surfaces and compound": measured_contact,
     "(default: 90 ms of sliding under full load)": sliding_under_full_load,

@@ -11,7 +11,7 @@ from scipy.ndimage import distance_transform_edt
 from commands import called
 from underfoot.case import load
 from underfoot.compute.sole import new_sole
-from underfoot_design_studies.mould import write_drafted
+from underfoot.shoe.parametric.mould import write_drafted
 
 pytest.importorskip("netgen")
 trimesh = pytest.importorskip("trimesh")

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from underfoot.block.one_term_fit import fit_single_exponential
 from underfoot.material import (
     dynamic_master_curve,
     fit_relaxation,
@@ -12,7 +13,6 @@ from underfoot.material import (
     read_relaxation,
     relaxation_master_curve,
 )
-from underfoot_block.one_term_fit import fit_single_exponential
 
 DATA = Path(__file__).parents[1] / "data" / "viscoelastic" / "pyvisco"
 

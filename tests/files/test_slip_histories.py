@@ -9,7 +9,7 @@ import pytest
 from underfoot.core import DataError, InputError
 from underfoot.slip.dynamics import Population, history_text, load_history, packaged_histories
 from underfoot.slip.dynamics.recorded import heel_over_floor, recorded_histories
-from underfoot.trials.slips import HeelMotion
+from underfoot.trials.walking.slips import HeelMotion
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 RECORDINGS = {

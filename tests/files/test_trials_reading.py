@@ -223,7 +223,7 @@ def test_every_processor_agrees_with_py_c3d(tmp_path, processor):
 
 
 def test_all_plate_types_give_the_same_force(tmp_path):
-    from underfoot.trials.plates import channel_forces
+    from underfoot.trials.recording.plates import channel_forces
 
     _, force, moment, _ = _recording()
     loaded = slice(600, 1400)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from underfoot.trials import read_trials
-from underfoot_trial_analysis.pin_on_disk import friction_point
+from underfoot.trials.machines.pin_on_disk import friction_point
 
 _DATA = Path(__file__).parents[1] / "data" / "trials"
 _ALL = (-1.0, 1e9)

@@ -8,10 +8,9 @@ import ezc3d
 import numpy as np
 import pytest
 
-from commands import called
-from underfoot.core import DataError, registry
+from underfoot.core import DataError
 from underfoot.trials import read_trial, read_trials
-from underfoot.trials.readers import trial_readers
+from underfoot.trials.readers import READERS
 
 TIME = np.arange(200) / 100.0
 HEEL = np.column_stack((0.5 * TIME, 0.05 + 0.02 * np.sin(9 * TIME), 0.1 + 0 * TIME))
@@ -278,32 +277,9 @@ def test_what_is_known_and_not_read_and_what_nobody_knows(tmp_path, name, conten
         read_trials(tmp_path / name)
 
 
-def test_every_reader_of_the_wing_can_be_imported():
-    readers = trial_readers()
-    assert len(readers) > 20
-    for one in readers:
+def test_every_reader_can_be_imported():
+    assert len(READERS) > 20
+    for one in READERS:
         if one.address:
             module, _, name = one.address.partition(":")
             assert callable(getattr(import_module(module), name))
-
-
-@pytest.fixture
-def no_wings(monkeypatch):
-    monkeypatch.setattr(registry, "all_offers", tuple)
-    trial_readers.cache_clear()
-    yield
-    trial_readers.cache_clear()
-
-
-def test_without_the_wing_its_formats_are_refused_with_the_remedy(tmp_path, no_wings):
-    (tmp_path / "walk.trc").write_text("PathFileType\t4\t(X/Y/Z)\twalk.trc\n1\t2\n")
-    with pytest.raises(DataError, match=r"pip install underfoot-readers.*\./wings/readers"):
-        read_trials(tmp_path / "walk.trc")
-
-
-def test_without_the_wing_nothing_is_made_up(tmp_path, no_wings):
-    done = called("trials", "simulate", "slips", "--out", "x", folder=tmp_path)
-    assert done.returncode == 2
-    assert "simulate comes with the package underfoot-simulator" in done.stderr
-    assert "./wings/simulator" in done.stderr
-    assert not (tmp_path / "x").exists()

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from underfoot_block._kernels.active_set import contact_at_height, contact_under_load
+from underfoot.block._kernels.active_set import contact_at_height, contact_under_load
 
 
 def problem(seed, n, decay):

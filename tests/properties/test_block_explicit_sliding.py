@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
-from underfoot.material import Elastomer, RelaxationSpectrum
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroBlock,
     MicroLoading,
@@ -17,8 +15,10 @@ from underfoot_block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot_block.assembly import assembled, mass_scaling_error
-from underfoot_block.result import EDGE_EXCESS, edge_excess_area
+from underfoot.block.assembly import assembled, mass_scaling_error
+from underfoot.block.result import EDGE_EXCESS, edge_excess_area
+from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
+from underfoot.material import Elastomer, RelaxationSpectrum
 
 pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
 

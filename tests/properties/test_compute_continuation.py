@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import griddata
 
+from underfoot.app.run_preview import of_run, preview_of_run
+from underfoot.app.work import rolled_surface
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, preview
 from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
 from underfoot.report.results import designed_surface
-from underfoot_app.run_preview import of_run, preview_of_run
-from underfoot_app.work import rolled_surface
 
 CASE = Case.load("examples/work_shoe_full_tread_glycerol.toml")
 

@@ -11,14 +11,14 @@ from scipy.stats import qmc
 
 from underfoot.case import load
 from underfoot.core import DataError, RangeError
+from underfoot.explore.effects import effects
+from underfoot.explore.inputs import Choice, Distribution, Range
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import read_plan
+from underfoot.explore.surrogate import Model, Runs, Surrogate, fitted
 from underfoot.friction.propagation import probability_higher
-from underfoot_design_studies.effects import effects
-from underfoot_design_studies.inputs import Choice, Distribution, Range
-from underfoot_design_studies.proposals import next_batch
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.result import StudyResult
-from underfoot_design_studies.study_file import read_plan
-from underfoot_design_studies.surrogate import Model, Runs, Surrogate, fitted
 
 DEPTH = Range("shoe.tread.depth", 1e-3, 4e-3)
 SPEED = Range("motion.speed", 0.1, 1.0, True)

@@ -7,10 +7,10 @@ import pytest
 from scipy.ndimage import distance_transform_edt
 
 from underfoot.case import Case, load
+from underfoot.case.free_tread import TERMS, keeps
 from underfoot.compute.sole import new_sole, sole_map
 from underfoot.core import InputError
-from underfoot_design_studies.free_land import free_land
-from underfoot_design_studies.free_tread import TERMS, keeps
+from underfoot.shoe.free_land import free_land
 
 ROOT = Path(__file__).parents[2]
 CELL, LAND, CHANNEL = (0.022, 0.018), 3e-3, 2.5e-3

@@ -24,7 +24,7 @@ from underfoot.friction.tread_error import (
     variance_between,
 )
 from underfoot.questions.comparison import chance_higher, compare
-from underfoot_studies.tread_pairs import computed_pairs, tread_contrasts
+from underfoot.studies.tread_pairs import computed_pairs, tread_contrasts
 
 SHOE = Case.load("examples/work_shoe_full_tread_glycerol.toml").replace("friction", "pair")
 ERROR = SharedError("tread, test", 0.4, of_tread=True)

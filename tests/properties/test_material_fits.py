@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from underfoot.block.one_term_fit import fit_single_exponential
 from underfoot.core import DataError, InputError, RangeError
 from underfoot.material import (
     ArrheniusShift,
@@ -10,7 +11,6 @@ from underfoot.material import (
     RelaxationCurve,
     RelaxationSpectrum,
     WlfShift,
-    compression_moduli,
     dynamic_master_curve,
     fit_arrhenius,
     fit_dynamic,
@@ -19,7 +19,7 @@ from underfoot.material import (
     relaxation_master_curve,
     single_exponential_spectrum,
 )
-from underfoot_block.one_term_fit import fit_single_exponential
+from underfoot.trials.machines.compression import compression_moduli
 
 TAU = np.geomspace(1e-6, 1e6, 37)
 BROAD = RelaxationSpectrum(1e6, 1e6 * (0.5 + 3 * np.exp(-((np.log10(TAU) + 1) ** 2) / 4)), TAU)

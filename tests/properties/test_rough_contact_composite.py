@@ -6,8 +6,8 @@ import pytest
 from underfoot.material import power_law_spectrum
 from underfoot.rough_contact import steady_sliding
 from underfoot.rough_contact.composite import PLAIN, RESTING, composite_surface
+from underfoot.studies.transient import transient_sliding
 from underfoot.surface import checkerboard, self_affine
-from underfoot_studies.transient import transient_sliding
 
 RUBBER = power_law_spectrum(3 * 0.44e6, 0.12, terms_per_decade=1)
 PRESSURE, SPEED = 160e3, 0.1

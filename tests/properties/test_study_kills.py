@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError
-from underfoot_design_studies import plan as plan_module
-from underfoot_design_studies import proposals, records, study
-from underfoot_design_studies.claims import Round, begin_round, latest_round
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import plan as plan_module
+from underfoot.explore import proposals, records, study
+from underfoot.explore.claims import Round, begin_round, latest_round
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from underfoot.case import load
-from underfoot_design_studies.proposals import next_batch
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.result import StudyResult
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDY = """\

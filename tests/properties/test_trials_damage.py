@@ -70,7 +70,7 @@ def damaged(data: bytes, text: bool, rng: np.random.Generator) -> bytes:
 
 def _source(name: str, folder: Path) -> Path:
     from underfoot.trials import read_trial
-    from underfoot_simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
+    from underfoot.trials.simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
 
     if not name.startswith("simulated"):
         return DATA / name

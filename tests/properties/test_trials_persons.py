@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot_trial_analysis.statistics import (
+from underfoot.trials.statistics import (
     analysis_of_variance,
     fisher_exact,
     independence_warning,
@@ -17,7 +17,7 @@ from underfoot_trial_analysis.statistics import (
     t_test,
     tukey_hsd,
 )
-from underfoot_trial_analysis.statistics import fisher as fisher_module
+from underfoot.trials.statistics import fisher as fisher_module
 
 SHOES = ("A", "B", "C")
 

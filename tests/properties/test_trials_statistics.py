@@ -6,8 +6,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
-from underfoot.trials.stribeck_fit import stribeck_fit
-from underfoot_trial_analysis.statistics import (
+from underfoot.trials.machines.stribeck_fit import stribeck_fit
+from underfoot.trials.statistics import (
     analysis_of_variance,
     crossed,
     fisher_exact,

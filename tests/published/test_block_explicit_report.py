@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from underfoot.core import InputError
-from underfoot_block import (
+from underfoot.block import (
     ExplicitSettings,
     MicroMaterial,
     MicroResult,
@@ -15,6 +14,7 @@ from underfoot_block import (
     report_loading,
     report_material,
 )
+from underfoot.core import InputError
 
 
 def test_table_2_bulk_moduli():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from underfoot_studies.lug_states import states_scores
+from underfoot.studies.lug_states import states_scores
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.studies import Options, Quantity, judged, study
-from underfoot_block.g1 import Settings, changes, matrix, outcomes, series_quantities
+from underfoot.studies.g1 import Settings, changes, matrix, outcomes, series_quantities
 
 pytestmark = pytest.mark.slow
 QUICK = Settings().quick

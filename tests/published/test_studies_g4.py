@@ -10,9 +10,8 @@ from commands import called
 from underfoot.core import SourcedValue, Status
 from underfoot.core.catalogue import Catalogue
 from underfoot.questions.outcomes import Outcome
-from underfoot.studies import judge, study
-from underfoot_studies import g4
-from underfoot_studies.g4 import Reading, conditions, inputs_of, threshold, variance_p
+from underfoot.studies import g4, judge, study
+from underfoot.studies.g4 import Reading, conditions, inputs_of, threshold, variance_p
 
 PLAN = conditions()
 X, Y = np.arange(0.0, 0.06, 0.7e-3), np.linspace(-0.03, 0.03, 7)

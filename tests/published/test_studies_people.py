@@ -9,10 +9,9 @@ from underfoot.compute.resolve import resolved
 from underfoot.compute.slips import slip_setting
 from underfoot.slip import ReportG6
 from underfoot.slip.dynamics import FrictionDraws
-from underfoot.studies import judge, study
+from underfoot.studies import g5, g6, judge, study
+from underfoot.studies.g6 import PRINTED_ACOF, PRINTED_RISK
 from underfoot.studies.verdict import Quantity
-from underfoot_studies import g5, g6
-from underfoot_studies.g6 import PRINTED_ACOF, PRINTED_RISK
 
 
 def law_cof(shore, law):

@@ -9,9 +9,8 @@ from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids, range_95
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import ONE_CURVE, OWN_BOUNDARY
-from underfoot.studies import Kind, Options, judged, study
-from underfoot_studies import default_law, g2, g3
-from underfoot_studies.mechanisms import (
+from underfoot.studies import Kind, Options, default_law, g2, g3, judged, study
+from underfoot.studies.mechanisms import (
     blind_test,
     calibrated_mechanism,
     compare_mechanisms,

@@ -9,9 +9,8 @@ import pytest
 from positive_bounds import bounds_below_zero
 from underfoot.case.equations import EQUATIONS
 from underfoot.core.catalogue import Catalogue
-from underfoot.studies import studies, study
-from underfoot.trials.protocols import protocol
-from underfoot_studies import report_ledger
+from underfoot.studies import report_ledger, studies, study
+from underfoot.trials.recording.protocols import protocol
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "studies"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from underfoot_trial_analysis.statistics import (
+from underfoot.trials.statistics import (
     all_subsets,
     analysis_of_variance,
     least_squares_means,

@@ -3,7 +3,7 @@
 import pytest
 
 from underfoot.core import DataError
-from underfoot_trial_analysis.boundary import alpha_beta, friction_split
+from underfoot.trials.study.boundary import alpha_beta, friction_split
 
 _DRY = [10, 12, 15, 18, 20, 25]
 _WET = {

@@ -4,7 +4,7 @@ from math import comb
 
 import pytest
 
-from underfoot_trial_analysis.statistics import fisher_exact, t_test
+from underfoot.trials.statistics import fisher_exact, t_test
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,7 @@ import pytest
 from scipy import stats
 
 from underfoot.core import DataError, InputError
-from underfoot_trial_analysis.field_statistics import corrected_p
-from underfoot_trial_analysis.statistics import (
+from underfoot.trials.statistics import (
     bland_altman,
     detectable_difference,
     effect_size,
@@ -24,9 +23,10 @@ from underfoot_trial_analysis.statistics import (
     share_interval,
     slip_prediction,
 )
-from underfoot_trial_analysis.statistics.curves import _tail
-from underfoot_trial_analysis.statistics.ranks import _exact_p
-from underfoot_trial_analysis.tables import mean_and_interval
+from underfoot.trials.statistics.curves import _tail
+from underfoot.trials.statistics.ranks import _exact_p
+from underfoot.trials.study.field_statistics import corrected_p
+from underfoot.trials.study.tables import mean_and_interval
 
 # Shrout and Fleiss 1979, Table 2: six targets, four judges.
 JUDGES = [[9, 2, 5, 8], [6, 1, 3, 2], [8, 4, 6, 8], [7, 1, 2, 6], [10, 5, 6, 9], [6, 2, 4, 7]]

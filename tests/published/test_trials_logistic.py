@@ -8,8 +8,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from underfoot.core import DataError
-from underfoot_trial_analysis.statistics import clustered_logistic, logistic_regression
-from underfoot_trial_analysis.statistics.logistic import sandwich
+from underfoot.trials.statistics import clustered_logistic, logistic_regression
+from underfoot.trials.statistics.logistic import sandwich
 
 # Dalal, Fowlkes and Hoadley 1989, O-rings.
 _TEMPERATURE = [66, 70, 69, 68, 67, 72, 73, 70, 57, 63, 70, 78]
@@ -120,7 +120,7 @@ def test_complete_separation_on_the_scale_of_a_cof():
 
 def test_reports_risk_model_is_consistent_with_its_percentages():
     # G.6: slope -49.2 of ACOF - RCOF, 50 % at -0.06.
-    from underfoot_trial_analysis.statistics.logistic import LogisticLine
+    from underfoot.trials.statistics.logistic import LogisticLine
 
     line = LogisticLine(-2.952, -49.2)
     assert line.at_probability(0.5) == pytest.approx(-0.06, abs=5e-5)
@@ -214,7 +214,7 @@ def test_flipped_signs_of_few_persons_are_counted_out():
 
 
 def test_risk_curve_band():
-    from underfoot_trial_analysis.statistics.logistic import risk_curve
+    from underfoot.trials.statistics.logistic import risk_curve
 
     fit = logistic_regression(_DISTRESS, {"temperature": _TEMPERATURE})
     curve = risk_curve(fit, np.array([31.0, 70.0]))

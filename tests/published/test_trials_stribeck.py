@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.trials.stribeck_fit import NOT_IDENTIFIED, stribeck_fit
+from underfoot.trials.machines.stribeck_fit import NOT_IDENTIFIED, stribeck_fit
 
 _SPEEDS = np.array([0.05, *np.arange(0.1, 1.01, 0.1)])
 # Eq. 17 with Figure 14's values (0.164, 0.839, 0.184).

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import f
 
 from underfoot.core import DataError
-from underfoot_trial_analysis.statistics import (
+from underfoot.trials.statistics import (
     clustered_logistic,
     equivalence,
     mixed_model,

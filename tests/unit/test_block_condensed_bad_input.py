@@ -5,9 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from underfoot.core import Cancelled, InputError, Status
-from underfoot.material import RelaxationSpectrum
-from underfoot_block import (
+from underfoot.block import (
     MicroBlock,
     MicroLoading,
     MicroMaterial,
@@ -15,6 +13,8 @@ from underfoot_block import (
     condensed_block,
     condensed_sliding,
 )
+from underfoot.core import Cancelled, InputError, Status
+from underfoot.material import RelaxationSpectrum
 
 ROUGH = MicroSurface.checkerboard(35.1e-6, 0.4e-3)
 BLOCK = MicroBlock(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot_studies.sources import KINDS, NUMBERS, corpus, read_source, sampled_numbers
+from underfoot.studies.sources import KINDS, NUMBERS, corpus, read_source, sampled_numbers
 
 GOOD = """
 reference = "Someone 2020"

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from underfoot_studies.corpus_cases import contrasts, stand, verdict, whole_shoe_stands
-from underfoot_studies.sources import corpus, read_source
+from underfoot.studies.corpus_cases import contrasts, stand, verdict, whole_shoe_stands
+from underfoot.studies.sources import corpus, read_source
 
 BLOCK = {"device": "block", "fluid": "water"}
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from underfoot.core import InputError
-from underfoot_studies.identifiability import (
+from underfoot.studies.identifiability import (
     Fixed,
     chi_square,
     limit,

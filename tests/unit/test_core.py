@@ -17,7 +17,7 @@ from underfoot.core import (
 from underfoot.core.files import whole_folder
 from underfoot.core.status import worst
 from underfoot.trials import Belt, Ramp
-from underfoot.trials.measurement import caution
+from underfoot.trials.recording.measurement import caution
 
 
 def test_an_error_says_where_what_allowed_nearest_and_remedy():

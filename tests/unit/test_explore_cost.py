@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot_design_studies import check, study
-from underfoot_design_studies import plan as plan_module
-from underfoot_design_studies.cost import mean_cost, spread_jobs, study_cost
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import check, study
+from underfoot.explore import plan as plan_module
+from underfoot.explore.cost import mean_cost, spread_jobs, study_cost
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from underfoot_design_studies import engines, study
-from underfoot_design_studies import store as store_module
-from underfoot_design_studies.record import Ending, Job, Record
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import engines, study
+from underfoot.explore import store as store_module
+from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

@@ -11,11 +11,11 @@ import pytest
 
 from underfoot.case import Case, CaseError
 from underfoot.compute.positions import places, position_count
-from underfoot_design_studies.goals import Condition, Goal, read_goal, read_requirement
-from underfoot_design_studies.proposals import next_batch
-from underfoot_design_studies.record import Ending, Record
-from underfoot_design_studies.result import StudyResult
-from underfoot_design_studies.study_file import UNITS, load_plan, read_plan
+from underfoot.explore.goals import Condition, Goal, read_goal, read_requirement
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import UNITS, load_plan, read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GOOD = """\

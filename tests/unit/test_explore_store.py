@@ -16,15 +16,15 @@ from hypothesis import strategies as st
 
 from underfoot.core import DataError, InputError
 from underfoot.core.progress import silent
-from underfoot_design_studies import claims, records
-from underfoot_design_studies import store as store_module
-from underfoot_design_studies.lines import sealed
-from underfoot_design_studies.record import Ending, Job, Record
-from underfoot_design_studies.result import StudyResult
-from underfoot_design_studies.status import StudyStatus
-from underfoot_design_studies.store import Store
-from underfoot_design_studies.study import Study
-from underfoot_design_studies.study_file import read_plan
+from underfoot.explore import claims, records
+from underfoot.explore import store as store_module
+from underfoot.explore.lines import sealed
+from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.result import StudyResult
+from underfoot.explore.status import StudyStatus
+from underfoot.explore.store import Store
+from underfoot.explore.study import Study
+from underfoot.explore.study_file import read_plan
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """\

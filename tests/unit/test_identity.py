@@ -23,9 +23,9 @@ from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import Cache, InputError, content_hash
 from underfoot.core.catalogue import Catalogue
+from underfoot.explore import sweep
 from underfoot.friction import ConstantLaw, packaged_pair_draws
 from underfoot.rough_contact import ExponentialLaw
-from underfoot_design_studies import sweep
 
 COMMAND = "from underfoot.cli import main; main()"
 PARTS = {

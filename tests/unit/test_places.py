@@ -17,13 +17,11 @@ from underfoot.core.arrays import Array
 from underfoot.film import wedge_film
 from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
-from underfoot.questions.method import method_name, method_prediction
-from underfoot.rough_contact import ExponentialLaw
-from underfoot_places.calibration import calibrated_floor, class_bounds
-from underfoot_places.choice import chosen, slip_share
-from underfoot_places.evidence import learned, machine_scores, score
-from underfoot_places.joint import JointDraws, Reading
-from underfoot_places.machines import (
+from underfoot.places.calibration import calibrated_floor, class_bounds
+from underfoot.places.choice import chosen, slip_share
+from underfoot.places.evidence import learned, machine_scores, score
+from underfoot.places.joint import JointDraws, Reading
+from underfoot.places.machines import (
     FLUIDS,
     SCALES,
     Bearing,
@@ -33,7 +31,9 @@ from underfoot_places.machines import (
     predicted_reading,
     rq_of_rz,
 )
-from underfoot_places.place import place_of
+from underfoot.places.place import place_of
+from underfoot.questions.method import method_name, method_prediction
+from underfoot.rough_contact import ExponentialLaw
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "places"
 UM = 1e-6

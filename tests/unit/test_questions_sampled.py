@@ -8,7 +8,7 @@ import pytest
 from underfoot.core import InputError, SourcedValue, Status
 from underfoot.questions.outcomes import Outcome
 from underfoot.questions.sensitivity import Effect, Sensitivity
-from underfoot_studies.sampled import sampled
+from underfoot.studies.sampled import sampled
 
 CLIPPED = math.sqrt(0.5160)
 """Standard deviation of a standard normal number held between -1 and 1."""

@@ -14,7 +14,7 @@ from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, steady_sliding
 from underfoot.rough_contact._kernels.nested import low_pass, repeated
 from underfoot.rough_contact._kernels.periodic import boundary_length, contact_fractions
-from underfoot_studies.transient import TransientSettings, transient_sliding
+from underfoot.studies.transient import TransientSettings, transient_sliding
 
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
 

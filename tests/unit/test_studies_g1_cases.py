@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError
-from underfoot_block import g1
-from underfoot_block.g1 import HISTORY, Row, Settings, matrix
+from underfoot.studies import g1
+from underfoot.studies.g1 import HISTORY, Row, Settings, matrix
 
 SETTINGS = Settings(series=("report",), solver="explicit", speeds=(0.1, 1.0))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.slip import ADULTS_LEVEL_WALKING, ReportG6
-from underfoot_studies.slips import predicted, published, share
+from underfoot.studies.slips import predicted, published, share
 
 COMPUTED = np.array([0.1, 0.2])
 

@@ -24,13 +24,10 @@ from underfoot.trials import (
     slip,
     stances,
 )
-from underfoot.trials.events import no_contact_reason
-from underfoot.trials.gait_context import gait_context
-from underfoot.trials.plates import channel_forces, ordered_corners, plate_axes
-from underfoot.trials.protocols import protocol
-from underfoot.trials.signals import saturated, unloaded
-from underfoot.trials.slips import Outcome
-from underfoot_simulator import (
+from underfoot.trials.recording.plates import channel_forces, ordered_corners, plate_axes
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.recording.signals import saturated, unloaded
+from underfoot.trials.simulator import (
     Defects,
     SlipTruth,
     simulated_folder,
@@ -38,8 +35,11 @@ from underfoot_simulator import (
     walk_c3d,
     walk_with_slip,
 )
-from underfoot_trial_analysis import analyse_folder
-from underfoot_trial_analysis.steps import rcof_definition
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.steps import rcof_definition
+from underfoot.trials.walking.events import no_contact_reason
+from underfoot.trials.walking.gait_context import gait_context
+from underfoot.trials.walking.slips import Outcome
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 UP = np.array([0.0, 0.0, 1.0])
@@ -238,7 +238,7 @@ def test_four_causes_of_no_contact_are_told_apart(tmp_path):
 
 def test_rcof_of_persons_not_of_steps_and_means(tmp_path):
     from underfoot.questions.slips import measured_rcof
-    from underfoot_trial_analysis.report import csv_text
+    from underfoot.trials.pages.report import csv_text
 
     simulated_folder("slips", tmp_path, count=4)
     analysis = analyse_folder(tmp_path, protocol("report_g6"), processes=1)
@@ -336,7 +336,7 @@ def test_cautions_of_steps_are_counted_and_decide_the_verdict(tmp_path):
 
 
 def test_gait_context_of_a_made_up_walk(tmp_path):
-    from underfoot_simulator.activities import activity, activity_c3d
+    from underfoot.trials.simulator.activities import activity, activity_c3d
 
     path = tmp_path / "walk.c3d"
     path.write_bytes(activity_c3d(activity("walk", np.random.default_rng(1))))

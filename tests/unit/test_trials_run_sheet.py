@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from underfoot.cli.app import app
 from underfoot.core import InputError
-from underfoot_trial_analysis.run_sheet import factors_from, run_sheet
+from underfoot.trials.study.run_sheet import factors_from, run_sheet
 
 FACTORS = {"shoe": ("A", "B", "C"), "fluid": ("dry", "water")}
 
@@ -70,7 +70,7 @@ def test_a_plan_that_is_none_is_refused(texts, options, word):
 
 
 def test_the_sheet_is_the_conditions_of_the_analysis(tmp_path):
-    from underfoot_trial_analysis.conditions import conditions_of
+    from underfoot.trials.study.conditions import conditions_of
 
     out = tmp_path / "conditions.csv"
     given = ["trials", "plan", "shoe=A,B", "fluid=dry,water", "--repeats", "2", "--out", str(out)]

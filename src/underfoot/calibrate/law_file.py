@@ -142,7 +142,7 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
             there are too few speeds; "readings" without any repeat.
     """
     from underfoot.core import unknown_name
-    from underfoot.trials.stribeck_fit import stribeck_fit
+    from underfoot.trials.machines.stribeck_fit import stribeck_fit
 
     if form not in FORMS:
         raise unknown_name("form", form, FORMS, where="--form")

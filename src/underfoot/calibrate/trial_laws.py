@@ -9,7 +9,7 @@ from underfoot.core import InputError, SourcedValue
 
 if TYPE_CHECKING:
     from underfoot.friction import StribeckLaw
-    from underfoot.trials.stribeck_fit import FitParameter, StribeckFit
+    from underfoot.trials.machines.stribeck_fit import FitParameter, StribeckFit
 
 
 def stribeck_law_from_fit(

@@ -3,6 +3,7 @@
 from .case import Case
 from .describe import assumptions
 from .errors import CaseError
+from .free_tread import FreeTread as FreeTread
 from .parts import FILE_VERSION, paths, unit_at
 from .section import Option, Origin, Section
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from . import cases, tools
+from . import app_command, cases, export, material, micro, places, tools
 from .calibrate import calibrate_app
 from .contact import contact
 from .groups import Command, Group
@@ -15,6 +15,7 @@ from .guard import guarded
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
+from .study import study_app
 from .surface import surface
 from .trials import trials_app
 
@@ -36,9 +37,16 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     cases.sensitivity,
     cases.risk,
     cases.wear,
+    places.choose,
+    places.machine,
+    places.machines,
     stribeck,
     surface,
+    material.material,
     contact,
+    micro.micro,
+    export.export,
+    app_command.app,
     tools.explain,
     tools.catalogue,
     tools.schema,
@@ -51,7 +59,7 @@ for command in COMMANDS:
 app.command("test", cls=Command)(guarded(cases.by_method))
 
 
-for group in (trials_app, calibrate_app, studies_app, outsole_app):
+for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):
     app.add_typer(group)
 
 

@@ -9,6 +9,8 @@ from .groups import Group
 from .guard import guarded, say
 from .options import AsJson, Overwrite, Quick
 from .output import finish
+from .places import calibrate_machine
+from .study import posterior
 
 calibrate_app = typer.Typer(
     name="calibrate",
@@ -109,6 +111,8 @@ def pair(
 
 calibrate_app.command()(guarded(law))
 calibrate_app.command()(guarded(pair))
+calibrate_app.command()(guarded(posterior))
+calibrate_app.command("machine")(guarded(calibrate_machine))
 
 
 @calibrate_app.callback()

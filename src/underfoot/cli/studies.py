@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from underfoot.core import InputError
-from underfoot.core.registry import offered
 
 from .guard import guarded, say
 from .options import AsJson, OutFolder, Overwrite, Processes, Quick, ShowAll
@@ -168,7 +167,8 @@ def _settings(
         raise InputError(
             f"study {name} has no such setting", where=used[0], remedy=f"Leave out {used[0]}"
         )
-    settings = offered("studies", "g1").Settings
+    from underfoot.studies.g1 import Settings as settings
+
     series = series or ("report" if explicit else "both")
     for option, value, known in (
         ("series", series, ("report", "broad", "both")),

@@ -10,6 +10,10 @@ import typer
 from .groups import Group
 from .guard import guarded, say
 from .options import AsJson, Overwrite, PlateFrame, RampAngle, optional
+from .trials_analyse import analyse, persons
+from .trials_bundle import bundle
+from .trials_plan import plan
+from .trials_steps import definitions, edit, export
 
 trials_app = typer.Typer(
     name="trials",
@@ -49,8 +53,8 @@ def describe(
     as_json: AsJson = False,
 ) -> None:
     """Show plates, rates, axes, signs, baselines, heels and every step, taken or left and why."""
-    from underfoot.trials.axes import ramp_from
-    from underfoot.trials.describe import described_file
+    from underfoot.trials.recording.axes import ramp_from
+    from underfoot.trials.walking.describe import described_file
 
     description = described_file(
         file,
@@ -80,9 +84,8 @@ def simulate(
     """Write made-up measurements with known truth, to try the analysis out; clearly synthetic."""
     from underfoot.core.files import whole_folder
     from underfoot.core.progress import bar
-    from underfoot.core.registry import offered
+    from underfoot.trials.simulator import simulated_folder
 
-    simulated_folder = offered("simulators", "simulate")
     with bar("writing made-up trials") as progress, whole_folder(out, overwrite=overwrite) as made:
         paths = simulated_folder(kind, made, count=count, seed=seed, progress=progress)
     say(
@@ -90,5 +93,5 @@ def simulate(
     )
 
 
-trials_app.command()(guarded(describe))
-trials_app.command()(guarded(simulate))
+for command in (describe, simulate, analyse, bundle, definitions, edit, export, persons, plan):
+    trials_app.command()(guarded(command))

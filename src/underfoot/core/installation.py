@@ -14,7 +14,7 @@ from .catalogue import Catalogue, catalogue_folders, offered_catalogues
 from .fourier import fourier_library
 from .identity import package_version
 from .mkl import mkl_library
-from .registry import all_offers, broken_offers, missing_wings
+from .registry import OWN, all_offers, broken_offers
 from .sparse import back_end
 
 # module, package, extra, what it is for
@@ -41,14 +41,13 @@ def installation() -> list[tuple[str, str]]:
         ("system", f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors"),
         *((name, _required(name)) for name in _dependencies()),
         *(_optional(*row) for row in _OPTIONAL),
-        *((wing, f"not installed; remedy: {how}") for wing, how in missing_wings().items()),
         # measured on the work shoe in glycerol, grid of 1 mm, one thread
         ("sparse solver", back_end() + ("" if mkl_library() else _GAIN)),
         ("Fourier transform", fourier_library()),
         *((name, os.environ.get(name, "not set")) for name in _THREADS),
         ("cache", _cache(default_folder())),
     ]
-    rows += [("extension", str(offer)) for offer in all_offers()]
+    rows += [("extension", str(offer)) for offer in all_offers() if offer.package != OWN]
     rows += [("broken extension", line) for line in (*broken_offers(), *offered_catalogues())]
     folders = catalogue_folders(Path.cwd())
     rows.append(("catalogue", f"{len(Catalogue.load(folders).entries)} entries"))

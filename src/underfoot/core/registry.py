@@ -1,5 +1,7 @@
 """Doors for other packages: what they offer by entry point, each loaded alone and by its name.
 
+A room of this package that stands above the room that asks enters by a door too.
+
 A package offers ``name = "module:attribute"`` in the entry-point group ``underfoot.DOOR``. Nothing
 is imported before it is asked for; what can't be loaded is told in one line and touches only who
 asked for it. ``docs/extending.md`` says what stands behind each door.
@@ -18,38 +20,7 @@ from typing import Any
 from .errors import InputError
 
 PREFIX = "underfoot."
-WINGS = {
-    ("commands", "app"): "underfoot-app",
-    ("commands", "micro"): "underfoot-block",
-    ("commands", "material"): "underfoot-trial-analysis",
-    ("commands", "study"): "underfoot-design-studies",
-    **{
-        ("commands", f"trials.{name}"): "underfoot-trial-analysis"
-        for name in ("analyse", "bundle", "definitions", "edit", "export", "persons", "plan")
-    },
-    ("commands", "calibrate.posterior"): "underfoot-design-studies",
-    **{("names", name): "underfoot-design-studies" for name in ("Study", "optimise", "sweep")},
-    ("reports", "underfoot_design_studies"): "underfoot-design-studies",
-    ("tread", "free"): "underfoot-design-studies",
-    ("questions", "machine_reading"): "underfoot-places",
-    **{
-        ("commands", name): "underfoot-places"
-        for name in ("calibrate.machine", "choose", "machine", "machines")
-    },
-    ("friction", "pair_read"): "underfoot-places",
-    ("catalogues", "places"): "underfoot-places",
-    ("reports", "underfoot_places"): "underfoot-places",
-    ("reports", "underfoot_trial_analysis"): "underfoot-trial-analysis",
-    ("studies", "g1"): "underfoot-block",
-    **{
-        ("studies", name): "underfoot-studies"
-        for name in ("g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
-    },
-    ("simulators", "simulate"): "underfoot-simulator",
-    ("trial_formats", "readers"): "underfoot-readers",
-    ("commands", "export"): "underfoot-readers",
-}
-"""Package of this project that offers a name."""
+OWN = "underfoot"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,18 +84,16 @@ def offers(door: str) -> dict[str, Offer]:
 
 
 def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: "") -> Any:
-    """Return what is offered by a name; None where nobody does, nor a wing of this project.
+    """Return what is offered by a name; None where nobody does.
 
     ``check`` says what is wrong with an object, "" for nothing.
 
     Raises:
-        InputError: Two packages offer it, it can't be imported, ``check`` says so, or a wing that
-            would offer it is not installed.
+        InputError: Two packages offer it, it can't be imported, or ``check`` says so.
     """
     chosen = [offer for offer in all_offers() if (offer.door, offer.name) == (door, name)]
-    wing = WINGS.get((door, name))
-    if wing:  # our name stays ours
-        chosen = [offer for offer in chosen if offer.package == wing]
+    # our name stays ours
+    chosen = [offer for offer in chosen if offer.package == OWN] or chosen
     if len(chosen) > 1:
         raise InputError(
             f'two packages offer the {door} "{name}": ' + " and ".join(map(str, chosen)),
@@ -135,21 +104,7 @@ def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: ""
         if wrong := check(item):
             raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
         return item
-    if wing:
-        what = f"{name.replace('.', ' ')} comes with the package {wing}"
-        raise InputError(what, remedy=_installing(wing))
     return None
-
-
-def missing_wings() -> dict[str, str]:
-    """Return the remedy for each package of this project that is not installed, by its name."""
-    present = {offer.package for offer in all_offers()}
-    return {wing: _installing(wing) for wing in sorted({*WINGS.values()} - present)}
-
-
-def _installing(wing: str) -> str:
-    folder = wing.partition("-")[2].replace("-", "_")
-    return f"pip install {wing} (in the source: ./wings/{folder})"
 
 
 def broken_offers() -> Iterator[str]:

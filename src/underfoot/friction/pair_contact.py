@@ -22,7 +22,7 @@ slope of both surfaces, which grows with Rq up to that of the steepest floors: l
 waves do not lower the real area.
 
 No dry reading stands behind the level: adhesion at 8.3 um is taken as what water leaves of it at
-rest. The constants are calibrated on published measurements (``underfoot_studies.pair_law``) and
+rest. The constants are calibrated on published measurements (``underfoot.studies.pair_law``) and
 are measurements of no single pair. A laboratory, its dry-like part and a pair each have an error of
 their own, learned between the sources; they are the largest part of the interval.
 """

@@ -7,7 +7,7 @@ x is the place of a tread among treads (``underfoot.shoe.tread_place``): equal t
 same, like ones by nearly the same, and a sole without tread (x = 0) has no tread to miss. z is
 drawn as a sum of waves whose coefficients depend on seed and name alone, so that whatever is
 compared takes one field. s is learned from published pairs of treads: ``tread_pairs.csv`` holds
-their ln ratio and the computed one (``underfoot_studies.tread_pairs`` writes it).
+their ln ratio and the computed one (``underfoot.studies.tread_pairs`` writes it).
 """
 
 import csv

@@ -2,8 +2,6 @@
 
 from .bs903_1950 import bs903_breaches as bs903_breaches
 from .bs903_1950 import youngs_modulus_bs903 as youngs_modulus_bs903
-from .compression import CompressionModuli as CompressionModuli
-from .compression import compression_moduli as compression_moduli
 from .curves import DynamicSweep as DynamicSweep
 from .curves import RelaxationCurve as RelaxationCurve
 from .elastomer import Elastomer as Elastomer

@@ -308,7 +308,7 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
     Raises:
         InputError: No such file, no RCOF in it, or one step only.
     """
-    from underfoot.trials.measurement import MEAN_OF_STEPS
+    from underfoot.trials.recording.measurement import MEAN_OF_STEPS
 
     try:
         rows = list(csv.DictReader(decoded(path.read_bytes(), str(path)).splitlines()))

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.html import embedded, png
+from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
 from underfoot.core.presentation import Presentable
 from underfoot.core.registry import offered
 
-from .html import embedded, png
-from .page import Picture, Section, page, remark_sections, table_sections
 from .writing import Writer, Written, data_writers, write_folder
 
 if TYPE_CHECKING:
@@ -31,6 +31,9 @@ _HOMES = {
     "questions": ("results", "question_figures", "slips", "wear_page"),
     "film": ("regime_figure",),
     "report": ("outsole",),
+    "calibrate": ("compound",),
+    "explore": ("design_study",),
+    "places": ("places",),
     **dict.fromkeys(("friction", "rough_contact", "slip", "material", "surface"), ("laws",)),
 }
 """Modules of this room that register the types of a room of the package."""

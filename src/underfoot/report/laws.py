@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from underfoot.core.html import new_figure
 from underfoot.friction import UncertainInputs
 from underfoot.friction.law import PIN_PRESSURE
 from underfoot.material import RelaxationSpectrum
@@ -20,7 +21,6 @@ from underfoot.slip._checks import PresentableModel
 from underfoot.surface import Profile, Scan, levelled
 
 from .dispatch import figures
-from .html import new_figure
 
 THICK_FILM = 1e-3  # m: the viscous part is next to nothing
 Draw = Callable[[Any, Figure], None]

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
+from underfoot.core.html import new_figure
 from underfoot.questions.comparison import LETTERS
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
-from .html import new_figure
 from .quantities import Quantity, Scale, drawn, inside, quantities, scale
 
 if TYPE_CHECKING:

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from underfoot.core.files import checksum
+from underfoot.core.html import embedded, new_figure
+from underfoot.core.page import Picture, Section, remark_sections, table_sections
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.units import tread_unit, unit_system
 from underfoot.shoe import SoleSurface
@@ -29,9 +31,7 @@ from underfoot.shoe.tread_measures import (
 
 from .dispatch import FigureMakers, figures, files, sections
 from .drawn_sole import DrawnSole
-from .html import embedded, new_figure
 from .maps import frame_sole
-from .page import Picture, Section, remark_sections, table_sections
 from .quantities import Quantity
 from .surface_mesh import surface_mesh
 from .viewer import listed_quantity, pane, scene, scene_section, viewer_script

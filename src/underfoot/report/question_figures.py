@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from underfoot.core import display
+from underfoot.core.html import new_figure
 from underfoot.core.presentation import quantity_text
 from underfoot.questions.contact import RoughContact
 from underfoot.questions.sensitivity import QUANTITIES, Sensitivity
 from underfoot.questions.wear import WearSeries
 
 from .dispatch import FigureMakers, figures, files
-from .html import new_figure
 from .writing import Writer, data_writers
 
 if TYPE_CHECKING:

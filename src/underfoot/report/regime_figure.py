@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError
+from underfoot.core.html import new_figure
 from underfoot.film import RegimeMap
 from underfoot.film.regimes import LAMBDA_LIMITS, SHARE_LIMITS
 
 from .dispatch import plot
-from .html import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,6 +14,8 @@ from underfoot.compute.result import Result
 from underfoot.compute.sole import sole_map, sole_shape
 from underfoot.core import UnderfootError, content_hash, silent
 from underfoot.core.fields import Fields, labelled
+from underfoot.core.html import embedded, new_figure
+from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
@@ -21,9 +23,7 @@ from underfoot.shoe import SoleMap
 
 from .chart import line_chart
 from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
-from .html import embedded, new_figure
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
-from .page import Picture, Section, page, remark_sections, table_sections
 from .quantities import quantities
 from .surface_mesh import SurfaceMesh, surface_mesh
 from .viewer import scene_section, viewer_scene, viewer_script

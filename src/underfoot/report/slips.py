@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from underfoot.core.html import embedded, environment, new_figure
+from underfoot.core.page import Picture, Section, remark_sections, table_sections
 from underfoot.questions.slips import SlipPopulation, shown_motion
 from underfoot.slip.dynamics import array_pressures
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
 
 from .dispatch import FigureMakers, figures, sections
-from .html import embedded, environment, new_figure
-from .page import Picture, Section, remark_sections, table_sections
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +36,11 @@ def _figures(shown: SlipPopulation) -> FigureMakers:
 def _sections(shown: SlipPopulation, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
     data = json.dumps(animation_data(shown.study), separators=(",", ":")).replace("<", "\\u003c")
     walker = shown_motion(shown.study).walker
-    player = environment().get_template("slip.html").render(data=data, wet=shown.wet, walker=walker)
+    player = (
+        environment(__package__ or "")
+        .get_template("slip.html")
+        .render(data=data, wet=shown.wet, walker=walker)
+    )
     drawn = [
         Picture("Heel path, pressures, speed and forces of one slip", embedded(p), True)
         for p in pictures.values()

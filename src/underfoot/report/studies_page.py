@@ -8,7 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .html import embedded, environment
+from underfoot.core.html import embedded, environment
+
 from .study_figures import drawn
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def studies_page(
         for result in results
     ]
     several = len(results) > 1
-    page = environment().get_template("studies.html")
+    page = environment(__package__ or "").get_template("studies.html")
     return page.render(
         title="Printed and computed numbers" if several else results[0].study.title,
         several=several,

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from underfoot.core.html import new_figure
 from underfoot.studies.figure import COLOURS, MARKERS, Layer, Panel, line, points
 from underfoot.studies.figure import Figure as FigureData
-
-from .html import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from underfoot.compute.histories import MARCH
 from underfoot.core.fields import Fields
+from underfoot.core.html import environment
 from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
-from .html import environment
 from .quantities import Quantity, carried_load, drawn, quantities, scale
 from .surface_mesh import SurfaceMesh, surface_mesh
 
@@ -51,7 +51,7 @@ def scene_section(scene: dict[str, Any]) -> str:
     """
     # "<" would let a name in the data end the script element
     data = json.dumps(scene, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
-    template = environment().get_template("viewer.html")
+    template = environment(__package__ or "").get_template("viewer.html")
     return template.render(scene=scene, data=data, letters=LETTERS, per_row=_per_row)
 
 
@@ -62,7 +62,7 @@ def _per_row(count: int, most: int) -> int:
 
 def viewer_script(*further: str) -> str:
     """Return the program that draws every viewer of a page; ``further`` scripts can start more."""
-    parts = [environment().get_template(name).render() for name in SCRIPTS]
+    parts = [environment(__package__ or "").get_template(name).render() for name in SCRIPTS]
     return "(() => {\n" + "\n".join([*parts, *further]) + "\n})();"
 
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.core.html import embedded
+from underfoot.core.page import Picture, Section, remark_sections, table_sections
 from underfoot.questions.wear import WearSeries
 
 from .dispatch import files, sections
 from .drawn_sole import DrawnSole
-from .html import embedded
-from .page import Picture, Section, remark_sections, table_sections
 from .quantities import Quantity
 from .surface_mesh import surface_mesh
 from .viewer import history, listed_quantity, pane, scene, scene_section, viewer_script

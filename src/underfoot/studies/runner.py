@@ -17,10 +17,9 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
-from underfoot.core.registry import offered
 
 from .figure import Figure
-from .statements import Study, studies, study
+from .statements import Study, studies, study, study_module
 from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
 
 
@@ -171,7 +170,7 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
     Raises:
         InputError: Settings for a study that has none.
     """
-    module: Any = offered("studies", chosen.name)
+    module = study_module(chosen.name)
     if options.settings is not None and not hasattr(module, "Settings"):
         raise InputError(
             f"study {chosen.name} has no settings of its own",

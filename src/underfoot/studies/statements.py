@@ -13,14 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.files import read_toml
-from underfoot.core.registry import WINGS, offered, offers
+from underfoot.core.registry import offered, offers
 
 Z95 = 1.959963984540054
+OURS = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
+"""Studies of this package, each a module of this room."""
 KEYS = (
     "id text place claim printed shown unit tolerance reason count deviation effect quantity kind "
     "of not_comparable remark remarks alternatives resolution quick_error"
@@ -162,22 +165,27 @@ class Study:
 
 def studies() -> tuple[str, ...]:
     """Return the names of all studies: ours in their order, then those of other packages."""
-    ours = [name for door, name in WINGS if door == "studies"]
-    offered_studies = offers("studies")
-    return (
-        *(name for name in ours if name in offered_studies),
-        *sorted(offered_studies.keys() - set(ours)),
-    )
+    return (*OURS, *sorted(offers("studies").keys() - set(OURS)))
+
+
+def study_module(name: str) -> Any:
+    """Return the module of a study: its ``STATEMENTS`` and ``compute``.
+
+    Raises:
+        InputError: No study has the name.
+    """
+    if name in OURS:
+        return import_module(f".{name}", __package__)
+    if (module := offered("studies", name)) is None:
+        raise unknown_name("study", name, studies())
+    return module
 
 
 @cache
 def study(name: str) -> Study:
     """Return a study by its name; an unknown name is answered with the nearest one."""
     chosen = name.strip().lower()
-    module = offered("studies", chosen)
-    if module is None:
-        raise unknown_name("study", name, studies())
-    return read_study(chosen, read_toml(Path(module.STATEMENTS)))
+    return read_study(chosen, read_toml(Path(study_module(chosen).STATEMENTS)))
 
 
 def read_study(name: str, content: Mapping[str, Any]) -> Study:

@@ -1,28 +1,6 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
-from .axes import Axes, Ramp, axes_of, axis_name, axis_vector, heel_candidates, ramp_from
-from .belts import Belt
-from .describe import Description, described, described_file
-from .events import EditError, Stance, stances
-from .gait import (
-    DEFINITIONS,
-    RcofDefinition,
-    RequiredFriction,
-    required_friction,
-    required_frictions,
-    stance_frictions,
-)
-from .gait_context import (
-    GaitContext,
-    SlipCourse,
-    foot_angle,
-    gait_context,
-    slip_course,
-    stance_curves,
-)
-from .measurement import Flag, Measurement, mean_of
-from .plates import finished_plate
-from .pressures import (
+from .machines.pressures import (
     Passage,
     Pulse,
     PulseDefinition,
@@ -32,6 +10,12 @@ from .pressures import (
     pressure_pulse,
     sensor_array_reading,
     sensor_rows,
+)
+from .machines.slip_friction import (
+    ACOF_WINDOWS,
+    available_friction,
+    available_frictions,
+    mean_friction,
 )
 from .readers import (
     PlateColumns,
@@ -43,7 +27,10 @@ from .readers import (
     read_trial,
     read_trials,
 )
-from .signals import (
+from .recording.axes import Axes, Ramp, axes_of, axis_name, axis_vector, heel_candidates, ramp_from
+from .recording.measurement import Flag, Measurement, mean_of
+from .recording.plates import finished_plate
+from .recording.signals import (
     FILTERS,
     FORCE_FILTER,
     MARKER_FILTER,
@@ -52,8 +39,37 @@ from .signals import (
     low_passed,
     velocity,
 )  # fmt: skip
-from .slip_friction import ACOF_WINDOWS, available_friction, available_frictions, mean_friction
-from .slips import (
+from .recording.trial import (
+    Channel,
+    Edit,
+    Event,
+    Marker,
+    Plate,
+    PlateAccuracy,
+    Trial,
+    file_checksum,
+    joined,
+)
+from .walking.belts import Belt
+from .walking.describe import Description, described, described_file
+from .walking.events import EditError, Stance, stances
+from .walking.gait import (
+    DEFINITIONS,
+    RcofDefinition,
+    RequiredFriction,
+    required_friction,
+    required_frictions,
+    stance_frictions,
+)
+from .walking.gait_context import (
+    GaitContext,
+    SlipCourse,
+    foot_angle,
+    gait_context,
+    slip_course,
+    stance_curves,
+)
+from .walking.slips import (
     HeelMotion,
     Outcome,
     OutcomeLimits,
@@ -64,8 +80,7 @@ from .slips import (
     slip,
     slip_of,
 )
-from .trial import Channel, Edit, Event, Marker, Plate, PlateAccuracy, Trial, file_checksum, joined
-from .walkway import Walkway, body_mass, body_weight, walkway_of
+from .walking.walkway import Walkway, body_mass, body_weight, walkway_of
 
 __all__ = [
     "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Belt",

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core.arrays import Array
-from underfoot.trials.measurement import Measurement
-from underfoot.trials.pressures import pressure_pulse
-from underfoot.trials.slips import Outcome, OutcomeLimits, Slip, slip
-from underfoot.trials.trial import Channel, Marker
+from underfoot.trials.machines.pressures import pressure_pulse
+from underfoot.trials.recording.measurement import Measurement
+from underfoot.trials.recording.trial import Channel, Marker
+from underfoot.trials.walking.slips import Outcome, OutcomeLimits, Slip, slip
 
 from .motion import SlipMotion
 from .sensors import FloorSensors

@@ -10,14 +10,14 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
-from underfoot.trials.events import Stance
-from underfoot.trials.gait import RcofDefinition, RequiredFriction, required_frictions
-from underfoot.trials.gait_context import FLAT, heel_speed
 from underfoot.trials.readers import read_trial
-from underfoot.trials.signals import low_passed
-from underfoot.trials.slips import HeelMotion, heel_motion
-from underfoot.trials.trial import Marker, Trial
-from underfoot.trials.walkway import Walkway, body_mass, walkway_of
+from underfoot.trials.recording.signals import low_passed
+from underfoot.trials.recording.trial import Marker, Trial
+from underfoot.trials.walking.events import Stance
+from underfoot.trials.walking.gait import RcofDefinition, RequiredFriction, required_frictions
+from underfoot.trials.walking.gait_context import FLAT, heel_speed
+from underfoot.trials.walking.slips import HeelMotion, heel_motion
+from underfoot.trials.walking.walkway import Walkway, body_mass, walkway_of
 
 from .gait import LEAST_LOAD, GaitHistory
 

@@ -13,7 +13,7 @@ from scipy.special import ndtri
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.friction import FrictionLaw
-from underfoot.trials.slips import SlipDefinition
+from underfoot.trials.walking.slips import SlipDefinition
 
 from ._kernels import reduced as kernel
 from .full_model import LOWEST_SPEED, Setting

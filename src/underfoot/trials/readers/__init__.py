@@ -7,21 +7,21 @@ from pathlib import Path
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.registry import offered
 
-from ..trial import Trial
+from ..recording.trial import Trial
 from .draft import Draft
 from .formats import (
+    READERS,
     TABLE,
     TrialReader,
     file_format,
-    missing_readers,
     nearest_format,
-    trial_readers,
     trial_suffixes,
 )
 from .profile import PlateColumns, Profile, profile_from, read_profile, with_channels
 from .sheet import Sheet, read_sheet
 
 __all__ = [
+    "READERS",
     "PlateColumns",
     "Profile",
     "Sheet",
@@ -33,7 +33,6 @@ __all__ = [
     "read_sheet",
     "read_trial",
     "read_trials",
-    "trial_readers",
     "trial_suffixes",
     "with_channels",
 ]
@@ -46,7 +45,7 @@ def read_trials(
 ) -> tuple[Trial, ...]:
     """Return the trials in a measurement file; most files hold one, tribometer logs one a step.
 
-    Understood are the formats of ``trial_readers`` (C3D, TRC, MOT/STO, exports of Cortex, BioWare,
+    Understood are the formats of ``READERS`` (C3D, TRC, MOT/STO, exports of Cortex, BioWare,
     Qualisys, Vicon and others), CSV, XLSX and XLS.
 
     ``profile``: what the columns, axes and heels are called: a ``Profile`` or a TOML file.
@@ -71,7 +70,6 @@ def read_trials(
         trials = reader(draft)
     except UnderfootError as error:
         error.where = error.where or path.name
-        error.remedy = f"{error.remedy or ''} {missing_readers()}".strip() or None
         raise
     except (ValueError, IndexError, KeyError, TypeError, ArithmeticError, MemoryError) as error:
         # Damaged files break assumptions in ways no check foresees; the user gets one kind of

@@ -12,9 +12,9 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .. import plates
-from ..measurement import Flag
-from ..trial import Event, Trial
+from ..recording import plates
+from ..recording.measurement import Flag
+from ..recording.trial import Event, Trial
 from .draft import Draft
 from .text import si_unit, truncated
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from underfoot.core import DataError, nearest_match
 
-from ..axes import axis_vector
-from ..plates import plate_axes, refused_plate, up_from_normal
-from ..trial import Trial
+from ..recording.axes import axis_vector
+from ..recording.plates import plate_axes, refused_plate, up_from_normal
+from ..recording.trial import Trial
 from .draft import Draft
 from .formats import nearest_format
 from .profile import PlateColumns, Profile

@@ -9,8 +9,8 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.text import decoded
 
-from ..plates import finished_plate
-from ..trial import Channel, Event, Marker, Plate, Trial
+from ..recording.plates import finished_plate
+from ..recording.trial import Channel, Event, Marker, Plate, Trial
 from .profile import Profile
 from .text import in_si, lines_of, rate_of, si_unit, table, truncated, unique_names
 

@@ -1,22 +1,18 @@
 """The table of file formats: how each is recognised, and what reads it.
 
-A reader is one function and one entry. The core reads C3D and plain tables; all other formats
-enter by the registry, those of the wing ``underfoot_readers`` as a whole (``trial_formats``), those
-of others one by one (``trial_readers``, ``docs/extending.md``).
+A reader is one function and one entry; other packages add their own one by one
+(``trial_readers``, ``docs/extending.md``).
 """
 
 import re
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from underfoot.core import DataError, InputError
-from underfoot.core.registry import offered, offers
+from underfoot.core import DataError
 from underfoot.core.text import utf16_of
 
 
@@ -53,7 +49,7 @@ class TrialReader:
         return getattr(import_module(module), name)(draft)
 
 
-_DOOR, _HERE = "trial_formats", "underfoot.trials.readers."
+_HERE = "underfoot.trials.readers."
 C3D = TrialReader("C3D", _HERE + "c3d:read_c3d", suffixes=(".c3d",))
 TABLE = TrialReader(
     "table", _HERE + "columns:read_columns", magic=(b"PK\x03\x04", b"\xd0\xcf\x11\xe0"),
@@ -61,28 +57,68 @@ TABLE = TrialReader(
 )  # fmt: skip
 
 
-@lru_cache(maxsize=1)
-def trial_readers() -> tuple[TrialReader, ...]:
-    """Return the readers of the packages that are here and can be loaded."""
-    found: list[TrialReader] = []
-    for name in offers(_DOOR):
-        with suppress(InputError):  # told by underfoot doctor; files of other formats are read
-            found += offered(_DOOR, name)
-    return tuple(found)
-
-
-def missing_readers() -> str:
-    """Return what to do where the wing of readers is not here, "" where it is."""
-    try:
-        offered(_DOOR, "readers")
-    except InputError as error:
-        return f"For formats of other makers: {error.remedy}"
-    return ""
+_EXPORT = "Export the recording as C3D, or as text with column names"
+_EXPORTS = _HERE + "text_exports:"
+READERS = (
+    TrialReader("TRC", _EXPORTS + "read_trc", (r"\Apathfiletype",), suffixes=(".trc",)),
+    TrialReader(
+        "Cortex", _EXPORTS + "read_cortex_forces", (r"\A.{0,90}\[force data\]",),
+        suffixes=(".forces",),
+    ),
+    TrialReader(
+        "Qualisys", _EXPORTS + "read_qualisys", (r"\Ano_of_frames", r"\Ano_of_samples")
+    ),
+    TrialReader(
+        "Vicon", _EXPORTS + "read_vicon_csv",
+        (r'\A[ ,"]*(devices|trajectories|model outputs|joints)[ ,"]*$',),
+    ),
+    TrialReader(
+        "motion", _EXPORTS + "read_motion", (r"^\s*endheader",), suffixes=(".mot", ".sto")
+    ),
+    TrialReader("BioWare", _EXPORTS + "read_bioware", (r"^abs time",)),
+    TrialReader(
+        "OptiTrack Motive", _HERE + "motive:read_motive",
+        (r'\A"?format version"?,.*(take name|capture frame rate|export frame rate)',),
+    ),
+    TrialReader("D-Flow", _HERE + "dflow:read_dflow",
+                (r"\A[% ]*timestamp\t[^\n]*\.posx",)),
+    TrialReader("BTS", _HERE + "bts:read_bts", (r"\Abts ascii format",),
+                suffixes=(".emt",)),
+    TrialReader("Xsens", _HERE + "xsens:read_mvnx", (r"<mvnx[ >]",),
+                suffixes=(".mvnx",)),
+    TrialReader("XSENSOR", _HERE + "xsensor:read_xsensor",
+                (r'^"?sensor:?"?,.*\n(.*\n)*?"?rows:?"?,', r'\A"?file ?name:?"?,.*\.xsn')),
+    TrialReader("TDMS", _HERE + "tdms:read_tdms", magic=(b"TDSm",),
+                suffixes=(".tdms",)),
+    TrialReader("STM 603", _HERE + "satra:read_stm603", (r"\A.*\bstm ?603\b",
+                r"^.*\bsatra\b.*(slip|stm)")),
+    TrialReader("AMTI", _HERE + "amti:read_netforce",
+                (r"\A.*(netforce|amti\b.*(force|acquisition))",), magic=(b"\x64\0\0\0",),
+                suffixes=(".bsf",)),
+    TrialReader("CETR", _HERE + "instrument_logs:read_cetr", (r"\A(.*\n){0,3}.*cetr",)),
+    TrialReader("PCS", _HERE + "instrument_logs:read_pcs", (r"\A.*test data file",)),
+    TrialReader("F-Scan", _HERE + "instrument_logs:read_fscan", (r"\Adata_type",),
+                suffixes=(".asf",)),
+    TrialReader("Pedar", _HERE + "instrument_logs:read_pedar", (r"^time\[secs\]",),
+                suffixes=(".fgt",)),
+    TrialReader("JSON", _HERE + "pose_json:read_pose_json", (r"\A\s*\{",),
+                suffixes=(".json",)),
+    TrialReader("MATLAB", _HERE + "matlab:read_matlab", suffixes=(".mat",),
+                magic=(b"MATLAB 5.0", b"MATLAB 7.3", b"\x89HDF")),
+    # known, and not read as something else
+    TrialReader("BTS TDF", "", magic=(b"\x82K`A",), suffixes=(".tdf",), remedy=_EXPORT),
+    TrialReader("MDF of Codamotion or BTS", "", suffixes=(".mdf",), remedy=_EXPORT),
+    TrialReader("Delsys HPF", "", magic=(b"datx",), suffixes=(".hpf",), remedy=_EXPORT),
+    TrialReader("NDI N3D", "", suffixes=(".n3d",), remedy=_EXPORT),
+    TrialReader("Xsens MVN, not exported,", "", suffixes=(".mvn",), remedy="Export it as MVNX"),
+    TrialReader("GAITRite", "", (r"\A.*gaitrite",), remedy="It holds footfalls, no forces"),
+    TrialReader("Delsys EMGworks", "", (r"\A.*(emgworks|x\[s\].*emg)",), remedy=_EXPORT),
+)  # fmt: skip
 
 
 def trial_suffixes() -> tuple[str, ...]:
     """Return the endings of names by which a folder's trial files are found."""
-    every = (C3D, *trial_readers(), TABLE)
+    every = (C3D, *READERS, TABLE)
     return tuple(dict.fromkeys(suffix for one in every for suffix in one.suffixes))
 
 
@@ -98,16 +134,15 @@ def file_format(data: bytes, path: Path) -> TrialReader:
         return TABLE
     text = head[: len(head) // 2 * 2].decode(wide or "latin-1", "replace")
     text = text.lstrip("\ufeffï»¿").casefold().replace("\r", "\n")
-    readers = trial_readers()
-    found = next((one for one in readers if one.recognises(data, text)), None)
-    return found or next((one for one in readers if suffix in one.suffixes), TABLE)
+    found = next((one for one in READERS if one.recognises(data, text)), None)
+    return found or next((one for one in READERS if suffix in one.suffixes), TABLE)
 
 
 def nearest_format(header: Iterable[str]) -> str | None:
     """Return the format whose marks come nearest to words of a file's first lines, or None."""
     words = {
         word: one.name
-        for one in trial_readers()
+        for one in READERS
         for mark in one.marks
         for word in re.findall(r"[a-z_]{6,}", mark)
     }

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from underfoot.core import InputError, nearest_match, to_si
 
-from ..tester_calibration import TesterCalibration
-from ..trial import PlateAccuracy
+from ..recording.tester_calibration import TesterCalibration
+from ..recording.trial import PlateAccuracy
 from .text import known_units, si_unit
 
 T = TypeVar("T")

@@ -1,0 +1,159 @@
+"""Results side by side: soles with one camera, how sure each order is, a table to sort, files."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+from nicegui import ui
+
+from underfoot.core import InputError
+
+from ..components import SoleView, sentences, table, task_line, title
+from ..jobs import DONE, Task
+from ..session import Session
+from .answer import begin_run
+
+ROUTE = "/compare"
+WORK, EQUAL = "underfoot.app.work_studies", "underfoot.app.work_sole:equal_land"
+MOST = 12
+COLUMNS = ("letter", "name", "cof", "slip_probability", "fluid_load", "peak_fluid_pressure",
+           "contact_area")  # fmt: skip
+
+
+def build(session: Session) -> None:
+    """Show the choice of results, and those chosen side by side."""
+    _Compare(session)
+
+
+class _Compare:
+    def __init__(self, session: Session) -> None:
+        self.session, self.text = session, session.text
+        names = [each.name for each in session.project.results()]
+        asked = [name for name in session.query.get("variants", "").split("|") if name in names]
+        title(self.text("compare.title")).classes("hidden-title")
+        ui.label(self.text("compare.lead", most=MOST)).classes("lead")
+        if len(names) < 2:
+            ui.label(self.text("compare.too_few")).classes("soft")
+            return
+        with ui.element("div").classes("bar-row no-print"):
+            self.choice = ui.select(names, multiple=True, value=asked or names[:2])
+            self.choice.props(f'dense outlined use-chips label="{self.text("compare.choose")}"')
+            self.choice.props(f"max-values={MOST} translate=no").classes("compare-choice")
+            self.choice.on_value_change(self.show)
+            for key, icon, action in (
+                ("csv", "table_view", self._csv),
+                ("glb", "view_in_ar", self._glb),
+                ("equal", "balance", self._equal_land),
+                ("pdf", "print", lambda: ui.run_javascript("window.print()")),
+            ):
+                button = ui.button(self.text(f"compare.{key}"), icon=icon, on_click=action)
+                button.props("flat no-caps dense")
+        self.equal = ui.element("div").props('role="status"')
+        self.summary = ui.element("div").props('role="status"')
+        self.sole = SoleView(session)
+        self.rest = ui.element("div")
+        self.rows: list[dict[str, Any]] = []
+        ui.timer(0, self.show, once=True)
+        states = session.project.state
+        session.follow(lambda: [states(name) for name in self.choice.value], self.show)
+
+    def folders(self) -> list[str]:
+        """Return the folders of the results that are chosen."""
+        return [str(self.session.project.result_folder(name)) for name in self.choice.value]
+
+    async def show(self) -> None:
+        """Show what is chosen."""
+        if len(self.choice.value) < 2:
+            return
+        comparison = await self.session.ask(f"{WORK}:comparison", self.folders())
+        self.rows = comparison["rows"]
+        self.summary.clear()
+        self.rest.clear()
+        self.sole.show(comparison["html"])
+        with self.summary:
+            for name in self.choice.value:
+                if not self.session.project.is_current(name):
+                    ui.label(self.text("compare.changed", name=name)).classes("caution")
+            ui.label(" ".join(comparison["headline"])).classes("lead")
+            sentences(comparison["cautions"], "soft")
+        with self.rest:
+            self._sortable()
+            letters = [row["letter"] for row in self.rows]
+            rows = [[a, *row] for a, row in zip(letters, comparison["chances"], strict=True)]
+            table({"title": self.text("compare.chances"), "columns": ["", *letters], "rows": rows})
+            for each in comparison["tables"][-1:]:
+                table(each)
+
+    async def _equal_land(self) -> None:
+        """Make a variant of the second with the land of the first, compute and compare it."""
+        project, chosen = self.session.project, list(self.choice.value)
+        if len(chosen) != 2:
+            remedy = self.text("compare.equal_two")
+            raise InputError(self.text("compare.equal_which"), where="compare", remedy=remedy)
+        first, second = chosen
+        for name in chosen:
+            if not project.is_current(name):
+                remedy = self.text("compare.equal_anew", name=name)
+                raise InputError(
+                    self.text("compare.changed", name=name), where="compare", remedy=remedy
+                )
+        files = (str(project.path(name)) for name in chosen)
+        changes, words = await self.session.ask(EQUAL, *files)
+        self.equal.clear()
+        if not changes:
+            with self.equal:
+                ui.label(self.text("compare.equal_already", a=first, b=second, **words))
+            return
+        new = project.copy(second, self.text("compare.equal_name", a=first, b=second))
+        project.change(new, changes)  # a state of its own: undone, it is the second again
+
+        def show(names: list[str]) -> None:
+            self.choice.set_options([r.name for r in project.results()], value=names)
+
+        def undo() -> None:
+            self.session.jobs.cancel(task)
+            project.remove(new)
+            self.equal.clear()
+            show(chosen)
+
+        async def ended(done: Task) -> None:
+            if done.state == DONE and new in project.variants():
+                show([first, new])
+
+        with self.equal:
+            ui.label(self.text("compare.equal_made", a=first, b=second, name=new, **words))
+            button = ui.button(self.text("variant.undo"), icon="undo", on_click=undo)
+            button.props("flat no-caps dense data-step=undo")
+            task = begin_run(self.session, new)
+            task_line(self.session, task, ended)
+
+    def _sortable(self) -> None:
+        columns = [
+            {
+                "name": key,
+                "label": self.text(f"compare.{key}"),
+                "field": key,
+                "sortable": True,
+                "align": "left",
+            }
+            for key in COLUMNS
+            if any(row.get(key) is not None for row in self.rows)
+        ]
+        made = ui.table(columns=columns, rows=self.rows, row_key="letter").props("flat dense")
+        for key in COLUMNS[2:]:  # sorted by the number, shown with unit and interval
+            made.add_slot(f"body-cell-{key}", f"<q-td>{{{{ props.row.{key}_text }}}}</q-td>")
+
+    def _csv(self) -> None:
+        stream = io.StringIO()
+        writer: Any = csv.DictWriter(stream, COLUMNS, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(self.rows)
+        ui.download.content(stream.getvalue(), "comparison.csv")
+
+    async def _glb(self) -> None:
+        for name, folder in zip(self.choice.value, self.folders(), strict=True):
+            file = self.session.project.inside("results", name, f"{name}.glb")
+            await self.session.ask(f"{WORK}:exported", folder, str(file))
+            ui.download.file(file)

@@ -1,0 +1,495 @@
+"""Design studies: the study file as a form, what it will take, its run, and what came of it."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import tomlkit
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+from underfoot.case import unit_at
+from underfoot.case.parts import paths
+from underfoot.core import InputError
+from underfoot.core.errors import UnderfootError
+from underfoot.core.files import whole_file
+from underfoot.core.units import display
+
+from ..components import SoleView, sentences, task_line, title
+from ..jobs import Task
+from ..project import NAME
+from ..session import Session, address, problem_parts
+from ..variant_bar import new_variant
+
+ROUTE = "/studies"
+WORK = "underfoot.app.work_studies"
+COMPUTED = f"{WORK}:computed"
+KINDS = {"normal": ("normal", "sd"), "lognormal": ("lognormal", "factor"), "even": ("from", "to")}
+"""Keys of the two numbers of each distribution."""
+FIELDS = {
+    "vary": ("from", "to", "steps", "values"),
+    "uncertain": ("kind", "first", "second"),
+    "conditions": ("values",),
+}
+GOALS = ("maximise", "minimise", "require")
+METHOD = {
+    "kind": ("sweep", "sensitivity", "optimise", "robust"),
+    "budget": (),
+    "draws": (),
+    "grid": ("quick", "standard"),
+    "front_grid": ("", "none", "quick", "standard"),
+}
+WIDE = 0.3
+"""Share of a value by which a new range goes to either side of it."""
+NEW = """\
+file_version = 1
+base = "../variants/{variant}.toml"
+
+[vary]
+"shoe.tread.depth" = {{ from = "1 mm", to = "4 mm" }}
+"shoe.tread.channel_width" = {{ from = "2 mm", to = "4 mm" }}
+
+[outputs]
+maximise = ["cof"]
+minimise = ["rubber_volume"]
+
+[method]
+kind = "optimise"
+budget = 40
+"""
+
+
+def build(session: Session) -> None:
+    """Show the study of the address, or the studies there are and how to begin one."""
+    ui.add_head_html('<script defer src="/viewer/design_study.js"></script>')
+    files = session.project.inside("studies").glob("*.toml")
+    names = sorted(file.stem for file in files if NAME.fullmatch(file.stem))
+    name = session.query.get("study", "")
+    if name in names:
+        _Study(session, name)
+        return
+    text = session.text
+    title(text("studies.title")).classes("hidden-title")
+    ui.label(text("studies.lead")).classes("lead")
+    with ui.element("div").classes("recent"):
+        for each in names:
+            with ui.element("div").classes("recent-row"):
+                ui.link(each, address(ROUTE, study=each))
+    begin = ui.button(text("studies.new"), icon="add", on_click=lambda: example(session))
+    begin.props("no-caps unelevated")
+
+
+def example(session: Session) -> None:
+    """Begin a study of the variant that was changed last, of a new one where there is none."""
+    variant = session.variant or new_variant(session, session.text("design.example"))
+    wanted, number = f"{variant} {session.text('studies.word')}", 1
+    name = wanted
+    while session.project.inside("studies", f"{name}.toml").exists():
+        number += 1
+        name = f"{wanted} {number}"
+    with whole_file(session.project.inside("studies", f"{name}.toml")) as part:
+        part.write_text(NEW.format(variant=variant), encoding="utf-8")
+    session.go(ROUTE, study=name)
+
+
+class _Study:
+    """The page of one study: its file is the truth, the form and the text are views of it."""
+
+    def __init__(self, session: Session, name: str) -> None:
+        self.session, self.text, self.name = session, session.text, name
+        self.file = session.project.inside("studies", f"{name}.toml")
+        self.at = (str(self.file), str(self.file.with_suffix("")))
+        self.chosen = -1
+        self.sheet: dict[str, Any] | None = None
+        title(name).classes("hidden-title")
+        with ui.element("div").classes("bar-row"):
+            back = ui.button(icon="arrow_back", on_click=lambda: session.go(ROUTE))
+            back.props(f'flat round dense aria-label="{self.text("studies.all")}"')
+            ui.label(name).classes("strong")
+            ui.space()
+            self.run_button = ui.button(icon="play_arrow", on_click=self.run)
+            self.run_button.props("no-caps unelevated").classes("main-action")
+            self.run_button.disable()  # until the study is read
+        with ui.element("div").classes("split"):
+            with ui.element("section").classes("side"):
+                with ui.tabs().props("dense no-caps align=left") as tabs:
+                    made = [ui.tab(key, self.text(f"studies.{key}")) for key in ("form", "file")]
+                with ui.tab_panels(tabs, value=made[0], animated=False).props("keep-alive"):
+                    self.form = ui.tab_panel(made[0])
+                    with ui.tab_panel(made[1]):
+                        self.editor = ui.textarea(value=self.written()).classes("study-file")
+                        self.editor.props("autogrow outlined spellcheck=false")
+                        self.editor.on("blur", self._edited)
+            with ui.element("section").classes("study-results"):
+                self.checked = ui.element("div").props('role="status"')
+                self.progress = ui.element("div")
+                with ui.element("div").classes("study-row") as self.steps:
+                    self.stop_button = ui.button(self.text("studies.stop"), on_click=self.stop)
+                    self.more = ui.number(self.text("studies.more"), min=1, step=1)
+                    self.more.props("dense outlined")
+                    self.widen_button = ui.button(self.text("studies.widen"), on_click=self.widen)
+                    for each in (self.stop_button, self.widen_button):
+                        each.props("flat no-caps")
+                    ui.label(self.text("studies.wider")).classes("soft")
+                self.plots = ui.element("div").classes("report")
+                self.plots.on("chosen", self._choose, args=["detail"])
+                with ui.element("div").classes("bar-row") as self.design:
+                    self.caption = ui.label().classes("strong")
+                    variant = ui.button(self.text("studies.to_variant"), icon="content_copy")
+                    variant.on_click(self._to_variant).props("flat no-caps")
+                self.sole = SoleView(session)
+                self.rest = ui.element("div").classes("report")
+        for each in (self.design, self.sole, self.steps):
+            each.set_visibility(False)
+        ui.timer(0, self._open, once=True)
+
+    def written(self) -> str:
+        """Return the study file."""
+        return self.file.read_text(encoding="utf-8")
+
+    async def _open(self) -> None:
+        await self._fill()
+        self.sheet = await self._check()
+        task = self.session.jobs.latest(self.name, COMPUTED)
+        if task is not None and task.open:
+            self._follow(task)
+        elif self._working:
+            self._watch(others=True)
+        if self.sheet and self.sheet["ended"]:
+            await self._show(whole=not self._working)
+
+    # the file
+
+    async def _fill(self) -> None:
+        """Fill the form from the file."""
+        try:
+            plain = await self.session.ask(f"{WORK}:form", self.written())
+        except UnderfootError:
+            return  # the check says what is wrong with the text
+        self.form.clear()
+        with self.form:
+            self._base(str(plain.get("base", "")))
+            for section in FIELDS:
+                _Rows(self, section, plain.get(section, {}))
+            self._heading("outputs")
+            for goal in GOALS:
+                self._goals(goal, plain.get("outputs", {}))
+            self._heading("method")
+            with ui.element("div").classes("study-row"):
+                for key, options in METHOD.items():
+                    self._method(key, options, plain.get("method", {}))
+
+    def _heading(self, key: str) -> None:
+        title(self.text(f"studies.{key}"), 2)
+        ui.label(self.text(f"studies.{key}_hint")).classes("soft")
+
+    def _base(self, base: str) -> None:
+        known = {f"../variants/{each}.toml": each for each in self.session.project.variants()}
+        choice = ui.select({**({base: base} if base else {}), **known}, value=base or None)
+        choice.props("dense outlined options-dense").props(f'label="{self.text("studies.base")}"')
+
+        async def changed() -> None:
+            await self.keep("base", choice.value)
+
+        choice.on_value_change(changed)
+
+    def _goals(self, goal: str, given: Mapping[str, Any]) -> None:
+        listed = given.get(goal, [])
+        lines = "\n".join(map(str, listed if isinstance(listed, list) else [listed]))
+        area = ui.textarea(self.text(f"studies.{goal}"), value=lines)
+        area.props("autogrow dense outlined spellcheck=false")
+
+        async def changed() -> None:
+            wanted = [line.strip() for line in (area.value or "").splitlines() if line.strip()]
+            await self.keep("outputs", {goal: wanted or None}, part=True)
+
+        area.on("blur", changed)
+
+    def _method(self, key: str, options: tuple[str, ...], given: Mapping[str, Any]) -> None:
+        value, label = given.get(key, ""), self.text(f"studies.{key}")
+        field: Any
+        if options:
+            words = {each: self.text(f"studies.{key}_{each or 'usual'}") for each in options}
+            field = ui.select(words, value=value if value in options else options[0], label=label)
+            field.props("options-dense")
+        else:
+            field = ui.number(label, value=value or None, min=1, step=1)
+        field.props("dense outlined")
+
+        async def changed() -> None:
+            new = int(field.value) if field.value and not options else field.value or None
+            await self.keep("method", {key: new}, part=True)
+
+        field.on_value_change(changed) if options else field.on("blur", changed)
+
+    async def keep(self, section: str, value: Any, *, part: bool = False) -> None:
+        """Write a section of the file anew, or with ``part`` some keys of it (None: gone)."""
+        document = tomlkit.parse(self.written())
+        if isinstance(value, Mapping):
+            table = document.get(section) if part else None
+            table = tomlkit.table() if table is None else table
+            for key, item in value.items():
+                if item is None:
+                    table.pop(key, None)
+                elif isinstance(item, Mapping):
+                    table[key] = tomlkit.inline_table()
+                    table[key].update(item)
+                else:
+                    table[key] = item
+            document[section] = table
+        else:
+            document[section] = value
+        await self._write(tomlkit.dumps(document))
+
+    async def _edited(self) -> None:
+        text = self.editor.value or ""
+        if text != self.written():
+            await self._write(text)
+            await self._fill()
+
+    async def _write(self, text: str) -> None:
+        if text == self.written():
+            return
+        with whole_file(self.file) as part:
+            part.write_text(text, encoding="utf-8")
+        self.editor.value = text
+        self.sheet = await self._check()
+
+    async def _check(self) -> dict[str, Any] | None:
+        """Say what the study will take, how far it is, or what is wrong with the file."""
+        sheet = problem = None
+        try:
+            sheet = await self.session.ask(f"{WORK}:state", *self.at)
+        except UnderfootError as error:
+            problem = error
+        self.checked.clear()
+        with self.checked:
+            for kind, words in problem_parts(problem) if problem else ():
+                ui.label(words).classes(f"problem-{kind}")
+            if sheet:
+                ui.label(" ".join(sheet["headline"])).classes("lead")
+                sentences(sheet["cautions"], "soft")
+                for kind, lines in sheet["remarks"].items():
+                    sentences([f"{kind}: {line}" for line in lines[:3]], "soft")
+        words = "run" if not (sheet and sheet["begun"]) else "go_on" if sheet["open"] else "done"
+        self.run_button.text = self.text(f"studies.{words}")
+        self.run_button.set_enabled(words != "done" and sheet is not None)
+        self._working = sheet["working"] if sheet and sheet["begun"] else 0
+        budget = sheet["budget"] if sheet and sheet["begun"] else None
+        self.steps.set_visibility(bool(self._working or budget))
+        self.stop_button.set_visibility(self._working > 0)
+        for each in (self.more, self.widen_button):
+            each.set_visibility(budget is not None)
+        self.more.value = self.more.value or (budget and max(1, budget // 2))
+        return sheet
+
+    # the run
+
+    async def run(self) -> None:
+        """Compute what is not finished; what is finished stays, however the run ends."""
+        name = self.text("studies.job")
+        self._follow(self.session.submit(name, COMPUTED, *self.at, about=self.name))
+
+    async def stop(self) -> None:
+        """Stop whoever computes: this app, and others in the same folder."""
+        await self.session.ask(f"{WORK}:stop", *self.at)
+
+    async def widen(self) -> None:
+        """Give the study more runs, and go on."""
+        task = self.session.jobs.latest(self.name, COMPUTED)
+        if task is not None and task.open:
+            self.session.jobs.cancel(task)
+            await self.session.jobs.finished(task)
+        if self.sheet and self.sheet["budget"] and self.more.value:
+            budget = self.sheet["budget"] + int(self.more.value)
+            await self.keep("method", {"budget": budget}, part=True)
+            await self._fill()
+        await self.run()
+
+    def _follow(self, task: Task) -> None:
+        timer = self._watch()
+
+        async def done(ended: Task) -> None:
+            timer.deactivate()
+            if ended.problem:
+                self.session.tell(InputError(ended.problem))
+            self.sheet = await self._check()
+            await self._show()
+
+        with self.progress:
+            task_line(self.session, task, done)
+
+    def _watch(self, *, others: bool = False) -> ui.timer:
+        """Show again and again how far it is, with ``others`` as long as they work on it."""
+        self.run_button.set_enabled(False)
+        count = self.sheet["ended"] if self.sheet else 0
+
+        async def look() -> None:
+            nonlocal count
+            began = time.monotonic()
+            self.sheet = sheet = await self._check()
+            self.run_button.set_enabled(others and not self._working)
+            if others and not self._working:
+                timer.deactivate()
+                await self._show()
+            elif sheet and sheet["ended"] != count:
+                count = sheet["ended"]
+                await self._show(whole=False)
+            timer.interval = max(LOOK, SELDOM * (time.monotonic() - began))
+
+        timer = ui.timer(LOOK, look)
+        return timer
+
+    # what came of it
+
+    async def _show(self, *, whole: bool = True) -> None:
+        """Show what is finished."""
+        parts = await self.session.ask(f"{WORK}:results", *self.at, whole)
+        addresses = [self.session.keep(part) for part in parts]
+        ui.run_javascript(f"showStudy({self.plots.html_id!r}, {addresses[0]!r})")
+        ui.run_javascript(f"showPart({self.rest.html_id!r}, {addresses[1]!r})")
+
+    async def _choose(self, event: GenericEventArguments) -> None:
+        """Show the sole of the design that was clicked."""
+        self.chosen = int(event.args["detail"])
+        shown = await self.session.ask(f"{WORK}:design", *self.at, self.chosen)
+        self.caption.text = self.text("studies.design", number=self.chosen)
+        self.design.set_visibility(True)
+        self.sole.set_visibility(True)
+        self.sole.show(shown["html"])
+
+    async def _to_variant(self) -> None:
+        """Make a variant of the design that is shown."""
+        shown = await self.session.ask(f"{WORK}:design", *self.at, self.chosen)
+        project = self.session.project
+        name = project.free_name(f"{self.name} {self.chosen}")
+        project.add(name, str(tomlkit.dumps({**tomlkit.parse(shown["case"]), "name": name})))
+        ui.notify(self.text("studies.made", name=name))
+
+
+LOOK = 5.0
+"""s between two looks at a study that runs, at least ..."""
+SELDOM = 20
+"""... and as a multiple of what a look takes."""
+
+
+class _Rows:
+    """The rows of a section: a path and what is said of it; what no row can say stays as it is."""
+
+    def __init__(self, page: _Study, section: str, given: Mapping[str, Any]) -> None:
+        self.page, self.section, self.text = page, section, page.text
+        self.rows: list[Callable[[], tuple[str, Any]]] = []
+        page._heading(section)
+        self.place = ui.element("div")
+        for path, value in given.items():
+            self.add(path, value)
+        more = ui.button(self.text(f"studies.add_{section}"), icon="add")
+        more.on_click(lambda: self.add("", {})).props("flat dense no-caps")
+
+    def add(self, path: str, value: Any) -> None:
+        """Show a row."""
+        shown = _fields(self.section, value)
+        with self.place, ui.element("div").classes("study-row") as row:
+            if shown is None:
+                ui.label(f"{path} = {json.dumps(value, ensure_ascii=False)}")
+                self._keep(row, lambda: (path, value))
+                return
+            options = [*({path} if path else ()), *ALIASES[self.section], *paths()]
+            choice = ui.select(options, value=path or None, with_input=True)
+            choice.props("dense outlined options-dense").classes("study-path")
+            choice.props(f'label="{self.text("studies.path")}"')
+            fields: dict[str, Any] = {}
+
+            def read() -> tuple[str, Any]:
+                given = {key: field.value for key, field in fields.items()}
+                return choice.value or "", _value(self.section, given)
+
+            self._keep(row, read)
+            fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
+            choice.on_value_change(lambda: self._proposed(choice.value, fields))
+
+    def _keep(self, row: ui.element, read: Callable[[], tuple[str, Any]]) -> None:
+        """Count a row, and show the button that removes it."""
+        self.rows.append(read)
+
+        async def remove() -> None:
+            self.rows.remove(read)
+            row.delete()
+            await self.changed()
+
+        gone = ui.button(icon="close", on_click=remove).props("flat round dense")
+        gone.props(f'aria-label="{self.text("studies.remove")}"')
+
+    def _field(self, key: str, value: str) -> Any:
+        label = self.text(f"studies.field_{key}")
+        if key == "kind":
+            kinds = {kind: self.text(f"studies.{kind}") for kind in KINDS}
+            made: Any = ui.select(kinds, value=value or "normal", label=label)
+            made.on_value_change(self.changed)
+        else:
+            made = ui.input(label, value=value)
+            made.on("blur", self.changed)
+            made.on("keydown.enter", self.changed)
+        return made.props("dense outlined").classes(f"study-{key}")
+
+    async def _proposed(self, path: str, fields: Mapping[str, Any]) -> None:
+        """Propose a range about the value of the base, where the path is new."""
+        variant = (await self.page.session.ask(f"{WORK}:form", self.page.written())).get("base", "")
+        name = str(variant).removeprefix("../variants/").removesuffix(".toml")
+        known = name in self.page.session.project.variants()
+        value = self.page.session.project.case(name).value(path) if known and "." in path else None
+        if isinstance(value, float) and value > 0 and not any(f.value for f in fields.values()):
+            unit, ends = unit_at(path), {"from": 1 - WIDE, "to": 1 + WIDE}
+            for key, factor in ends.items():
+                if key in fields:
+                    fields[key].value = display(value * factor, unit)
+        await self.changed()
+
+    async def changed(self) -> None:
+        """Write the section as its rows say; rows that say nothing yet are left out."""
+        fields = dict(read() for read in self.rows)
+        await self.page.keep(self.section, {k: v for k, v in fields.items() if k and v})
+
+
+ALIASES = {"vary": (), "uncertain": (), "conditions": ("wear",)}
+"""Short names of paths, where a section knows any."""
+
+
+def _fields(section: str, value: Any) -> dict[str, str] | None:
+    """Return what a row shows of a value; None where a row can't."""
+    fields = dict.fromkeys(FIELDS[section], "")
+    if isinstance(value, list) and "values" in fields:
+        return fields | {"values": ", ".join(map(str, value))}
+    if not isinstance(value, Mapping) or (section == "conditions" and value):
+        return None
+    if section == "uncertain":
+        for kind, keys in KINDS.items():
+            if set(keys) == set(value):
+                first, second = (str(value[key]) for key in keys)
+                return {"kind": kind, "first": first, "second": second}
+    return fields | {k: str(v) for k, v in value.items()} if set(value) <= set(fields) else None
+
+
+def _value(section: str, fields: Mapping[str, str]) -> Any:
+    """Return what the file says for what a row shows; None while it is not complete."""
+    if values := fields.get("values"):
+        return [_plain(part.strip()) for part in values.split(",") if part.strip()]
+    keys = KINDS[fields["kind"]] if section == "uncertain" else ("from", "to")
+    ends = [fields.get(key) for key in (("first", "second") if section == "uncertain" else keys)]
+    if not all(ends):
+        return None
+    steps = {"steps": _plain(fields["steps"])} if fields.get("steps") else {}
+    return dict(zip(keys, map(_plain, map(str, ends)), strict=True)) | steps
+
+
+def _plain(text: str) -> Any:
+    """Return a number where the text is one."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

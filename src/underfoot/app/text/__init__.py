@@ -1,0 +1,103 @@
+"""The words of the app in each language, as catalogue files that another language can copy.
+
+``en.toml``, ``de.toml``: what the app says, by key. ``de.package.toml``: what the package says
+(results, remarks, catalogue, errors), by the English sentence; ``{}`` stands for a part that
+changes, ``{0}``, ``{1}`` for these parts in the other language. The browser puts these in.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from underfoot.core.files import whole_file
+from underfoot.core.units import SYSTEMS
+
+FOLDER = files("underfoot.app.text")
+LANGUAGE_VARIABLE = "UNDERFOOT_LANGUAGE"
+"""Environment variable with the language of who asked, in the processes that compute."""
+
+
+class Text:
+    """The words of one language: ``text("start.title")``, ``text("jobs.open", count=3)``.
+
+    Raises:
+        KeyError: No such key, or a placeholder without a value.
+    """
+
+    def __init__(self, language: str = "en") -> None:
+        self.language = language
+        self._messages = catalogue(language)
+
+    def __call__(self, key: str, **values: Any) -> str:
+        """Return the words of a key with its placeholders filled."""
+        return self._messages[key].format(**values)
+
+    def of_package(self) -> dict[str, str]:
+        """Return the sentences of the package in this language, by their English."""
+        file = FOLDER.joinpath(f"{self.language}.package.toml")
+        return tomllib.loads(file.read_text("utf-8")) if file.is_file() else {}
+
+    def script(self) -> str:
+        """Return the script that tells a page its language and the words of the package."""
+        words = {"words": self.of_package(), "decimal": self("frame.decimal")}
+        spoken = as_json(words)
+        return f'document.documentElement.lang = "{self.language}"; const spoken = {spoken};'
+
+    def unit_systems(self) -> dict[str, str]:
+        """Return the name of each system of units."""
+        return {system: self(f"frame.{system}") for system in SYSTEMS}
+
+    def get(self, key: str, otherwise: str) -> str:
+        """Return the words of a key, or ``otherwise`` where there is none."""
+        return self._messages.get(key, otherwise)
+
+
+def put_language(page: Path | None) -> None:
+    """Let a report that was written speak the language of who asked, without the app too."""
+    language = os.environ.get(LANGUAGE_VARIABLE, "en")
+    if page is not None and language != "en":
+        speaker = files("underfoot.app").joinpath("static", "language.js").read_text("utf-8")
+        script = f"<head>\n<script>{Text(language).script()}</script>\n<script>{speaker}</script>"
+        spoken = page.read_text(encoding="utf-8").replace("<head>", script, 1)
+        with whole_file(page) as part:
+            part.write_text(spoken, encoding="utf-8")
+
+
+def as_json(content: Any) -> str:
+    """Return data as JSON that may stand in a page."""
+    return json.dumps(content, ensure_ascii=False).replace("<", "\\u003c")
+
+
+@cache
+def catalogue(language: str) -> dict[str, str]:
+    """Return the words of a language by dotted key."""
+    return _flat(tomllib.loads(FOLDER.joinpath(f"{language}.toml").read_text("utf-8")))
+
+
+def chosen_language(cookie: str | None, accepted: str) -> str:
+    """Return the language that a person chose, or the first of the browser's that there is."""
+    wanted = [cookie or "", *(part.partition(";")[0].strip()[:2] for part in accepted.split(","))]
+    return next((code for code in wanted if code in LANGUAGES), "en")
+
+
+def _flat(table: Mapping[str, Any], start: str = "") -> dict[str, str]:
+    flat: dict[str, str] = {}
+    for key, value in table.items():
+        path = f"{start}{key}"
+        flat |= _flat(value, f"{path}.") if isinstance(value, Mapping) else {path: value}
+    return flat
+
+
+LANGUAGES = {
+    code: catalogue(code)["frame.language_name"]
+    for code, _, rest in sorted(file.name.partition(".") for file in FOLDER.iterdir())
+    if rest == "toml"
+}
+"""Name of each language in itself, by its code: one for each file."""

@@ -1,0 +1,565 @@
+"""From tests of a rubber to the compound of a case: moduli, spectrum, shift factors, loss tangent.
+
+Files are told by what they hold: a sweep (frequency, storage and loss modulus), a relaxation
+modulus over time, a Prony series, or the recording of a compression test (time, displacement,
+force). A spectrum is that of sweeps, else of relaxation; a hardness stands beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from underfoot.core import DataError, InputError, SourcedValue, display
+from underfoot.core.presentation import Presentable, Table
+from underfoot.material import (
+    DynamicMasterCurve,
+    DynamicSweep,
+    ModulusBand,
+    RelaxationCurve,
+    RelaxationMasterCurve,
+    RelaxationSpectrum,
+    ShiftTable,
+    SpectrumFit,
+    dynamic_master_curve,
+    fit_dynamic,
+    fit_relaxation,
+    read_dynamic,
+    read_prony,
+    read_relaxation,
+    relaxation_master_curve,
+    young_from_shear,
+)
+from underfoot.material.durometer_scales import DurometerReading
+from underfoot.material.read import is_shear
+from underfoot.trials.machines.compression import Compression, compression
+from underfoot.trials.machines.relaxation_test import relaxation_reading
+from underfoot.trials.readers import read_trial
+
+LOAD_TIME = 0.1
+"""s: a heel loads its rubber for about this long; the modulus of a case is that after it."""
+RISES = 0.05
+"""A relaxation modulus that rises by more than this over an earlier value is none (assumed)."""
+SLIDING_WAVES = (0.8e-3, 2.5e-6)
+"""Longest and shortest wave (m) of a floor that works the rubber at sliding speed."""
+SLIDING_SPEED = 0.3
+READINGS = 200
+STEP_TIMES = (1e-9, 1e6)
+"""s: a case keeps the terms between these; faster ones are never stretched, slower ones rest."""
+MOST_TERMS = 32
+"""Terms that are printed; the file and the data hold all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compound(Presentable):
+    """A compound from its tests.
+
+    ``fit`` is the spectrum of Young's modulus at ``temperature`` (K, None where no file names one),
+    ``prony`` one that was given. ``sweeps`` and ``curves`` are the readings behind it, ``shifts``
+    their superposition.
+    """
+
+    kind: ClassVar[str] = "compound"
+
+    name: str
+    spectrum: RelaxationSpectrum | None
+    fit: SpectrumFit | None
+    sweep: DynamicSweep | DynamicMasterCurve | None
+    relaxation: RelaxationCurve | RelaxationMasterCurve | None
+    shifts: ShiftTable | None
+    compressions: tuple[Compression, ...]
+    hardness: DurometerReading | None
+    temperature: float | None
+    poisson_ratio: float
+    polymer: str | None
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"<Compound {self.name:.60}: {self.spectrum!r:.100}>"
+
+    @property
+    def tested(self) -> tuple[float, float] | None:
+        """Angular frequencies that were measured, rad/s."""
+        return None if self.fit is None else self.fit.frequency_range
+
+    def modulus(self) -> SourcedValue:
+        """Return Young's modulus after ``LOAD_TIME``, or at the nearest time that was tested."""
+        if self.spectrum is None:
+            return SourcedValue(None, "Pa", reason="no test gives one; a case takes the hardness")
+        time = LOAD_TIME
+        if self.tested:
+            time = min(max(time, 1 / self.tested[1]), 1 / self.tested[0])
+        value = float(self.spectrum.relaxation_modulus(time))
+        deviation = 0.0 if self.fit is None else self.fit.rms_residual
+        if self.compressions and self.sweep is None:
+            deviation = math.hypot(deviation, self.compressions[0].deviation)
+        source = f"{self.name}: after {display(time, 's')} of load"
+        return SourcedValue(value, "Pa", source=source, uncertainty=deviation * value or None)
+
+    def headline(self) -> tuple[str, ...]:
+        """Return modulus, loss tangent and the frequencies tested."""
+        if self.spectrum is None:
+            assert self.hardness is not None
+            return (f"Shore A {self.hardness.shore_a:.0f}: a hardness gives no loss tangent.",)
+        words = (
+            f"Young's modulus {_shown(self.modulus())} {self.modulus().source.partition(': ')[2]}"
+        )
+        if self.fit is None or self.tested is None:
+            return (f"{words}; {len(self.spectrum)} terms as given.",)
+        rates = " to ".join(display(w / (2 * math.pi), "Hz") for w in self.tested)
+        return (f"{words}; spectrum of {len(self.spectrum)} terms, tested from {rates}, "
+                f"fit {self.fit.quality} (rms {self.fit.rms_residual:.1%}).",)  # fmt: skip
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return what the tests leave open for a case."""
+        return self.warnings
+
+    def table(self) -> Table:
+        """Return the moduli with where they come from."""
+        rows = [("Young's modulus", _shown(self.modulus()), self.modulus().source)]
+        if self.spectrum is not None:
+            rows += [
+                ("  at once", display(self.spectrum.instantaneous_modulus, "Pa"), "spectrum"),
+                ("  at rest", display(self.spectrum.equilibrium_modulus, "Pa"), "spectrum"),
+            ]
+        for test in self.compressions:
+            printed = test.moduli
+            rows += [
+                ("K_0 (Eq. 13)", display(printed.short_time_stiffness, "N/m"), test.name),
+                ("E_0 (Eq. 14)", display(printed.short_time_modulus, "Pa"), "apparent, bonded"),
+                ("K_inf (Eq. 15)", display(printed.long_time_stiffness, "N/m"), test.name),
+                ("E_inf (Eq. 16)", display(printed.long_time_modulus, "Pa"), "apparent, bonded"),
+                ("  over Young's modulus",
+                 f"{test.factor:.3g} ± {test.factor * test.deviation:.2g}",
+                 f"1 + 2 k S^2, shape factor S = {test.shape_factor:.3g}"),
+            ]  # fmt: skip
+        if self.hardness is not None:
+            rows.append(("Shore A", f"{self.hardness.shore_a:.0f}", self.hardness.note() or "read"))
+        return Table("Compound", ("Quantity", "Value", "Remark"), rows)
+
+    def tables(self) -> tuple[Table, ...]:
+        """Return moduli, loss tangent by frequency, Prony terms and shift factors."""
+        found = [self.table()]
+        if self.spectrum is not None:
+            found.append(self._losses())
+            found += [self._terms()] if len(self.spectrum) <= MOST_TERMS else []
+        if self.shifts is not None:
+            found.append(self._shifts())
+        return tuple(found)
+
+    def _losses(self) -> Table:
+        """Return storage modulus and loss tangent at whole decades, with the 95 % band of a fit."""
+        assert self.spectrum is not None
+        low, high = self.tested or (2 * math.pi * 1e-2, 2 * math.pi * 1e4)
+        slow, fast = (2 * math.pi * SLIDING_SPEED / wave for wave in SLIDING_WAVES)
+        ends = np.log10(np.array([min(low, slow), max(high, fast)]) / (2 * math.pi))
+        hertz = 10.0 ** np.arange(math.floor(ends[0]), math.ceil(ends[1]) + 1)
+        hertz = hertz[:: max(1, hertz.size // 12)]
+        frequency = 2 * math.pi * hertz
+        band = None if self.fit is None else self.fit.band(frequency)
+        rows = [self._loss(n, w, band) for n, w in enumerate(frequency.tolist())]
+        heads = ("Frequency", "Storage modulus", "Loss tangent", "Remark")
+        return Table("Loss tangent", heads, rows)
+
+    def _loss(self, n: int, w: float, band: ModulusBand | None) -> tuple[str, ...]:
+        assert self.spectrum is not None
+        storage, tangent = self.spectrum.storage_modulus(w), self.spectrum.loss_tangent(w)
+        shown, remark = f"{float(tangent):.3f}", ""
+        if band is not None:
+            size = float(storage)
+            shown += f" ({band.loss_low[n] / size:.3f} to {band.loss_high[n] / size:.3f})"
+            remark = "not tested" if band.extrapolated[n] else ""
+        return display(w / (2 * math.pi), "Hz"), display(float(storage), "Pa"), shown, remark
+
+    def _terms(self) -> Table:
+        assert self.spectrum is not None
+        moduli, times = self.spectrum.term_moduli, self.spectrum.relaxation_times
+        kept = moduli > 1e-6 * self.spectrum.instantaneous_modulus
+        rows = [
+            (display(time, "s"), display(modulus, "Pa"))
+            for time, modulus in zip(times[kept].tolist(), moduli[kept].tolist(), strict=True)
+        ]
+        return Table("Prony terms of Young's modulus", ("Relaxation time", "Modulus"), rows)
+
+    def _shifts(self) -> Table:
+        assert self.shifts is not None
+        found = self.shifts
+        errors = zip(found.log10_shift_factors, found.log10_errors, strict=True)
+        rows = [
+            (_celsius(kelvin), f"{shift:.2f} ± {error:.2f}")
+            for kelvin, (shift, error) in zip(found.temperatures.tolist(), errors, strict=True)
+        ]
+        at = _celsius(found.reference_temperature)
+        title = f"Shift factors to {at} ({found.law})"
+        return Table(title, ("Temperature", "log10 of the shift factor"), rows)
+
+    def data_tables(self) -> dict[str, Table]:
+        """Return terms, readings and shift factors in SI."""
+        tables = {}
+        if self.spectrum is not None:
+            terms = self.spectrum.relaxation_times, self.spectrum.term_moduli
+            tables["prony"] = Table("", ("time s", "modulus Pa"), np.column_stack(terms).tolist())
+        if self.sweep is not None:
+            parts = (self.sweep.angular_frequency, self.sweep.storage_modulus)
+            rows = np.column_stack([*parts, self.sweep.loss_modulus]).tolist()
+            heads = ("angular frequency rad/s", "storage modulus Pa", "loss modulus Pa")
+            tables["sweep"] = Table("", heads, rows)
+        if self.relaxation is not None:
+            rows = np.column_stack([self.relaxation.time, self.relaxation.modulus]).tolist()
+            tables["relaxation"] = Table("", ("time s", "modulus Pa"), rows)
+        if self.shifts is not None:
+            parts = self.shifts.temperatures, self.shifts.log10_shift_factors
+            rows = np.column_stack([*parts, self.shifts.log10_errors]).tolist()
+            heads = ("temperature K", "log10 shift factor", "standard error")
+            tables["shift_factors"] = Table("", heads, rows)
+        return tables
+
+    def remarks(self) -> dict[str, Sequence[str]]:
+        """Return what was done to the readings."""
+        return {"Notes": self.notes}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the compound as a case takes it, in SI, with its tests."""
+        content: dict[str, Any] = {"kind": self.kind, "name": self.name}
+        content["modulus_Pa"] = self.modulus().value
+        if self.spectrum is not None:
+            content["equilibrium_modulus_Pa"] = self.spectrum.equilibrium_modulus
+            content["term_moduli_Pa"] = self.spectrum.term_moduli.tolist()
+            content["relaxation_times_s"] = self.spectrum.relaxation_times.tolist()
+        if self.fit is not None:
+            content["tested_rad_per_s"] = list(self.fit.frequency_range)
+            content["rms_residual"] = self.fit.rms_residual
+        for name in ("short_time", "long_time"):
+            for part, unit in (("stiffness", "N_per_m"), ("modulus", "Pa")):
+                values = [getattr(test.moduli, f"{name}_{part}") for test in self.compressions]
+                if values:
+                    content[f"{name}_{part}_{unit}"] = values
+        return content | {"notes": list(self.notes), "cautions": list(self.warnings)}
+
+    def toml(self) -> str:
+        """Return the file that ``shoe.material.file`` of a case takes."""
+        lines = [f"# {self.name}: written by underfoot material", ""]
+        if self.polymer:
+            lines.append(f'polymer = "{self.polymer}"')
+        if self.hardness is not None:
+            shore, scale = self.hardness.shore_a, self.hardness.scale
+            spread = f', uncertainty = "{scale.spread:g}"' if scale.spread else ""
+            source = self.hardness.note() or "durometer"
+            lines.append(f'shore_a = {{value = {shore:.1f}{spread}, source = "{source}"}}')
+        modulus = self.modulus()
+        if modulus.value is not None:
+            spread = "" if modulus.uncertainty is None else (
+                f', uncertainty = "{modulus.uncertainty / 1e6:.4g} MPa"'
+            )  # fmt: skip
+            lines.append(
+                f'modulus = {{value = "{modulus.value / 1e6:.6g} MPa"{spread}, '
+                f'source = "{modulus.source}"}}'
+            )
+        given = "" if self.spectrum is None else ', source = "as for the spectrum"'
+        lines.append(f"poisson_ratio = {{value = {self.poisson_ratio:g}, assumed = true{given}}}")
+        if self.tested:
+            shortest, longest = STEP_TIMES
+            for key, w in zip(("slowest_tested", "fastest_tested"), self.tested, strict=True):
+                rate = min(max(w, 1 / longest), 1 / shortest)
+                lines.append(f'{key} = "{rate:.6g} rad/s"')
+        if self.spectrum is not None:
+            lines += ["", "[relaxation]", *self._relaxation_lines()]
+        return "\n".join([*lines, ""])
+
+    def _relaxation_lines(self) -> list[str]:
+        assert self.spectrum is not None
+        shear = 1 / (2 * (1 + self.poisson_ratio))
+        level = self.spectrum.instantaneous_modulus
+        moduli, times = self.spectrum.term_moduli, self.spectrum.relaxation_times
+        slow = times > STEP_TIMES[1]  # at rest to a step
+        rest = self.spectrum.equilibrium_modulus + float(moduli[slow].sum())
+        least = max(rest, 1e-9 * level) * shear
+        moving = ~slow & (times >= STEP_TIMES[0])
+        terms = zip(moduli[moving], times[moving], strict=True)
+        return [
+            f'equilibrium_shear_modulus = "{least / 1e6:.8g} MPa"',
+            "terms = [",
+            *(
+                f'  {{shear_modulus = "{modulus * shear / 1e6:.8g} MPa", time = "{time:.8g} s"}},'
+                for modulus, time in terms
+                if modulus > 1e-9 * level
+            ),
+            "]",
+        ]
+
+
+def compound_from_files(
+    files: Sequence[Path],
+    *,
+    hardness: DurometerReading | None = None,
+    temperature: float | None = None,
+    thickness: float | None = None,
+    area: float | None = None,
+    shear: bool | None = None,
+    poisson_ratio: float = 0.49,
+    polymer: str | None = None,
+) -> Compound:
+    """Return the compound of tests on one rubber.
+
+    Parameters:
+        files: Sweeps, relaxation moduli, a Prony series, recordings of compression tests.
+        hardness: A durometer's reading.
+        temperature: Of use, K; None takes 23 C where tests at several temperatures hold it, else
+            the middle one.
+        thickness, area: Of one block of a compression test (m, m^2).
+        shear: Whether moduli are those of shear; None takes what the headings say (G', G_stor).
+
+    Raises:
+        InputError: Nothing given; a compression test without thickness and area.
+        DataError: A file that is none of these, a relaxation that rises, sweeps that do not
+            overlap.
+    """
+    if not files and hardness is None:
+        raise InputError(
+            "neither a test nor a hardness is given",
+            where="underfoot material",
+            allowed='FILES of tests, or --shore "68 A"',
+        )
+    sweeps, curves, compressions, notes = [], [], [], []
+    prony = None
+    for file in files:
+        found = _read(file, thickness, area, poisson_ratio, shear)
+        if isinstance(found, RelaxationSpectrum):
+            prony = found
+        elif isinstance(found, Compression):
+            compressions.append(found)
+            notes += [f"{file.name}: {note}" for note in found.reading.notes]
+        elif isinstance(found[0], DynamicSweep):
+            sweeps += found
+        else:
+            curves += found
+    for curve in (*curves, *(relaxation_of(test) for test in compressions)):
+        _refuse_rising(curve)
+    warnings: list[str] = []
+    sweep, shifts, at, fit = None, None, None, None
+    if sweeps:
+        sweep, shifts, at = _swept(sweeps, temperature, warnings)
+        moduli = sweep.angular_frequency, sweep.storage_modulus, sweep.loss_modulus
+        fit = fit_dynamic(*moduli, source="dynamic sweeps of " + _names(files))
+    relaxation, relaxed = None, None
+    readings = curves or [relaxation_of(test) for test in compressions]
+    if readings:
+        relaxation, own, own_at = _relaxed(readings, temperature)
+        relaxed = fit_relaxation(
+            relaxation.time, relaxation.modulus, source="relaxation of " + _names(files)
+        )
+        if fit is None:
+            fit, shifts, at = relaxed, own, own_at
+        else:
+            notes.append(_beside(fit, relaxed))
+    spectrum = prony if fit is None else fit.spectrum
+    if fit is not None and prony is not None:
+        notes.append("the Prony series is left out: tests go before it")
+    if fit is not None:
+        warnings += _fit_warnings(fit)
+    if at is None:
+        at = temperature
+    return Compound(
+        name=_names(files) or (f"Shore A {hardness.shore_a:.0f}" if hardness else ""),
+        spectrum=spectrum,
+        fit=fit,
+        sweep=sweep,
+        relaxation=relaxation,
+        shifts=shifts,
+        compressions=tuple(compressions),
+        hardness=hardness,
+        temperature=at,
+        poisson_ratio=poisson_ratio,
+        polymer=polymer,
+        notes=tuple(notes),
+        warnings=tuple(warnings),
+    )
+
+
+def relaxation_of(test: Compression) -> RelaxationCurve:
+    """Return Young's modulus over the time since the peak, at even steps of its logarithm."""
+    time, force = test.reading.hold
+    low = test.reading.force_2_percent.value or 0.0
+    peak = test.reading.peak_force.value or 1.0
+    modulus = test.moduli.short_time_modulus * (force - low) / (peak - low) / test.factor
+    inside = np.unique(np.geomspace(1, time.size - 1, READINGS).astype(int))
+    edges = [inside[0], *((inside[1:] + inside[:-1] + 1) // 2), inside[-1] + 1]
+    means = np.add.reduceat(modulus[: edges[-1]], edges[:-1]) / np.diff(edges)
+    return RelaxationCurve(time[inside], means, source=test.name)
+
+
+def _read(
+    file: Path,
+    thickness: float | None,
+    area: float | None,
+    poisson_ratio: float,
+    shear: bool | None,
+) -> list[DynamicSweep] | list[RelaxationCurve] | RelaxationSpectrum | Compression:
+    """Return what a file holds, moduli as Young's."""
+    reasons = []
+    factor = 2 * (1 + poisson_ratio)
+    for kind, read in (
+        ("dynamic sweep", read_dynamic),
+        ("relaxation modulus", read_relaxation),
+        ("Prony series", read_prony),
+    ):
+        try:
+            found: Any = read(file)
+        except (DataError, InputError) as error:
+            reasons.append(f"no {kind}: {error.what}")
+            if kind == "Prony series" or not _meant(kind, str(error)):
+                continue
+            raise
+        if kind == "Prony series":
+            return young_from_shear(found, poisson_ratio) if shear else found
+        if is_shear(file) if shear is None else shear:
+            names = ("storage_modulus", "loss_modulus", "modulus")
+            found = [
+                replace(one, **{n: factor * getattr(one, n) for n in names if hasattr(one, n)})
+                for one in found
+            ]
+        return found
+    try:
+        trial = read_trial(file)
+        trial.channel("force", "load", "normal force", "fz", "axial force")
+    except (DataError, InputError) as error:
+        told = "; ".join([*reasons, f"no recording: {error.what}"])
+        raise DataError(
+            f"{file.name} is no test of a rubber ({told})",
+            where=str(file),
+            allowed="columns f, E', E'' (or G', G''); t, E; tau, E_i; or time, displacement, force",
+            remedy="Name the columns with their units, as f (Hz)",
+        ) from error
+    if thickness is None or area is None:
+        raise InputError(
+            f"{file.name} is a compression test: moduli need the size of a block",
+            where="--thickness and --area",
+            remedy='Give them, as --thickness "5.5 mm" --area "1.6 cm^2"',
+        )
+    return compression(relaxation_reading(trial, thickness), thickness, area, file.name)
+
+
+def _meant(kind: str, told: str) -> bool:
+    """Return whether a file is of a kind but can't be used: its columns are there."""
+    missing = ("no column", "no headings", "no table", "is no", "can't be read", "not text")
+    return not any(words in told for words in missing)
+
+
+def _refuse_rising(curve: RelaxationCurve) -> None:
+    lowest = np.minimum.accumulate(curve.modulus)
+    rise = curve.modulus / lowest - 1
+    at = int(np.argmax(rise))
+    if rise[at] > RISES:
+        start = int(np.argmin(curve.modulus[: at + 1]))
+        raise DataError(
+            f"the modulus rises from {display(curve.modulus[start], 'Pa')} at "
+            f"{display(curve.time[start], 's')} to {display(curve.modulus[at], 'Pa')} at "
+            f"{display(curve.time[at], 's')}: a relaxation falls",
+            where=curve.source or "relaxation",
+            allowed=f"rises of at most {RISES:.0%} (scatter)",
+            remedy="Cut off what is not the hold (loading, drift of temperature, cure), or check "
+            "which column is time",
+        )
+
+
+def _swept(
+    sweeps: list[DynamicSweep], temperature: float | None, warnings: list[str]
+) -> tuple[DynamicSweep | DynamicMasterCurve, ShiftTable | None, float | None]:
+    if len(sweeps) == 1:
+        only = sweeps[0]
+        warnings.append(
+            "One temperature was tested: no shift factors, and nothing is known beyond its "
+            "frequencies. Sweeps at 0 °C and below reach the rates of sliding."
+        )
+        if temperature is not None and only.temperature is not None:
+            apart = abs(temperature - only.temperature)
+            if apart > 2:
+                warnings.append(
+                    f"Tested at {_celsius(only.temperature)}, used at {_celsius(temperature)}: "
+                    "not shifted."
+                )
+        return only, None, only.temperature
+    at = _reference([sweep.temperature for sweep in sweeps], temperature)
+    master = dynamic_master_curve(sweeps, at)
+    return master, master.shifts, master.shifts.reference_temperature
+
+
+def _relaxed(
+    curves: list[RelaxationCurve], temperature: float | None
+) -> tuple[RelaxationCurve | RelaxationMasterCurve, ShiftTable | None, float | None]:
+    if len({curve.temperature for curve in curves}) == 1:
+        if len(curves) == 1:
+            return curves[0], None, curves[0].temperature
+        low = max(curve.time[0] for curve in curves)
+        high = min(curve.time[-1] for curve in curves)
+        time = np.geomspace(low, high, READINGS)
+        means = np.mean([np.interp(time, one.time, one.modulus) for one in curves], axis=0)
+        mean = RelaxationCurve(time, means, curves[0].temperature, f"mean of {len(curves)} tests")
+        return mean, None, mean.temperature
+    at = _reference([curve.temperature for curve in curves], temperature)
+    master = relaxation_master_curve(curves, at)
+    return master, master.shifts, master.shifts.reference_temperature
+
+
+def _reference(tested: Sequence[float | None], temperature: float | None) -> float | None:
+    known = [kelvin for kelvin in tested if kelvin is not None]
+    room = 296.15
+    if temperature is None and known and min(known) <= room <= max(known):
+        return room
+    return temperature
+
+
+def _fit_warnings(fit: SpectrumFit) -> list[str]:
+    warnings = []
+    if fit.quality != "good":
+        warnings.append(
+            f"The spectrum follows the readings {fit.quality}ly (rms {fit.rms_residual:.0%}, "
+            f"largest {fit.largest_residual:.0%}): superposition may not hold for this compound."
+            if fit.quality == "rough"
+            else f"The spectrum does not follow the readings (rms {fit.rms_residual:.0%}, largest "
+            f"{fit.largest_residual:.0%}): do not use its loss. Test fewer temperatures, or check "
+            "which side of the glass transition they lie on."
+        )
+    slow, fast = (2 * math.pi * SLIDING_SPEED / wave for wave in SLIDING_WAVES)
+    if fit.frequency_range[1] < fast * (1 - 1e-9):
+        rates = [display(w / (2 * math.pi), "Hz") for w in (fit.frequency_range[1], slow, fast)]
+        warnings.append(
+            f"Tested up to {rates[0]}; asperities at {display(SLIDING_SPEED, 'm/s')} work the "
+            f"rubber at {rates[1]} to {rates[2]}. Its loss there is extrapolated: sweep at lower "
+            "temperatures and take the master curve."
+        )
+    return warnings
+
+
+def _beside(fit: SpectrumFit, relaxed: SpectrumFit) -> str:
+    low = max(1 / fit.frequency_range[1], 1 / relaxed.frequency_range[1])
+    high = min(1 / fit.frequency_range[0], 1 / relaxed.frequency_range[0])
+    if low >= high:
+        return "sweep and relaxation test share no time: the spectrum is that of the sweep"
+    time = math.sqrt(low * high)
+    ratio = float(relaxed.spectrum.relaxation_modulus(time) / fit.spectrum.relaxation_modulus(time))
+    return (
+        f"the relaxation test gives {ratio:.2f} times the modulus of the sweep at "
+        f"{display(time, 's')}; the spectrum is that of the sweep"
+    )
+
+
+def _celsius(kelvin: float) -> str:
+    return f"{kelvin - 273.15:.0f} °C"
+
+
+def _names(files: Sequence[Path]) -> str:
+    return ", ".join(file.name for file in files)
+
+
+def _shown(value: SourcedValue) -> str:
+    if value.value is None:
+        return f"not estimated: {value.reason}"
+    spread = "" if value.uncertainty is None else f" ± {display(value.uncertainty, 'Pa')}"
+    return display(value.value, "Pa") + spread

@@ -1,0 +1,90 @@
+"""One self-contained HTML page for any object: opens offline, prints to PDF from any browser."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .html import environment
+from .presentation import Presentable, Table
+
+_NUMERIC = re.compile(r"[-+±]?\d[\d.,]*( ?[^\s()]{1,5})?( ?[±(].*)?|below .*|above .*|-|")
+LONGEST_NUMBER = 32
+"""Characters up to which a cell that starts with a number is set as one, flush right."""
+MOST_ITEMS = 3
+"""Lines of a list that are shown; the others fold away."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure of a page: what it shows, and its data address."""
+
+    caption: str
+    source: str
+    wide: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of a page under a title: ready HTML, pictures, a table or a list.
+
+    ``folded`` hides all of it behind its title until it is asked for; ``stage`` sets the first part
+    of a page beside its headline.
+    """
+
+    title: str
+    intro: str = ""
+    html: str = ""
+    pictures: Sequence[Picture] = ()
+    table: Table | None = None
+    items: Sequence[str] = ()
+    text: str = ""
+    folded: bool = False
+    stage: bool = False
+
+
+def page(
+    shown: Presentable,
+    sections: Sequence[Section],
+    *,
+    script: str = "",
+    verdict: tuple[str, str] = ("", ""),
+) -> str:
+    """Return the page of an object: verdict, headline and cautions, then ``sections``."""
+    return (
+        environment()
+        .get_template("page.html")
+        .render(
+            shown=shown,
+            headline=shown.headline(),
+            cautions=shown.cautions(),
+            script=script,
+            verdict=verdict,
+            **_content(sections),
+        )
+    )
+
+
+def page_part(sections: Sequence[Section]) -> str:
+    """Return sections as HTML for a page that has style and scripts already."""
+    return environment().get_template("sections.html").render(**_content(sections))
+
+
+def _content(sections: Sequence[Section]) -> dict[str, Any]:
+    return {"sections": sections, "numeric": _is_number, "most": MOST_ITEMS}
+
+
+def table_sections(shown: Presentable) -> list[Section]:
+    """Return the tables of an object as sections."""
+    return [Section(table.title, table=table) for table in shown.tables() if table.rows]
+
+
+def remark_sections(shown: Presentable) -> list[Section]:
+    """Return the lists of remarks of an object as sections."""
+    return [Section(title, items=lines) for title, lines in shown.remarks().items() if lines]
+
+
+def _is_number(cell: str) -> bool:
+    return len(cell) < LONGEST_NUMBER and _NUMERIC.fullmatch(cell) is not None

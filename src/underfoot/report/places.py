@@ -1,0 +1,37 @@
+"""Pictures of the choice of a shoe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from underfoot.core.html import new_figure
+from underfoot.places.choice import LEAST, PER, Choice
+
+from .dispatch import FigureMakers, figures
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@figures.register(Choice)
+def _(shown: Choice) -> FigureMakers:
+    return {"slips": lambda: slips_figure(shown)}
+
+
+def slips_figure(choice: Choice) -> Figure:
+    """Return slips of every shoe with their interval, and the chance that it is best."""
+    shoes = sorted(choice.shoes, key=lambda each: each.best)
+    figure = new_figure(7.0, 1.2 + 0.45 * len(shoes))
+    axes = figure.subplots()
+    at = np.arange(len(shoes))
+    low, median, high = np.maximum(np.array([each.slips for each in shoes]).T, LEAST)
+    axes.hlines(at, low, high, color="C0", lw=2)
+    axes.plot(median, at, "o", color="C0")
+    axes.set_yticks(at, [f"{each.shoe.name} ({100 * each.best:.0f} %)" for each in shoes])
+    axes.set(
+        xscale="log", xlabel=f"slips per {PER} workers and year: median, 95 % (chance of best)"
+    )
+    axes.set_ylim(-0.6, len(shoes) - 0.4)
+    return figure

@@ -1,0 +1,252 @@
+"""Results for other programs: the sole with its fields as GLB, PLY, OBJ, VTU or CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from underfoot.core import DataError, InputError, UnderfootError, unknown_name
+from underfoot.core.optional import optional_module
+
+from .designed_sole import DesignedSole
+from .drawn_sole import DrawnSole, drawn_sole
+from .quantities import AREAS, Quantity, quantities, raw, scale, shown
+from .sole_mesh import SoleMesh, sole_mesh
+
+if TYPE_CHECKING:
+    from underfoot.compute.result import Result
+
+RUBBER = (148, 152, 156, 255)
+"""Colour of what carries none of the field, as on the pages."""
+AREA = "area"
+"""The area of a face seen from below: a pressure times it, summed, is the load."""
+WORK = "Writing a sole for other programs"
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """What was written: the file, its unit of length, its axes, and what its fields are in."""
+
+    path: Path
+    length_unit: str
+    axes: str
+    coloured_by: str
+    fields: dict[str, str]
+    remark: str = ""
+
+    def sentence(self) -> str:
+        """Return what was written in one sentence."""
+        fields = ", ".join(f"{name} ({unit})" for name, unit in self.fields.items())
+        colours = f"; colours: {self.coloured_by}" if self.coloured_by else ""
+        told = f"; {self.remark}" if self.remark else ""
+        lengths = f"lengths in {self.length_unit}, {self.axes}"
+        return f"{self.path}: {lengths}; fields: {fields}{colours}{told}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Scene:
+    """A sole with its fields, ready to be written."""
+
+    name: str
+    sole: DrawnSole
+    mesh: SoleMesh
+    values: dict[str, NDArray[np.float64]]
+    units: dict[str, str]
+    colours: NDArray[np.uint8]
+    title: str
+    remark: str
+
+    def of_faces(self, name: str) -> NDArray[np.float64]:
+        """Return a field (SI) on the faces, nan on walls and where there is none."""
+        values = np.append(self.values[name].ravel(), np.nan)
+        return values[self.mesh.cell]
+
+    def of_points(self, name: str) -> NDArray[np.float32]:
+        """Return a field (SI) on the corners of the faces; 0 on walls and where there is none.
+
+        A corner has a quarter of its face's area.
+        """
+        share = 0.25 if name == AREA else 1.0
+        return np.repeat(share * np.nan_to_num(self.of_faces(name)), 4).astype(np.float32)
+
+
+def export_result(
+    result: Result, path: Path | str, *, field: str | None = None, pressed: bool = False
+) -> Exported:
+    """Write the sole of a result with its fields as colours and as values (SI).
+
+    Parameters:
+        result: A run with its fields.
+        path: Ends with the kind: .glb (m, upright: y up, z forward), .ply or .obj (mm, z up),
+            .vtu (m, z up, values on the cells), .csv (one row a cell, all in SI).
+        field: What the colours show, by its name in ``result.nc``; by default the first of the
+            page. OBJ and PLY carry colours, VTU and CSV values only.
+        pressed: The sole as the load presses it, not undeformed.
+
+    Raises:
+        DataError: A result without fields, or without the pressed shape.
+        InputError: Another kind of file, or a field that the result does not hold.
+    """
+    path = Path(path)
+    write = WRITERS.get(path.suffix.lower().lstrip("."))
+    if write is None:
+        raise InputError(
+            f'"{path.suffix}" is no kind of file for a sole with fields',
+            where="--to",
+            allowed=", ".join(WRITERS),
+        )
+    fields = quantities([result.data]) if "x" in result.data.sizes else ()
+    if not fields:
+        raise DataError(
+            "the result has no fields on the sole",
+            where=result.name,
+            remedy="Run the case again with --out; its folder must hold result.nc",
+        )
+    chosen = next((each for each in fields if each.name == field), fields[0])
+    if field is not None and chosen.name != field:
+        raise unknown_name("field", field, [each.name for each in fields], where="--field")
+    made = _scene(result, fields, chosen, pressed)
+    return replace(write(made, path), remark=made.remark)
+
+
+def _scene(
+    result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
+) -> _Scene:
+    dataset = result.data
+    sole, values, remark = _fields(result, [each.name for each in quantities])
+    if pressed and sole.pressed is None:
+        raise DataError(
+            "the result does not hold the shape of the pressed sole",
+            where=result.name,
+            remedy="It was made by an older version: run the case again",
+        )
+    mesh = sole_mesh(sole, pressed=pressed)
+    units = {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities}
+    return _Scene(
+        result.name,
+        sole,
+        mesh,
+        values | {AREA: np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)},
+        units | {AREA: "m^2"},
+        _colours(shown(values[chosen.name], chosen), mesh, chosen),
+        f"{chosen.title}, {chosen.unit}",
+        remark,
+    )
+
+
+def _fields(
+    result: Result, names: list[str]
+) -> tuple[DrawnSole, dict[str, NDArray[np.float64]], str]:
+    """Return the sole, its fields (SI) and what there is to tell.
+
+    The sole as designed; where its file is gone the solver's cells, on which a pressure is the load
+    over the area of a whole cell.
+    """
+    from underfoot.case import Case
+
+    dataset = result.data
+    try:
+        designed = DesignedSole.of_case(dataset, Case.from_text(result.case_text))
+    except UnderfootError as error:
+        sole = drawn_sole(dataset)
+        kept = {name: raw(dataset, name) for name in names}
+        for name in {*AREAS} & {*names}:
+            if AREAS[name] in dataset:
+                kept[name] = kept[name] * raw(dataset, AREAS[name])
+        remark = f"drawn from the solver's cells, as the sole can't be made: {error}"
+        return sole, {name: sole.placed(field) for name, field in kept.items()}, remark
+    return designed.drawn, {name: designed.field(name) for name in names}, ""
+
+
+def _colours(values: NDArray[np.float64], mesh: SoleMesh, quantity: Quantity) -> NDArray[np.uint8]:
+    """Return the colour (RGBA) of every corner, as the page shows the quantity."""
+    import matplotlib
+
+    limits = scale([values.ravel()], quantity)
+    shown = np.append(values.ravel(), np.nan)[mesh.cell]
+    if quantity.logarithmic:
+        share = np.log(shown / limits.low) / np.log(limits.high / limits.low)
+    else:
+        share = (shown - limits.low) / (limits.high - limits.low)
+    known = np.isfinite(share)
+    table = matplotlib.colormaps[quantity.colours](np.clip(np.nan_to_num(share), 0, 1), bytes=True)
+    table[~known] = RUBBER
+    return np.repeat(table, 4, axis=0)
+
+
+def _surface(scene: _Scene, points: NDArray[np.float64]) -> Any:
+    trimesh = optional_module("trimesh", "cad", WORK)
+    return trimesh.Trimesh(points, scene.mesh.triangles, vertex_colors=scene.colours, process=False)
+
+
+def _write_glb(scene: _Scene, path: Path) -> Exported:
+    # glTF: y up, z forward, so x is to the left
+    surface = _surface(scene, scene.mesh.points[:, [1, 2, 0]])
+    for name in scene.values:
+        surface.vertex_attributes[f"_{name.upper()}"] = scene.of_points(name)
+    surface.metadata["units"] = {f"_{name.upper()}": unit for name, unit in scene.units.items()}
+    surface.metadata["colours"] = scene.title
+    trimesh = optional_module("trimesh", "cad", WORK)
+    world = trimesh.Scene()
+    world.add_geometry(surface, node_name=scene.name, geom_name=scene.name)
+    path.write_bytes(world.export(file_type="glb", include_normals=False))
+    fields = {f"_{name.upper()}": unit for name, unit in scene.units.items()}
+    return Exported(path, "m", "y up, z forward", scene.title, fields)
+
+
+def _write_ply(scene: _Scene, path: Path) -> Exported:
+    surface = _surface(scene, scene.mesh.points * 1e3)
+    for name in scene.values:
+        surface.vertex_attributes[name] = scene.of_points(name)
+    data = surface.export(file_type="ply", include_attributes=True)
+    header = ["lengths in mm, z up, x forward", f"colours: {scene.title}"]
+    header += [f"{name} in {unit}" for name, unit in scene.units.items()]
+    head, _, body = data.partition(b"\n")  # "ply"; the comments follow the line of the format
+    kind, _, rest = body.partition(b"\n")
+    comments = "".join(f"comment {line}\n" for line in header).encode("ascii", "replace")
+    path.write_bytes(head + b"\n" + kind + b"\n" + comments + rest)
+    return Exported(path, "mm", "z up, x forward", scene.title, scene.units)
+
+
+def _write_obj(scene: _Scene, path: Path) -> Exported:
+    surface = _surface(scene, scene.mesh.points * 1e3)
+    comment = f"lengths in mm, z up, x forward; colours of the corners: {scene.title}"
+    path.write_text(surface.export(file_type="obj", header=comment), encoding="utf-8")
+    return Exported(path, "mm", "z up, x forward", scene.title, {})
+
+
+def _write_vtu(scene: _Scene, path: Path) -> Exported:
+    meshio = optional_module("meshio", "paraview", WORK)
+    fields = {f"{name} ({scene.units[name]})": [scene.of_faces(name)] for name in scene.values}
+    quads = [("quad", scene.mesh.quads)]
+    meshio.Mesh(scene.mesh.points, quads, cell_data=fields).write(str(path))
+    return Exported(path, "m", "z up, x forward", "", scene.units)
+
+
+def _write_csv(scene: _Scene, path: Path) -> Exported:
+    sole = scene.sole
+    known = np.isfinite(sole.height)
+    rows, columns = np.nonzero(known)
+    table = {"x (m)": sole.x[rows], "y (m)": sole.y[columns], "height (m)": sole.height[known]}
+    if sole.pressed is not None:
+        table["pressed height (m)"] = sole.pressed[known]
+    table["land (1)"] = sole.land[known].astype(float)
+    table |= {f"{name} ({scene.units[name]})": each[known] for name, each in scene.values.items()}
+    names, values = ",".join(table), np.stack(list(table.values()), axis=1)
+    np.savetxt(path, values, fmt="%.7g", delimiter=",", header=names, comments="")
+    return Exported(path, "m", "x forward, y to the left", "", scene.units)
+
+
+WRITERS: dict[str, Callable[[_Scene, Path], Exported]] = {
+    "glb": _write_glb,
+    "ply": _write_ply,
+    "obj": _write_obj,
+    "vtu": _write_vtu,
+    "csv": _write_csv,
+}
+"""The function that writes each kind of file."""

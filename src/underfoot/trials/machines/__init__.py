@@ -1,0 +1,1 @@
+"""Slip testers, tribometers, pressure sensors: from a record to their numbers."""

@@ -1,0 +1,1 @@
+"""Reports and audits of folders of recordings."""

@@ -1,0 +1,412 @@
+"""Everything an analysis of trials leaves: one page, tables, a spreadsheet, figures.
+
+The same folder gives the same bytes: no clock, no random numbers, sorted files, fixed dates
+inside archives.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+import zipfile
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from underfoot.core import Progress, display, silent
+from underfoot.core.files import check_writable_folder
+from underfoot.core.html import embedded, environment, png
+from underfoot.core.pool import in_processes
+from underfoot.core.progress import part
+from underfoot.core.text import harmless
+
+from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..study import FolderAnalysis, Table
+
+STORE = ".files"
+_MARK = "analysis.txt"
+_LONG = 60  # rows of a table shown on the page; the spreadsheet has all
+_DATE = (1980, 1, 1, 0, 0, 0)  # the oldest a zip archive can hold
+_STAMP = b"1980-01-01T00:00:00Z"
+_WIDEST = 60
+_MANY = 24  # figures from which other processes draw faster than this one alone
+
+
+def write_trials_report(
+    analysis: FolderAnalysis,
+    folder: Path,
+    *,
+    details: int = 4,
+    processes: int | None = None,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Write report.html, trials.xlsx, tables/*.csv, figures/*.png and *.svg; return the paths.
+
+    ``details`` single trials are drawn in detail. Figures of the study and of single trials are
+    written as PNG and SVG, contact sheets as SVG. ``processes`` (by default one a processor) draw.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    written: list[Path] = []
+
+    def write(name: str, text: str) -> None:
+        written.append(folder / name)
+        written[-1].write_text(text, encoding="utf-8")
+
+    write(
+        _MARK,
+        f"Analysis of trials by the protocol {analysis.protocol.name}.\n"
+        "report.html: all on one page. trials.xlsx and tables/: every number. figures/: pictures.\n"
+        f"{STORE}/: results of single files, so that an interrupted analysis can go on.\n",
+    )
+    for name in ("tables", "figures"):
+        (folder / name).mkdir(exist_ok=True)
+        for old in (folder / name).iterdir():
+            old.unlink()
+    cautions = {f.table.name: f.cautions for f in analysis.study.findings}
+    tables = analysis.tables
+    for table in tables:
+        write(f"tables/{table.name}.csv", csv_text(table, cautions.get(table.name, ())))
+    figures = trial_figures(analysis, details=details)
+    pages = [page for sheet in sheets(analysis.files) for page in contact_sheets(sheet)]
+    for page in pages:
+        write(f"figures/{page.name}.svg", page.svg)
+    jobs: list[tuple[Any, ...]] = [(tables, analysis.methods, folder / "trials.xlsx")]
+    jobs += [(one, folder / "figures") for one in figures]
+    count = processes if len(jobs) >= _MANY else 1
+    drawing = part(progress, 0.0, 0.95)
+    for _, paths in sorted(in_processes(_written, jobs, count, progress=drawing, stage="drawing")):
+        written += paths
+    pictures = [(one, (folder / "figures" / f"{one.name}.png").read_bytes()) for one in figures]
+    write("report.html", trials_page(analysis, tables, pictures, pages))
+    progress("drawing", 1.0)
+    return written
+
+
+def _written(job: tuple[Any, ...]) -> list[Path]:
+    """Write the spreadsheet (tables, methods, path) or a figure (figure, folder)."""
+    if not isinstance(job[0], TrialFigure):
+        write_spreadsheet(*job)
+        return [job[2]]
+    one, folder = job
+    paths = [folder / f"{one.name}{suffix}" for suffix in (".png", ".svg")]
+    paths[0].write_bytes(png(one.figure, 130))
+    _svg(one.figure, paths[1])
+    return paths
+
+
+def check_report_folder(folder: Path, *, overwrite: bool = False) -> None:
+    """Refuse a folder that holds something else than an earlier analysis of trials."""
+    if (folder / _MARK).is_file() or (folder / STORE).is_dir():
+        return
+    check_writable_folder(folder, overwrite=overwrite)
+
+
+def trials_page(
+    analysis: FolderAnalysis,
+    all_tables: Sequence[Table],
+    pictures: list[tuple[TrialFigure, bytes]],
+    pages: Sequence[SheetPage] = (),
+) -> str:
+    """Return the page of an analysis as HTML text; it opens without a network."""
+    chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": []}
+    for one, picture in pictures:
+        width = f"{5.3 * one.figure.get_figwidth():.1f}"
+        chapters[one.chapter].append(
+            {"caption": one.caption, "source": embedded(picture), "width": width}
+        )
+    tables = {table.name: table for table in all_tables}
+    noted = {name for one in analysis.files for name in one.conditions}
+    return environment(__package__ or "").get_template("trials.html").render(
+        analysis=analysis,
+        **study_parts(analysis),
+        first=chapters["study"][:1],
+        figures={**chapters, "study": chapters["study"][1:]},
+        sheets=[page.svg for page in pages],
+        files=page_table(_on_page(tables["files"], noted), limit=10_000),
+        edits=page_table(tables["edits"]) if "edits" in tables else None,
+        doubts=page_table(tables["doubts"]) if "doubts" in tables else None,
+    )  # fmt: skip
+
+
+def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
+    """Return what a page says of a folder as a whole, as plain data.
+
+    ``lead``: one sentence; ``counts``: files by verdict; ``reasons``: the most frequent ones with
+    their number; ``summary`` (or None), ``study`` and ``findings``: tables with title, columns,
+    rows of text, long text below each row, which columns are numbers, and notes; findings have
+    cautions too.
+    """
+    study = list(analysis.study.tables)
+    summary = study.pop(0) if study and study[0].name not in ("steps",) else None
+    reasons = Counter(
+        re.sub(r"\d[\d.]*", "…", re.sub(r" \([^)]*\)", "", reason.split(": ", 1)[-1]))[:90]
+        for one in analysis.files
+        for reason in one.reasons
+        if one.verdict != "accepted"
+    )
+    findings = analysis.study.findings
+    return {
+        "lead": lead_sentence(analysis),
+        "counts": Counter(one.verdict for one in analysis.files),
+        "reasons": reasons.most_common(4),
+        "summary": None if summary is None else page_table(_on_page(summary)),
+        "study": [page_table(_on_page(table)) for table in study],
+        "findings": [page_table(f.table) | {"cautions": f.cautions} for f in findings],
+    }
+
+
+def lead_sentence(analysis: FolderAnalysis) -> str:
+    """Return one sentence with what a reader came for: mean, spread, interval and how many."""
+    usable = [one for one in analysis.files if one.usable]
+    kind = analysis.protocol.kind
+    if not usable:
+        return "No file gave usable numbers: see the reasons below."
+    cautions = sum(one.verdict == "caution" for one in usable)
+    tail = f" {cautions} of {len(usable)} usable files carry a caution." if cautions else ""
+    tables = {table.name: table for table in analysis.study.tables}
+    if kind == "human_slip":
+        judged = [one for one in usable if "slip" in one.main]
+        slips = int(sum(one.main["slip"] for one in judged))
+        text = f"{slips} slips in {len(judged)} trials"
+        if judged:
+            text += f" ({100 * slips / len(judged):.0f} %)"
+        near = sum(abs(one.main.get("slip_margin", 1.0)) < 0.05 for one in judged)
+        if near:
+            text += f", {near} of them within 0.05 m/s of the limit"
+        rcof = [one.main["rcof"] for one in usable if "rcof" in one.main]
+        if rcof:
+            text += f"; required friction {min(rcof):.2f} to {max(rcof):.2f}"
+        return text + "." + tail
+    loads = [m["load"] for m in analysis.study.curves.get("maps", [])]
+    carried = f" The fluid carries {min(loads):.3g} to {max(loads):.3g} N." if loads else ""
+    table = tables.get("conditions")
+    # Floors and shoes on a tester are no sample of one population: no mean over all of them.
+    if table is not None and (kind == "gait" or len(table.rows) == 1):
+        row = dict(zip(table.columns, table.rows[-1], strict=True))
+        column = next(c for c in table.columns if isinstance(row[c], float))
+        name = column.split(" (")[0]
+        places = table.decimals.get(column, 3)
+        counted = ", ".join(
+            f"{row[unit]} {unit if row[unit] != 1 else unit[:-1]}"
+            for unit in ("persons", "files", "trials", "readings", "steps")
+            if row.get(unit)
+        )
+        label = {"RCOF": "Required friction (RCOF)"}.get(name, name)
+        text = f"{label} {row[column]:.{places}f}"
+        low, high = row.get(f"{name} 95 % low"), row.get(f"{name} 95 % high")
+        if isinstance(low, float) and isinstance(high, float):
+            spread = row[table.columns[table.columns.index(column) + 1]]
+            text += f", SD {spread:.{places}f}, 95 % {low:.{places}f} to {high:.{places}f}"
+        return f"{text} ({counted}).{carried}{tail}"
+    samples = tables.get("samples")
+    if samples is not None:
+        return f"{len(samples.rows)} samples.{tail}"
+    cof = [one.main["cof"] for one in usable if "cof" in one.main]
+    if cof:
+        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {len(cof)} usable runs."
+        return text + carried + tail
+    return f"{len(usable)} usable tests.{tail}"
+
+
+def _on_page(table: Table, conditions: Collection[str] = ()) -> Table:
+    """Return a table with the columns that a page has room for; files keep all."""
+    if table.name.startswith("conditions"):
+        return _compact(table)
+    if table.name == "files":
+        keep = [i for i, c in enumerate(table.columns) if c not in conditions][:9]
+        keep += [i for i, c in enumerate(table.columns) if c == "reasons" and i not in keep]
+        return table.only(keep)
+    return table
+
+
+def _compact(table: Table) -> Table:
+    """Return a table of several quantities with mean, SD and interval of each in one cell."""
+    starts = [i - 2 for i, c in enumerate(table.columns) if c.endswith(" 95 % low")]
+    if len(starts) < 2:
+        return table
+    inside = {i + k for i in starts for k in (1, 2, 3)}
+    shown_columns = [i for i in range(len(table.columns)) if i not in inside]
+
+    def cell(row: Sequence[Any], i: int) -> Any:
+        if i not in starts:
+            return row[i]
+        places = table.decimals.get(table.columns[i], 3)
+        texts = [f"{v:.{places}f}" for v in row[i : i + 4] if isinstance(v, int | float)]
+        if len(texts) < 4:
+            return "".join(texts[:1])
+        return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"
+
+    names = (table.columns[i] + (": mean (SD), 95 %" if i in starts else "") for i in shown_columns)
+    rows = tuple(tuple(cell(row, i) for i in shown_columns) for row in table.rows)
+    return replace(table, columns=tuple(names), rows=rows)
+
+
+# Long text: below its row, over the whole width, so that no column runs out of a page.
+_LONG_TEXT = ("reasons", "reason", "cautions", "flags", "rejected because", "remark")
+
+
+def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
+    """Return a table as a page shows it: filled columns, texts, long text below its row, notes."""
+    rows = table.rows[:limit]
+    # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
+    below = [i for i in table.filled() if table.columns[i] in _LONG_TEXT]
+    filled = [i for i in table.filled() if i not in below]
+    notes = list(table.notes)
+    if len(table.rows) > limit:
+        notes.append(f"{len(table.rows) - limit} more rows are in the spreadsheet.")
+    return {
+        "title": table.title,
+        "columns": [table.columns[i] for i in filled],
+        "rows": [
+            [_shown(row[i], table.columns[i], table.decimals) for i in filled] for row in rows
+        ],
+        "below": ["; ".join(str(row[i]) for i in below if row[i]) for row in rows],
+        "numbers": [
+            all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
+            for i in filled
+        ],
+        "notes": notes,
+    }
+
+
+def _shown(value: Any, column: str, decimals: Mapping[str, int]) -> str:
+    if value is None or value == "":
+        return "–"
+    if isinstance(value, str):
+        return value
+    if column in ("p", "p adjusted"):
+        return "< 0.0001" if value < 1e-4 else f"{value:.4f}"
+    if isinstance(value, int):
+        return str(value)
+    if column in ("slip", "heel crossed the array"):
+        return "yes" if value else "no"
+    if column in decimals:
+        return f"{value:.{decimals[column]}f}"
+    if value == int(value) and abs(value) < 1e6:
+        return str(int(value))
+    return display(value, "1", 3)
+
+
+def _svg(figure: Figure, path: Path) -> None:
+    import matplotlib as mpl
+
+    # The layout was worked out for the PNG and takes most of the drawing time.
+    figure.set_layout_engine("none")
+    stream = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": "underfoot"}):
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    # matplotlib names clip paths after memory addresses; in order of appearance they repeat
+    seen: dict[str, str] = {}
+    text = re.sub(
+        r"\bp[0-9a-f]{10}\b",
+        lambda found: seen.setdefault(found[0], f"clip{len(seen)}"),
+        stream.getvalue(),
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+def csv_text(table: Table, cautions: Sequence[str] = ()) -> str:
+    """Return a table as CSV text: UTF-8, comma, decimal point, full precision.
+
+    ``cautions`` of the whole table stand in a last column of their own, so that a table that
+    travels alone keeps them.
+    """
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow([*table.columns, *(["cautions"] if cautions else [])])
+    extra = ["; ".join(cautions)] if cautions else []
+    writer.writerows([*map(_cell, row), *extra] for row in table.rows)
+    return stream.getvalue()
+
+
+def write_spreadsheet(tables: Sequence[Table], methods: Sequence[str], path: Path) -> None:
+    """Write all tables into one XLSX file, one sheet each, and the methods text on the first."""
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Alignment, Font
+    from openpyxl.utils import get_column_letter
+
+    book = Workbook(write_only=True)  # cells go to the file at once: a tenth of the memory
+
+    def styled(sheet: Any, text: str, **style: Any) -> Any:
+        cell = WriteOnlyCell(sheet, text)
+        for name, value in style.items():
+            setattr(cell, name, value)
+        return cell
+
+    first = book.create_sheet("methods")
+    first.column_dimensions["A"].width = 110
+    wrapped = Alignment(wrap_text=True, vertical="top")
+    for text in methods:
+        first.append([styled(first, _safe(text), alignment=wrapped)])
+    used = {"methods"}
+    for table in tables:
+        sheet = book.create_sheet(_sheet_name(table.name, used))
+        sheet.freeze_panes = "A3"
+        for i, name in enumerate(table.columns, start=1):
+            longest = max([len(name), *(len(_cell(row[i - 1])) for row in table.rows[:200])])
+            sheet.column_dimensions[get_column_letter(i)].width = min(longest + 2, _WIDEST)
+        sheet.append([styled(sheet, table.title, font=Font(bold=True, size=13))])
+        bold = Font(bold=True)
+        sheet.append([styled(sheet, _safe(name), font=bold) for name in table.columns])
+        for row in table.rows:
+            sheet.append([_number_or_text(value) for value in row])
+        for note in table.notes:
+            sheet.append([_safe(note)])
+    raw = io.BytesIO()
+    book.save(raw)
+    path.write_bytes(_without_dates(raw.getvalue()))
+
+
+def _without_dates(data: bytes) -> bytes:
+    """Return the archive with fixed dates, inside its properties too."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(out, "w") as new:
+        for name in sorted(old.namelist()):
+            content = old.read(name)
+            if name == "docProps/core.xml":
+                content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", _STAMP, content)
+            entry = zipfile.ZipInfo(name, _DATE)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            new.writestr(entry, content)
+    return out.getvalue()
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.10g}" if math.isfinite(value) else ""
+    return harmless(str(value))
+
+
+def _number_or_text(value: Any) -> Any:
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
+        return None
+    if isinstance(value, float):
+        return float(f"{value:.10g}")
+    return value if isinstance(value, int) else _safe(str(value))
+
+
+def _safe(text: str) -> str:
+    """Text that a spreadsheet would run as a formula is kept as text."""
+    cleaned = "".join(letter for letter in text if letter.isprintable() or letter in "\n\t")
+    return harmless(cleaned)
+
+
+def _sheet_name(name: str, used: set[str]) -> str:
+    plain = "".join("_" if letter in "[]:*?/\\" else letter for letter in name)[:28]
+    chosen, number = plain, 2
+    while chosen.casefold() in used:
+        chosen, number = f"{plain} {number}", number + 1
+    used.add(chosen.casefold())
+    return chosen

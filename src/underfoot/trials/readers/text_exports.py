@@ -1,0 +1,345 @@
+"""Text exports of motion laboratories: TRC, MOT and STO, Cortex, BioWare, Qualisys, Vicon."""
+
+import re
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from ..recording.trial import Trial
+from .draft import Draft
+from .text import is_number, number_after, si_unit, split
+
+
+def read_trc(draft: Draft) -> Trial:
+    """Return the markers of a TRC file as a trial."""
+    lines = draft.lines()
+    if len(lines) < 6 or "PathFileType" not in lines[0]:
+        raise draft.error("not a TRC file", allowed="a first line with PathFileType")
+    header = dict(zip(split(lines[1], "\t"), split(lines[2], "\t"), strict=False))
+    labels = [cell for cell in split(lines[3], "\t")[2:] if cell]
+    if not labels:
+        raise DataError("no marker is named", where=f"{draft.name}, line 4")
+    announced = header.get("NumMarkers", "")
+    if announced.isdigit() and int(announced) < len(labels):
+        draft.notes.append(
+            f"NumMarkers is {announced}, the labels name {len(labels)}: all are read"
+        )
+    else:
+        draft.count(announced, len(labels), "NumMarkers")
+    candidates = ((i, split(lines[i], "\t")) for i in range(4, min(len(lines), 12)))
+    first = next((i for i, c in candidates if len(c) > 1 and is_number(c[0].replace(",", "."))), 0)
+    if not first:
+        raise draft.error("truncated: there are no rows")
+    columns = 2 + 3 * len(labels)
+    rows = [row for line in lines[first:] if (row := line.rstrip(" \t"))]
+    rows = [row + "\t" * (columns - 1 - row.count("\t")) for row in rows]
+    numbers = draft.table(rows, "\t", columns, first + 1)
+    draft.count(header.get("NumFrames", ""), len(numbers), "NumFrames")
+    draft.clock(numbers[:, 1])
+    unit = header.get("Units", "")
+    size, unknown = float(np.nanmedian(np.abs(numbers[:, 2:]))), f'unit "{unit}" is not known'
+    factor = draft.length_unit(unit, size, unknown, "the size of the numbers")
+    positions = numbers[:, 2:].reshape(len(numbers), -1, 3) * factor
+    positions[(positions == 0.0).all(axis=2)] = np.nan
+    for i, name in enumerate(draft.names(labels, "marker")):
+        draft.marker(name, positions[:, i])
+    return draft.trial("TRC")
+
+
+# ground_force_vx, 1_ground_force_vx, R_ground_force_vx, ground_force_1_vx, FP1_vx ...
+_GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])$")
+_REACTION = re.compile(r"ground|grf|force|fp|plate", re.IGNORECASE)
+
+
+def read_motion(draft: Draft) -> Trial:
+    """Return the table of a .mot or .sto file as a trial; ground reactions become plates.
+
+    OpenSim's ground reactions are forces on the body in ground axes, y up, N and m.
+    """
+    lines = draft.lines()
+    ends = (i for i, x in enumerate(lines[:200]) if x.strip().casefold().startswith("endheader"))
+    end = next(ends, None)
+    if end is None:
+        raise draft.error("not a motion file", allowed="a header closed by endheader")
+    header = _header(lines[:end])
+    at = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
+    if at is None:
+        raise draft.error("truncated: the column names are missing")
+    delimiter = "\t" if "\t" in lines[at] else ""
+    labels = split(lines[at].rstrip(), delimiter)
+    if labels[0].casefold() not in ("time", "frame", "t"):
+        raise draft.error(f'the first column is "{labels[0]}", not time')
+    names = draft.names(labels, "column")
+    rows = [line.strip() for line in lines[at + 1 :]]
+    numbers = draft.table(rows, delimiter, len(labels), at + 2)
+    draft.count(header.get("nrows", ""), len(numbers), "nrows")
+    draft.count(header.get("ncolumns", ""), len(labels), "ncolumns")
+    draft.clock(numbers[:, 0])
+    degrees = header.get("indegrees", "").casefold() in ("yes", "true", "1")
+    for i, name in enumerate(names[1:], start=1):
+        draft.channel(name, numbers[:, i], note="angles in degrees" if degrees else "")
+    if draft.times is None:
+        _plates(draft, labels, numbers)
+    else:
+        draft.notes.append("samples are not equally spaced: no plates were made")
+    return draft.trial("OpenSim motion")
+
+
+def _header(lines: list[str]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for line in lines:
+        key, separator, value = line.partition("=")
+        words = line.split()
+        if separator:
+            found[key.strip().casefold()] = value.strip()
+        elif len(words) == 2 and words[0].casefold() in ("datarows", "datacolumns"):
+            found["n" + words[0].casefold().removeprefix("data")] = words[1]  # the older form
+    return found
+
+
+def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
+    groups: dict[str, dict[str, int]] = {}
+    for i, label in enumerate(labels[1:], start=1):
+        match = _GROUND.match(label)
+        if match and _REACTION.search(match["base"]):
+            groups.setdefault(match["base"], {}).setdefault(match["kind"], i)
+    for columns in groups.values():
+        if not {"vx", "vy", "vz"} <= columns.keys():
+            continue
+        force = numbers[:, [columns["vx"], columns["vy"], columns["vz"]]]
+        place = None
+        if {"px", "py", "pz"} <= columns.keys():
+            place = numbers[:, [columns["px"], columns["py"], columns["pz"]]]
+            place[force[:, 1] < 20.0] = np.nan
+        kind = f"ground reaction ({labels[columns['vx']]})"
+        draft.plate(force, up=np.eye(3)[1], centre_of_pressure=place, kind=kind)
+
+
+_LENGTH = 1e-3  # Cortex writes positions in mm, moments in N mm
+_COLUMNS = ("FX", "FY", "FZ", "X", "Y", "Z", "MZ")
+
+
+def read_cortex_forces(draft: Draft) -> Trial:
+    """Return the plates of a Cortex .forces file as a trial.
+
+    The forces are those on the foot in laboratory axes. The vertical axis is the one that
+    carries the load.
+    """
+    lines = draft.lines()
+    if len(lines) < 6 or "[force data]" not in lines[0].casefold():
+        raise draft.error("not a Cortex file", allowed="a first line [Force Data]")
+    header = {line.split("=")[0].strip().casefold(): line for line in lines[1:20] if "=" in line}
+    for key in ("samplerate", "numberofsamples"):
+        if key not in header:
+            raise draft.error(f"the header has no {key}")
+    draft.rate = number_after(header["samplerate"], draft.name)
+    expected = number_after(header["numberofsamples"], draft.name)
+    if not 0 < draft.rate < 1e6:
+        raise draft.error(f"SampleRate is {draft.rate:g}", allowed="a positive rate in Hz")
+    at = next((i for i, line in enumerate(lines[:30]) if line.startswith("#")), None)
+    if at is None:
+        raise draft.error("truncated: the column names are missing")
+    labels = split(lines[at].lstrip("#"), "\t")
+    names = draft.names(labels, "column")
+    numbers = draft.table(lines[at + 1 :], "\t", len(labels), at + 2)
+    draft.count(str(int(expected)), len(numbers))
+    index = {label.upper(): i for i, label in enumerate(labels)}
+    suffixes = [m[1] for m in (re.match(r"^FX(\d+)$", label.upper()) for label in labels) if m]
+    complete = [s for s in suffixes if all(name + s in index for name in _COLUMNS)]
+    if not complete:
+        raise draft.error("no plate has all of FX FY FZ X Y Z MZ")
+    forces = {s: numbers[:, [index[name + s] for name in _COLUMNS[:3]]] for s in complete}
+    load = np.nansum([np.abs(force).sum(axis=0) for force in forces.values()], axis=0)
+    up = np.eye(3)[int(np.argmax(load))]
+    for s, force in forces.items():
+        place = numbers[:, [index[name + s] for name in _COLUMNS[3:6]]] * _LENGTH
+        place[~(np.abs(force @ up) > 20.0)] = np.nan
+        kind = "Cortex force and centre of pressure"
+        draft.plate(force, f"plate {s}", up=up, centre_of_pressure=place, kind=kind)
+    for i, name in enumerate(names[1:], start=1):
+        draft.channel(name, numbers[:, i], unit="N" if name.upper().startswith("F") else "")
+    return draft.trial("Cortex forces")
+
+
+_CENTRE = ("AX", "AY")
+
+
+def read_bioware(draft: Draft) -> Trial:
+    """Return the plates of a BioWare text export as a trial.
+
+    BioWare writes the force **on the plate** in Kistler's axes (z into the floor). On the foot
+    that is -Fx, -Fy and Fz upward; Fx and Fy are turned here, which a C3D export of the same
+    recording confirms.
+    """
+    lines = [line.rstrip("\t ") for line in draft.lines()]
+    heads = (i for i, line in enumerate(lines[:80]) if line.casefold().startswith("abs time"))
+    at = next(heads, None)
+    if at is None:
+        raise draft.error("not a BioWare export", allowed='a column "abs time (s)"')
+    labels = split(lines[at], "\t")
+    first, units = at + 1, [""] * len(labels)
+    if first < len(lines):
+        cells = split(lines[first], "\t")
+        if cells and not is_number(cells[0].replace(",", ".")):
+            units = (cells + units)[: len(labels)]
+            first += 1
+    names = draft.names(labels, "column")
+    numbers = draft.table(lines[first:], "\t", len(labels), first + 1)
+    draft.clock(numbers[:, 0])
+    if draft.times is not None:
+        raise draft.error("the samples are not equally spaced")
+    for i in range(1, len(labels)):
+        default = "N" if labels[i].strip("|").upper().startswith("F") else "m"
+        draft.channel(names[i], numbers[:, i], units[i], unit=default)
+    kinds = [label.upper()[:2] for label in labels]
+    for i in range(1, len(labels) - 2):
+        if kinds[i : i + 3] != ["FX", "FY", "FZ"]:
+            continue
+        columns = [draft.channels[name].values for name in names[i : i + 3]]
+        force = np.column_stack((-columns[0], -columns[1], columns[2]))
+        following = kinds[i + 3 : i + 6]
+        place = None
+        if set(_CENTRE) <= set(following):
+            x, y = (draft.channels[names[i + 3 + following.index(a)]].values for a in _CENTRE)
+            place = np.column_stack((x, y, np.zeros(len(x))))
+            place[~(np.abs(force[:, 2]) > 20.0)] = np.nan
+        kind = "BioWare text, force on the plate turned to the foot, plate axes"
+        draft.plate(force, up=np.eye(3)[2], centre_of_pressure=place, kind=kind)
+    if not draft.plates:
+        raise draft.error("no plate has Fx, Fy and Fz")
+    return draft.trial("BioWare text")
+
+
+_CORNERS = ("POSX_POSY", "NEGX_POSY", "NEGX_NEGY", "POSX_NEGY")
+
+
+def read_qualisys(draft: Draft) -> Trial:
+    """Return the markers or the force plate of a Qualisys TSV file as a trial.
+
+    Lengths are mm. Forces are taken as exported, in laboratory axes (QTM can also export plate
+    axes: choose "global" there).
+    """
+    lines = draft.lines()
+    header: dict[str, list[str]] = {}
+    at = 0
+    while at < len(lines) and (cells := split(lines[at], "\t")) and not is_number(cells[0]):
+        header.setdefault(cells[0].upper(), cells[1:])
+        at += 1
+
+    def first(key: str) -> str:
+        return (header.get(key) or [""])[0]
+
+    draft.rate = float(first("FREQUENCY") or "nan")
+    if not 0 < draft.rate < 1e6:
+        raise draft.error("the header has no FREQUENCY")
+    rows = [line.rstrip("\t ") for line in lines[at:] if line.strip()]
+    if not rows:
+        raise draft.error("truncated: there are no rows")
+    width = max(row.count("\t") for row in rows) + 1
+    numbers = draft.table(rows, "\t", width, at + 1)
+    for key in ("NO_OF_FRAMES", "NO_OF_SAMPLES"):
+        draft.count(first(key), len(numbers), key)
+    if "MARKER_NAMES" in header:
+        names = draft.names([n for n in header["MARKER_NAMES"] if n], "marker")
+        extra = width - 3 * len(names)
+        if extra not in (0, 1, 2):
+            raise draft.error(f"{width} columns for {len(names)} markers")
+        if extra == 2:
+            draft.clock(numbers[:, 1])
+        places = numbers[:, extra:].reshape(len(numbers), -1, 3) * 1e-3
+        places[(places == 0.0).all(axis=2)] = np.nan
+        for i, name in enumerate(names):
+            draft.marker(name, places[:, i])
+        return draft.trial("Qualisys TSV")
+    labels = [cell.upper().replace(" ", "_") for cell in split(lines[at - 1], "\t")]
+
+    def triple(kind: str) -> np.ndarray | None:
+        wanted = [f"{kind}_{axis}" for axis in "XYZ"]
+        known = set(wanted) <= set(labels)
+        return numbers[:, [labels.index(label) for label in wanted]] if known else None
+
+    force, place = triple("FORCE"), triple("COP")
+    if force is None:
+        raise draft.error("no columns Force_X, Force_Y, Force_Z and no markers")
+    keys = [[f"FORCE_PLATE_CORNER_{corner}_{axis}" for axis in "XYZ"] for corner in _CORNERS]
+    corners = 1e-3 * np.array([[float((header.get(k) or ["nan"])[0]) for k in row] for row in keys])
+    name = " ".join(header.get("FORCE_PLATE_NAME", [])) or "1"
+    draft.plate(
+        force,
+        name if name.startswith("plate") else f"plate {name}",
+        up=np.eye(3)[2],
+        centre_of_pressure=None if place is None else place * 1e-3,
+        corners=corners if np.isfinite(corners).all() else None,
+        kind="Qualisys TSV, taken as laboratory axes",
+    )
+    for i, label in enumerate(draft.names(labels, "column")[:width]):
+        draft.channel(label, numbers[:, i], unit="N" if label.startswith("FORCE") else "")
+    return draft.trial("Qualisys TSV")
+
+
+BLOCKS = ("devices", "trajectories", "model outputs", "joints", "segments")
+_PLATE = re.compile(r"^(?P<device>.*?)\s*-\s*(?P<what>force|moment|cop)$", re.IGNORECASE)
+
+
+def read_vicon_csv(draft: Draft) -> Trial:
+    """Return devices (force plates, channels) and trajectories of a Nexus export as one trial."""
+    lines = draft.lines()
+    kinds = [line.strip(' ,"').casefold() for line in lines]
+    starts = [i for i, kind in enumerate(kinds) if kind in BLOCKS]
+    if not starts:
+        raise draft.error("no block of devices or trajectories")
+    for start, stop in zip(starts, [*starts[1:], len(lines)], strict=True):
+        names, axes, units, numbers = _block(draft, lines[start:stop], start)
+        if kinds[start] == "devices":
+            _devices(draft, names, axes, units, numbers)
+        elif kinds[start] == "trajectories":
+            for name in dict.fromkeys(names):
+                at = [i for i, n in enumerate(names) if n == name]
+                if name and len(at) == 3:
+                    unit = si_unit(units[at[0]]) or ("m", 1e-3, 0.0)
+                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * unit[1])
+        else:
+            draft.notes.append(f"the block of {kinds[start]} was left out")
+    return draft.trial("Vicon CSV")
+
+
+def _block(
+    draft: Draft, lines: list[str], start: int
+) -> tuple[list[str], list[str], list[str], np.ndarray]:
+    rate = split(lines[1], ",")[0] if len(lines) > 1 else ""
+    if not is_number(rate) or not 0 < float(rate) < 1e6 or len(lines) < 6:
+        where = f"{draft.name}, line {start + 2}"
+        raise DataError("a block has no rate or no rows", where=where)
+    draft.rate = float(rate)
+    names, axes, units = (split(line, ",") for line in lines[2:5])
+    width = len(axes)
+    names, units = ((row + [""] * width)[:width] for row in (names, units))
+    for i in range(3, width):
+        names[i] = names[i] or names[i - 1]  # a name stands over the first of its columns only
+    return names, axes, units, draft.table(lines[5:], ",", width, start + 6)
+
+
+def _devices(
+    draft: Draft, names: list[str], axes: list[str], units: list[str], numbers: np.ndarray
+) -> None:
+    whole = [f"{name} {axis}".strip() for name, axis in zip(names, axes, strict=True)]
+    labels = draft.names(whole, "column")
+    groups: dict[str, dict[str, list[np.ndarray]]] = {}
+    for i in range(2, len(labels)):
+        draft.channel(labels[i], numbers[:, i], units[i])
+        match = _PLATE.match(names[i])
+        if match:
+            parts = groups.setdefault(match["device"], {})
+            parts.setdefault(match["what"].casefold(), []).append(draft.channels[labels[i]].values)
+    for device, parts in groups.items():
+        if len(parts.get("force", [])) != 3:
+            continue
+        place = parts.get("cop", [])
+        force = np.column_stack(parts["force"])
+        draft.plate(
+            force,
+            up=np.eye(3)[int(np.argmax(np.nansum(np.abs(force), axis=0)))],
+            centre_of_pressure=np.column_stack(place) if len(place) == 3 else None,
+            kind=f"Vicon CSV, {device}",
+        )

@@ -1,0 +1,60 @@
+"""Xsens MVNX: segments of the body by inertial sensors, with the heels and toes of the feet."""
+
+from collections.abc import Iterator
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ..recording.trial import Trial
+from .draft import Draft
+
+
+def read_mvnx(draft: Draft) -> Trial:
+    """Return the origins of segments and the points of both feet as markers (m, z up).
+
+    A point of a foot is origin + R(q) p, with its place p in the segment and the quaternion q
+    (w, x, y, z) of sensor to laboratory. Frames of calibration (identity, T pose) are left out.
+    """
+    if b"<!ENTITY" in draft.data:
+        raise draft.error("holds XML entities, which no MVNX needs")
+    try:
+        root = ElementTree.fromstring(draft.data)
+    except ElementTree.ParseError as error:
+        raise draft.error(f"not valid XML ({error})", remedy="Export it again") from error
+
+    def every(place: ElementTree.Element, name: str) -> Iterator[ElementTree.Element]:
+        return (one for one in place.iter() if one.tag.rpartition("}")[2] == name)
+
+    subject = next(every(root, "subject"), None)
+    frames = [f for f in every(root, "frame") if f.get("type", "normal") == "normal"]
+    segments = list(every(root, "segment"))
+    if subject is None or not frames or not segments:
+        raise draft.error("holds no frames of a subject")
+    try:
+        draft.rate = float(subject.get("frameRate", "nan"))
+    except ValueError:
+        draft.rate = np.nan
+    if not 0 < draft.rate < 1e4:
+        raise draft.error("the subject has no frameRate")
+
+    def values(name: str, width: int) -> np.ndarray:
+        texts = [next((one.text or "" for one in every(f, name)), "") for f in frames]
+        rows = [np.array(text.split(), dtype=float) for text in texts]
+        if any(len(row) != width * len(segments) for row in rows):
+            raise draft.error(f"truncated: {name} of {len(segments)} segments is not in each frame")
+        return np.array(rows).reshape(len(rows), len(segments), width)
+
+    position = values("position", 3)
+    turn = values("orientation", 4) if any(True for _ in every(frames[0], "orientation")) else None
+    for i, segment in enumerate(segments):
+        label = segment.get("label", f"segment {i + 1}")
+        draft.marker(label, position[:, i])
+        for point in every(segment, "point") if "Foot" in label else ():
+            place = next(every(point, "pos_b"), None)
+            if turn is not None and place is not None and place.text:
+                q, p = turn[:, i], np.array(place.text.split(), dtype=float)
+                twice = 2.0 * np.cross(q[:, 1:], p)
+                moved = p + q[:, :1] * twice + np.cross(q[:, 1:], twice)
+                name = f"{label.removesuffix('Foot')} {point.get('label', '').removeprefix('p')}"
+                draft.marker(name.strip(), position[:, i] + moved)
+    return draft.trial("Xsens MVNX")

@@ -1,0 +1,1 @@
+"""What a file of measurements holds: channels, plates, axes, conventions, calibration."""

@@ -1,0 +1,462 @@
+"""Which files of a folder are trials, and what the laboratory noted about each."""
+
+import csv
+import io
+import math
+import os
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from underfoot.core import DataError, InputError, nearest_match, units
+from underfoot.core.text import decoded
+
+from ..readers import Profile, read_profile, trial_suffixes
+from ..readers.sheet import is_workbook, workbook_rows
+from ..readers.text import is_number, name_and_unit, si_unit
+from .file_result import FileResult
+
+NAMES = ("conditions.csv", "conditions.xlsx")
+REPORT_MARK = "analysis.txt"  # stands in the folder of a report, which holds no trials
+PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id")
+FILE = ("file", "filename", "file name", "datei", "dateiname")
+MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
+        "körpergewicht")  # fmt: skip
+_BODIES = {
+    **dict.fromkeys(MASS, (10.0, 300.0, "kg", "(kg), (lb)")),
+    **dict.fromkeys(("height", "body height", "körpergröße"), (0.5, 2.5, "m", "(m), (cm)")),
+}
+_EMPTY = ("", "?", "-", "--", "n/a", "#n/a", "nan", "null", "unknown", "unbekannt", "tbd", "k.a.")
+# Names of conditions that number trials: never factors of a test.
+NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
+_NOT_TRIALS = re.compile(
+    r"(conditions|edits|truth|synthetic|notes?|notizen|read[-_ ]?me|liesmich|licen[cs]e|protocol"
+    r"|todo|session[-_ ]?metadata)([-_ .].*)?$",
+    re.IGNORECASE,
+)
+_PERSON_FOLDER = re.compile(
+    r"(s|p|vp|sub|subj|subject|person|participant|proband|id)[-_ ]?0*\d+\w?$", re.IGNORECASE
+)
+_FORCES = (".forces", ".mot", ".sto")
+
+
+def _label(path: Path, folder: Path) -> str:
+    return path.relative_to(folder).as_posix()
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Files that belong to one recording; ``name`` is the path below the folder of the study."""
+
+    name: str
+    paths: tuple[Path, ...]
+    conditions: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class StudyFolder:
+    """The recordings of a folder and of those below it; ``notes`` name files left aside."""
+
+    recordings: tuple[Recording, ...]
+    notes: tuple[str, ...]
+
+
+def study_folder(
+    folder: Path, *, conditions: Path | None = None, names: str = "", merge_spelling: bool = False
+) -> StudyFolder:
+    """Return the recordings in a folder with their conditions.
+
+    Conditions come from tables (``conditions.csv`` or ``.xlsx`` in the folder or beside the files,
+    or the table ``conditions``), from ``names`` (a regular expression with named groups, searched
+    in each path below ``folder`` without its ending, such as
+    ``S(?P<subject>\\d+)_(?P<shoe>[a-z]+)_(?P<n>\\d+)``), or else from the folders: a level whose
+    folders are called like ``S01`` or ``subject 7`` names the person, another level with several
+    folders is a condition called "folder". Spellings that differ in capitals, blanks, "-" or "_"
+    are one with ``merge_spelling``. An `InputError` says that there is no such folder or no trial
+    file, that a table or pattern is wrong, that two sources describe a file differently, or that a
+    condition has several spellings.
+    """
+    groups, notes = _groups(folder)
+    labels = [_label(group[0], folder) for group in groups]
+    noted_by_file = [_session(group[0], folder) for group in groups]
+    for noted, label, added in zip(noted_by_file, labels, _from_names(labels, names), strict=True):
+        _add(noted, added, label)
+    members = {_label(p, folder): i for i, group in enumerate(groups) for p in group}
+    for table, below in _tables(folder, conditions):
+        described = conditions_of(below, table)
+        absent = []
+        for file, added in described.items():
+            label = named_file(file, list(members), _label(below, folder))
+            if label is None:
+                absent.append(file)
+                continue
+            _add(noted_by_file[members[label]], added, label)
+        if absent and len(absent) == len(described):
+            raise InputError(
+                f'none of its {len(absent)} files is in the folder, the first is "{absent[0]}"',
+                where=table.name,
+                allowed=", ".join(sorted(members)[:3]) + " ...",
+                nearest=nearest_match(absent[0], members),
+            )
+        notes += [f"{file}: in {table.name}, but there is no such file" for file in absent]
+    one_spelling(noted_by_file, merge_spelling)
+    recordings = tuple(
+        Recording(label, tuple(group), noted)
+        for label, group, noted in zip(labels, groups, noted_by_file, strict=True)
+    )
+    return StudyFolder(tuple(sorted(recordings, key=lambda r: r.name)), tuple(notes))
+
+
+def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None:
+    """Return the one file that a table names, by its path or its bare name; None if absent.
+
+    Capitals don't matter, and the ending may be left out. A name that stands for several files is
+    an `InputError`.
+    """
+    plain = name.replace("\\", "/")
+    if plain in labels:
+        return plain
+    plain = plain.casefold()
+    inside = plain if below in (".", "") else f"{below.casefold()}/{plain}"
+    folded = {label: label.casefold() for label in labels}
+    own = {label: text.rsplit("/", 1)[-1] for label, text in folded.items()}
+    bare = {label: text.rsplit(".", 1)[0] for label, text in own.items()}
+    for wanted, known in ((inside, folded), (plain, own), (plain, bare)):
+        same = [label for label, text in known.items() if text == wanted]
+        if same:
+            break
+    if len(same) > 1:
+        text = f'"{name}" names {len(same)} files: {", ".join(same[:4])}'
+        raise InputError(text, where="file", remedy="Write the folder too")
+    return same[0] if same else None
+
+
+def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
+    """Return trial files, markers joined with the forces of the same name, and notes."""
+    if not folder.is_dir():
+        raise InputError(f"there is no folder {folder}", where="FOLDER")
+    trials: list[Path] = []
+    suffixes = trial_suffixes()
+    notes: list[str] = []
+    for place, below, files in os.walk(folder):
+        if REPORT_MARK in files and Path(place) != folder:
+            below.clear()
+            notes.append(f"{_label(Path(place), folder)}: holds a report, left aside")
+            continue
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        for name in sorted(files):
+            path = Path(place) / name
+            ending = path.suffix.casefold()
+            if name.startswith(".") or ending == ".toml" or name == REPORT_MARK:
+                continue
+            if _NOT_TRIALS.match(path.stem) and ending not in (".c3d", ".trc"):
+                if not re.match("conditions|edits|truth|synthetic|session", name, re.IGNORECASE):
+                    notes.append(f"{_label(path, folder)}: notes by its name, not a trial")
+            elif ending in suffixes:
+                trials.append(path)
+            else:
+                notes.append(
+                    f"{_label(path, folder)}: not a measurement file by its ending, left aside"
+                )
+    if not trials:
+        raise InputError(
+            f"the folder {folder} holds no trial file", where="FOLDER", allowed=", ".join(suffixes)
+        )
+    markers = {_stem(path): path for path in trials if path.suffix.casefold() == ".trc"}
+    partners = {p for p in trials if p.suffix.casefold() in _FORCES and _stem(p) in markers}
+    return [
+        [path, *sorted(p for p in partners if markers[_stem(p)] == path)]
+        for path in trials
+        if path not in partners
+    ], notes
+
+
+def _stem(path: Path) -> Path:
+    """Path without ending; OpenCap keeps markers and motions of one trial in two folders."""
+    place = path.parent
+    if place.name == "MarkerData":
+        place = place.parent
+    elif place.name == "Kinematics" and place.parent.name == "OpenSimData":
+        place = place.parent.parent
+    return place / path.stem
+
+
+def _session(path: Path, folder: Path) -> dict[str, Any]:
+    """Return person and mass of an OpenCap session (sessionMetadata.yaml above the file)."""
+    for place in path.parents:
+        meta = place / "sessionMetadata.yaml"
+        if meta.is_file():
+            text = meta.read_text(encoding="utf-8", errors="replace")
+            pairs = dict(re.findall(r"^(\w+):[ \t]*['\"]?([^'\"\n#]+)", text, re.MULTILINE))
+            noted: dict[str, Any] = {"subject": str(pairs.get("subjectID", place.name)).strip()}
+            mass = pairs.get("mass_kg", "").strip()
+            if is_number(mass):
+                noted["mass"] = float(mass)
+            return noted
+        if place == folder:
+            break
+    return {}
+
+
+def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
+    if not names:
+        return _from_folders(labels)
+    try:
+        pattern = re.compile(names)
+    except re.error as error:
+        raise InputError(f"the pattern of names is wrong: {error}", where="names") from error
+    if not pattern.groupindex:
+        allowed = r"for example S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)"
+        text = "the pattern of names has no named group"
+        raise InputError(text, where="names", allowed=allowed)
+    matches = [pattern.search(label.rsplit(".", 1)[0]) for label in labels]
+    without = [label for label, match in zip(labels, matches, strict=True) if match is None]
+    if without:
+        raise InputError(
+            f"{len(without)} of {len(labels)} names do not match the pattern {names}",
+            where="names",
+            allowed=f"names such as the first one that fails: {without[0]}",
+            remedy="Correct the pattern, rename the files, or note conditions in conditions.csv",
+        )
+    return [
+        {key.casefold(): value for key, value in match.groupdict().items() if value}
+        for match in matches
+        if match
+    ]
+
+
+def _from_folders(labels: Sequence[str]) -> list[dict[str, Any]]:
+    parents = [label.split("/")[:-1] for label in labels]
+    noted: list[dict[str, Any]] = [{} for _ in labels]
+    for level, values in enumerate(zip(*parents, strict=False)):
+        if len(set(values)) < 2 and not _PERSON_FOLDER.match(values[0]):
+            continue
+        person = all(_PERSON_FOLDER.match(value) for value in values)
+        name = "subject" if person else f"folder {level + 1}" if level else "folder"
+        for conditions, value in zip(noted, values, strict=True):
+            conditions.setdefault(name, value)
+    return noted
+
+
+def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
+    """Return tables of conditions with the folder that their file names start from."""
+    if given is not None:
+        return [(given, folder)]
+    tables = []
+    for place, below, files in os.walk(folder):
+        if REPORT_MARK in files and Path(place) != folder:
+            below.clear()  # a report has a table of its own called so
+            continue
+        below[:] = sorted(name for name in below if not name.startswith("."))
+        found = [Path(place) / name for name in NAMES if name in files]
+        if len(found) > 1:
+            text = f"two tables of conditions: {' and '.join(NAMES)}"
+            raise InputError(text, where=place, remedy="Keep one, or name it with --conditions")
+        tables += [(path, Path(place)) for path in found]
+    return tables
+
+
+def _add(noted: dict[str, Any], added: Mapping[str, Any], label: str) -> None:
+    for key, value in added.items():
+        if noted.get(key, value) != value:
+            raise InputError(
+                f'{key} is "{noted[key]}" by one source and "{value}" by another',
+                where=label,
+                remedy="Correct the table of conditions, the names or the folders",
+            )
+        noted[key] = value
+
+
+def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
+    """Refuse a condition that is written in two ways, or take the usual one with ``merge``.
+
+    Spellings are one when they differ in capitals, blanks, "-", "_", accents (Müller, Mueller) or
+    leading zeros (S1, S01); those of a person also in the letters before the number (S01, 01).
+    """
+    for key in dict.fromkeys(k for own in noted for k in own):
+        spellings: dict[str, Counter[str]] = {}
+        for conditions in noted:
+            if isinstance(conditions.get(key), str):
+                plain = plain_spelling(conditions[key], person=key in PERSON)
+                spellings.setdefault(plain, Counter())[conditions[key]] += 1
+        for counts in spellings.values():
+            if len(counts) < 2:
+                continue
+            written = ", ".join(f'"{text}" ({n} files)' for text, n in counts.most_common())
+            if not merge:
+                raise InputError(
+                    f"{key} is written {written}",
+                    where="conditions",
+                    remedy="Write it one way, or take the spellings as one with --merge-spelling",
+                )
+            usual = counts.most_common(1)[0][0]
+            for conditions in noted:
+                if conditions.get(key) in counts:
+                    conditions[key] = usual
+
+
+def plain_spelling(text: str, *, person: bool = False) -> str:
+    """Return a name without what spellings of one name differ in."""
+    plain = re.sub(r"[\s_-]+", "", text).casefold()
+    for letter, pair in {"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"}.items():
+        plain = plain.replace(letter, pair)
+    plain = unicodedata.normalize("NFKD", plain).encode("ascii", "ignore").decode() or plain
+    plain = re.sub(r"(?<!\d)(?<!\d[.,])0+(?=\d)", "", plain)
+    return (
+        re.sub(r"^(s|p|vp|subj?|subject|person|participant|proband|id)(?=\d)", "", plain)
+        if person
+        else plain
+    )
+
+
+def person_condition(files: Iterable[FileResult], preferred: str = "") -> str:
+    """Return the name of the condition that says which person a file is of, or nothing."""
+    names = {name for one in files for name in one.conditions}
+    return next((n for n in (preferred, *PERSON) if n in names), "")
+
+
+def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str, Any]]:
+    """Return the noted conditions by file name: numbers in SI where a unit is written, else text.
+
+    The first line holds the headings, with units in brackets: ``file, shoe, viscosity (cP)``. A
+    column counts as numbers when all its filled cells are numbers; "?", "-", "n/a", "unknown" and
+    their like are empty cells. ``conditions.csv`` or ``.xlsx``
+    in the folder is read when ``table`` is None. An `InputError` says that the table has no column
+    "file", names a file twice, or can't be read.
+    """
+    path = table or next((folder / name for name in NAMES if (folder / name).is_file()), None)
+    if path is None:
+        return {}
+    found, lines = table_columns(path)
+    cells = {
+        name.casefold(): (unit, ["" if cell.casefold() in _EMPTY else cell for cell in own])
+        for name, unit, own in found
+    }
+    files = next((name for name in FILE if name in cells), "")
+    if not files:
+        raise InputError(
+            'the table of conditions has no column "file"',
+            where=path.name,
+            allowed=", ".join(cells) or "headings in the first line",
+            nearest=nearest_match("file", cells),
+        )
+    # A person called 1, 2, 3 is a name, not a number.
+    columns = {
+        name: own if name in PERSON else _column(own, unit, lines, path.name, name)
+        for name, (unit, own) in cells.items()
+        if name != files
+    }
+    if not any(cells[files][1]):
+        raise InputError("the table of conditions has no row with a file", where=path.name)
+    noted: dict[str, dict[str, Any]] = {}
+    for number, file in enumerate(cells[files][1]):
+        if not file:
+            continue
+        if file in noted:
+            raise InputError(f'"{file}" is named twice', where=path.name)
+        noted[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
+    return noted
+
+
+def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
+    """Return (heading, unit, cells) of each column of a table, and the line number of each row.
+
+    Empty lines and columns without a heading are left out; the first line holds the headings. A
+    row with more cells than headings, and two columns of one name, are an `InputError`.
+    """
+    rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
+    heads = [name_and_unit(cell) for cell in rows[0][1]] if rows else []
+    for line, row in rows[1:]:
+        if any(row[len(heads) :]):
+            raise InputError(
+                f"line {line} has {len(row)} cells, the headings are {len(heads)}",
+                where=path.name,
+                remedy='A comma within a cell ("0,45") needs quotes, or semicolons between cells',
+            )
+    folded = [name.casefold() for name, _ in heads if name]
+    twice = next((name for name in folded if folded.count(name) > 1), "")
+    if twice:
+        raise InputError(f'two columns are called "{twice}"', where=path.name)
+    columns = [
+        (name, unit, [row[i] if i < len(row) else "" for _, row in rows[1:]])
+        for i, (name, unit) in enumerate(heads)
+        if name
+    ]
+    return columns, [line for line, _ in rows[1:]]
+
+
+def profile_of(folder: Path, given: Path | None) -> tuple[Profile, str]:
+    """Return the given profile, else that of the folder, else the plain one; and its text."""
+    path = given or folder / "profile.toml"
+    if given is None and not path.is_file():
+        return Profile(), ""
+    return read_profile(path), path.read_text(encoding="utf-8-sig")
+
+
+def table_rows(path: Path) -> list[list[str]]:
+    """Return the cells of a CSV or XLSX table, row by row; errors as `InputError`."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"can't be read: {error.strerror or error}", where=str(path)) from error
+    if is_workbook(data):
+        try:
+            return workbook_rows(data, path.name)
+        except DataError as error:
+            raise InputError(error.what, where=path.name) from error
+    try:
+        text = decoded(data, path.name)
+    except DataError as error:
+        raise InputError(error.what, where=path.name) from error
+    lines = csv.reader(io.StringIO(text), delimiter=table_delimiter(text))
+    return [[cell.strip() for cell in row] for row in lines]
+
+
+def table_delimiter(text: str) -> str:
+    """Return what divides the headings of a CSV table: comma, semicolon or tab."""
+    return max(",;\t", key=text.split("\n", 1)[0].count)
+
+
+def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name: str) -> list[Any]:
+    plain = [cell.replace(",", ".") if cell.count(",") == 1 else cell for cell in cells]
+    bad = [i for i, cell in enumerate(plain) if cell and not is_number(cell)]
+    if bad and (name in MASS or si_unit(unit)):
+        raise InputError(
+            f'line {lines[bad[0]]}: {name} is "{cells[bad[0]]}"',
+            where=where,
+            allowed="a number; its unit stands in the heading, as in mass (kg)",
+        )
+    if bad or not any(plain):
+        return list(cells)
+    factor, offset = _to_si(unit, f"{where}, column {name}")
+    values = [float(cell) * factor + offset if cell else None for cell in plain]
+    low, high, si, headings = _BODIES.get(name, (-math.inf, math.inf, "", ""))
+    for i, value in enumerate(values):
+        if value is not None and not low <= value <= high:
+            raise InputError(
+                f'line {lines[i]}: {name} is "{cells[i]}"',
+                where=where,
+                allowed=f"{low:g} to {high:g} {si}",
+                remedy=f"Write the unit in the heading: {headings.replace('(', f'{name} (')}",
+            )
+    return values
+
+
+def body_mass_noted(noted: Mapping[str, Any]) -> float | None:
+    """Return the person's mass (kg) among the conditions of a file, or None."""
+    return next((float(noted[k]) for k in MASS if isinstance(noted.get(k), float)), None)
+
+
+def _to_si(unit: str, where: str) -> tuple[float, float]:
+    """Return factor and offset of a unit written in a heading; none leaves numbers as they are."""
+    if not unit:
+        return 1.0, 0.0
+    known = si_unit(unit)
+    # "g" is a force in tribometer logs and a mass here.
+    if known and unit not in ("g", "mN", "MN"):
+        return known[1], known[2]
+    return units.to_si(f"1 {unit}", units.si_unit(f"1 {unit}", where=where), where=where), 0.0

@@ -1,0 +1,255 @@
+"""The methods paragraphs, written from what was done to each file and plate."""
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from ..recording.measurement import MEAN_OF_STEPS
+from ..recording.protocols import KINDS, Protocol
+from ..recording.signals import CONTACT_FORCE
+from .file_result import CAUTION, REFUSED, FileResult
+from .steps import protocol_ramp
+from .study import Study
+
+_PLUS_MINUS = (
+    "On screen ± is the standard uncertainty of a number (of a mean: its standard error). Tables "
+    "name SD (standard deviation) and SE (standard error), and intervals by their level."
+)
+
+
+def methods_paragraphs(
+    files: Sequence[FileResult], protocol: Protocol, study: Study, version: str
+) -> list[str]:
+    """Return paragraphs that say which files were used, how numbers were taken, which tests."""
+    counts = Counter(one.verdict for one in files)
+    n = len(files)
+    first = (
+        f"{n} {'file was' if n == 1 else 'files were'} analysed with underfoot {version} by the "
+        f"protocol “{protocol.title}” ({KINDS[protocol.kind]}; {protocol.source}). "
+        f"{n - counts[REFUSED]} gave usable numbers, {counts[CAUTION]} of them with cautions; "
+        f"{counts[REFUSED]} {'was' if counts[REFUSED] == 1 else 'were'} refused."
+    )
+    paragraphs = [first, *_selection(files)]
+    conventions = _conventions(files)
+    conventions += [_DONE[table.name] for table in study.tables if table.name in _DONE]
+    if conventions:
+        paragraphs.append(" ".join(conventions))
+    if protocol.kind in ("gait", "human_slip"):
+        paragraphs.append(_surface(files, protocol))
+    if protocol.rules:
+        paragraphs.append(_rules(files, protocol))
+    if study.findings:
+        titles = "; ".join(dict.fromkeys(finding.title for finding in study.findings))
+        paragraphs.append(
+            f"Statistics: {titles}. Alpha is 0.05; intervals cover 95 %. Factors were coded to "
+            "sum to zero."
+        )
+    paragraphs.append(_PLUS_MINUS)
+    standing = " ".join(protocol.standing())
+    return [*paragraphs, *([f"Where settings come from: {standing}"] if standing else [])]
+
+
+def _rules(files: Sequence[FileResult], protocol: Protocol) -> str:
+    """Return the rules, and which of them could not be judged for lack of the quantity."""
+    text = (
+        f"Rules checked on every trial: {'; '.join(rule.statement() for rule in protocol.rules)}."
+    )
+    usable = [one for one in files if one.usable]
+    for rule in protocol.rules:
+        lacking = sum(rule.quantity not in one.facts for one in usable)
+        if lacking and rule.quantity != "repeats":
+            name = rule.quantity.replace("_", " ")
+            text += (
+                f" Not judged in {lacking} of {len(usable)} files, which do not show it: {name}."
+            )
+    return text
+
+
+def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
+    """Return the surface walked on: level, a ramp with its resolution of forces, a treadmill."""
+    ramp = protocol_ramp(protocol)
+    named = protocol.text("surface")
+    text = f"Surface: {named}, {ramp.description}." if named else f"Surface: {ramp.description}."
+    if ramp.angle:
+        text += " Normal force and shear are those normal and tangential to the walking surface" + (
+            ", resolved from the plates' horizontal and vertical forces by the angle of the ramp."
+            if ramp.plate_frame == "horizontal"
+            else "; body weight in standing is their normal force over the cosine of the angle."
+        )
+    speeds = [
+        step["belt_speed"]
+        for one in files
+        for step in one.steps
+        if step.get("belt_speed") is not None and step["rcof"] is not None
+    ]
+    if speeds:
+        text += (
+            f" {len(speeds)} contacts were on treadmill belts at {min(speeds):.2f} to "
+            f"{max(speeds):.2f} m/s, found where standing feet are carried backward; heel speeds "
+            "are those over the belt. Its forces are those of steady walking only while the belt "
+            "keeps its speed."
+        )
+    return text
+
+
+def _selection(files: Sequence[FileResult]) -> list[str]:
+    """Return how contacts were found and which were rejected for what, with counts."""
+    steps = [step for one in files for step in one.steps]
+    if not steps:
+        return []
+    counts = Counter(str(step["verdict"]) for step in steps)
+    reasons = Counter(
+        re.sub(r"\d[\d.]*", "…", str(step["reason"]).split(";")[0].split(":")[0])
+        for step in steps
+        if step["verdict"] == "rejected" and step["reason"]
+    )
+    used = counts["accepted"] + counts["caution"]
+    text = (
+        f"A contact is a stance with more than {CONTACT_FORCE:g} N of normal force. Of "
+        f"{len(steps)} contacts {used} were used ({counts['caution']} with a caution)"
+    )
+    if reasons:
+        listed = "; ".join(f"{reason} ({n})" for reason, n in reasons.most_common())
+        text += f" and {len(steps) - used} rejected: {listed}"
+    by_hand = sum(bool(step.get("by_hand")) for step in steps)
+    if by_hand:
+        text += f". {by_hand} were changed by hand, see the log of edits"
+    return [text + "."]
+
+
+_TOLD = {
+    "rcof": "Required friction (RCOF)",
+    "cof": "Coefficient of friction (COF)",
+    "peak slipping speed": "Peak slipping speed",
+    "peak pressure": "Peak pressure of a sensor",
+    "pressure duration": "Pressure duration",
+    "peak force": "Forces of the relaxation test",
+    "final force": "Force at the end of the hold",
+}
+_SENTENCES = {
+    "rcof": (
+        "Required friction (RCOF) was taken as the {peak} of shear ({shear}) over normal force in "
+        "the {searched}, {direction}, with the {gate}; forces were low-passed with: {filter}; "
+        "baseline: {baseline}."
+    ),
+    "peak slipping speed": (
+        "Heel speed ({speed}) came from the heel marker, low-passed with: {marker filter}; gaps "
+        "were {gaps}. The slip starts at the {slip start}; the peak slipping speed is the largest "
+        "speed until the second local minimum, until the foot leaves the plate or until the heel "
+        "lifts, and counts as a {threshold}."
+    ),
+    "peak pressure": (
+        "Fluid pressures count above {threshold} (baseline: {baseline}; {run}); pressure duration "
+        "is the time {duration}."
+    ),
+    "final force": "The force at the end of the hold is the {final force}; {zero}.",
+    "cof": (
+        "COF is the {average} from {window} (sliding start: {sliding start}); shear: {shear}; "
+        "{filter}; baseline: {baseline}; calibration: {calibration}."
+    ),
+    "cof from force": (
+        "COF is the {average} in a window of {window}; shear: {shear}; {filter}; baseline: "
+        "{baseline}; calibration: {calibration}."
+    ),
+    "cof of a disk": "COF is {cof}, the {average} ({window}).",
+}
+_DONE = {
+    "stribeck": (
+        "COF against speed was fitted with COF = asymptote + (COF_BL - asymptote) exp(-v / tau) by "
+        "separable bounded least squares with profile-likelihood intervals. Fits with R^2 above "
+        "0.8 count as good, above 0.5 as moderate; below that the mean COF stands for COF_BL."
+    ),
+    "master_curve": "All COF were brought on one curve against viscosity times speed by isotonic "
+    "regression.",
+    "maps": (
+        "Pressure scans were joined by the marker's position; the load on the fluid is the sum of "
+        "pressure, distance between scans and displacement per sample."
+    ),
+    "friction_split": (
+        "Hysteresis is the friction with the blocking oil, adhesion what exceeds it; standard "
+        "errors were added in squares."
+    ),
+}
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+# What differs from file to file without being a choice: it stands with each number.
+_PRIVATE = ("search ends", "sign", "uncertainty")
+
+
+def _conventions(files: Sequence[FileResult]) -> list[str]:
+    """Return one sentence for each quantity; where files or plates differ, each way with counts."""
+    numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}
+    for one in files:
+        for m in one.measurements:
+            known = m["value"] is not None and m["name"] in _TOLD and m["item"] != MEAN_OF_STEPS
+            if known and m["conventions"]:
+                place = f"{one.file}, {m['item']}"
+                numbers.setdefault(m["name"], []).append((place, m["conventions"]))
+    sentences: list[str] = []
+    for name, made in numbers.items():
+        if (name == "pressure duration" and "peak pressure" in numbers) or (
+            name == "peak force" and "final force" in numbers
+        ):
+            continue
+        keys = list(dict.fromkeys(k for _, c in made for k in c if k not in _PRIVATE))
+        choices = {key: _choices(key, made) for key in keys}
+        sentence = _sentence(name, choices)
+        if not sentence:
+            listed = "; ".join(f"{key}: {value}" for key, value in choices.items())
+            sentence = f"{_TOLD[name]}: {listed}."
+        elif "walking direction" in choices:
+            sentence += f" Walking direction: {choices['walking direction']}."
+        if sentence not in sentences:
+            sentences.append(sentence)
+    return sentences
+
+
+def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
+    """Return the value that all numbers share, or every value with its numbers."""
+    places: dict[str, list[str]] = {}
+    for place, conventions in made:
+        places.setdefault(_general(key, conventions.get(key, "not recorded")), []).append(place)
+    # Values that differ in their numbers alone are one choice, with the range of each number.
+    alike: dict[str, list[str]] = {}
+    for value in places:
+        alike.setdefault(_NUMBER.sub("…", value), []).append(value)
+    if len(alike) == 1:
+        return _with_ranges(next(iter(alike.values())))
+    places = {
+        _with_ranges(values): [place for value in values for place in places[value]]
+        for values in alike.values()
+    }
+    parts = []
+    for value, where in sorted(places.items(), key=lambda item: -len(item[1])):
+        files = sorted({place.rsplit(", ", 1)[0] for place in where})
+        named = ": " + ", ".join(files) if len(files) <= 3 else f" in {len(files)} files"
+        parts.append(f"{value} ({len(where)} of {len(made)}{named})")
+    return "; ".join(parts)
+
+
+def _with_ranges(values: Sequence[str]) -> str:
+    """Return one text of several that differ in numbers: "3 ms" and "9 ms" give "3 to 9 ms"."""
+    columns = list(zip(*(_NUMBER.findall(value) for value in values), strict=True))
+    ends = [(min(column, key=float), max(column, key=float)) for column in columns]
+    ranges = [low if low == high else f"{low} to {high}" for low, high in ends]
+    pieces = _NUMBER.split(values[0])
+    return "".join(a + b for a, b in zip(pieces, [*ranges, ""], strict=True))
+
+
+def _general(key: str, value: str) -> str:
+    """Leave the numbers of a single file out of a convention."""
+    if key == "baseline" and "unloaded samples" in value:
+        return "mean force of the unloaded plate subtracted"
+    if key in ("baseline", "walking direction"):
+        return re.sub(r"\s*\([^)]*\)", "", value)
+    return value
+
+
+def _sentence(name: str, choices: Mapping[str, str]) -> str:
+    """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
+    for key, sentence in _SENTENCES.items():
+        if key == name or key.startswith(f"{name} "):
+            try:
+                return sentence.format_map(choices)
+            except KeyError:
+                continue
+    return ""

@@ -1,0 +1,288 @@
+"""Readings that a machine already made: pendulum, ramp, tribometers."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from ..readers.text import is_number
+from ..recording.measurement import Measurement, caution
+from ..recording.protocols import Protocol
+from ..recording.tester_calibration import TesterCalibration
+from .conditions import one_spelling, table_columns
+from .file_result import Draft, FileResult, refer_to
+from .floor_classes import class_scheme
+
+QUANTITIES = {
+    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
+    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel"),
+    "cof": (
+        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "µ",
+        "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
+    ),
+}  # fmt: skip
+NOTED = {
+    "slider": ("slider", "rubber", "gleiter"),
+    "condition": ("condition", "contaminant", "fluid", "state", "zustand", "gleitmittel"),
+    "direction": ("direction", "richtung"),
+}
+"""What a protocol can ask to be noted, with the headings that say it."""
+_LABELS = (*NOTED["slider"], *NOTED["direction"], "operator", "laboratory", "sample", "date")
+_RUN = ("run", "type of run", "kind of run", "lauf")
+_ZERO = re.compile(r"zero|null", re.IGNORECASE)
+_CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
+_CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
+_DRY = re.compile(r"dry|trocken", re.IGNORECASE)
+_LARGEST = {"ptv": 150.0, "angle": 45.0, "cof": 3.0}  # no ramp goes beyond 45 deg
+_UNITS = {
+    "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
+    "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
+    "cof": {"": 1.0, "1": 1.0, "-": 1.0, "%": 0.01},
+}
+# All readings in this range: another quantity or unit than the heading says.
+_MISTAKEN = {
+    "ptv": (0.0, 2.0, "a coefficient of friction? A pendulum reads whole numbers"),
+    "angle": (0.0, 1.6, "radians? Write angle (rad)"),
+    "cof": (1.2, 3.0, "wrong quantity or unit?"),
+}
+_SLIDERS = {"fours": "96", "4s": "96", "trl": "55", "trrl": "55"}
+_SURFACES = {
+    "glass": {"96": (5, 10), "55": (5, 10)},
+    "lapping": {"96": (59, 64)},
+    "pavigr": {"96": (32, 36), "55": (13, 19)},
+}
+"""PTV that a pendulum must read on check surfaces, by slider. Source: UKSRG Guidelines, Issue 4.0
+(2016), as listed by the maker (munroinstruments.com, verifying the pendulum tester)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Check:
+    """Mean of the readings on a check surface with one slider, and why it fails, or ""."""
+
+    slider: str
+    description: str
+    failed: bool
+
+
+def reading_results(
+    name: str,
+    path: Path,
+    checksum: str,
+    noted: Mapping[str, Any],
+    protocol: Protocol,
+    record: TesterCalibration | None = None,
+) -> list[FileResult]:
+    """Return one result for each sample of a table of readings (one reading a row).
+
+    Every text column is a condition; rows that agree in all of them are readings of one sample (of
+    one direction, with one slider). A column "run" may say "zero" (the mean of these readings is
+    taken off the sample's others), "conditioning" (left out) or "check" (a surface of known PTV: a
+    failed check refuses the readings of its slider). The protocol may leave out the first readings
+    (``conditioning``) where more than ``readings`` are given. A table in which no column can be
+    recognised as readings, impossible values and one condition in two spellings are a `DataError`
+    or `InputError`.
+    """
+    columns, lines = table_columns(path)
+    cells = {head: column for head, _, column in columns}
+    units = {head: unit for head, unit, _ in columns}
+    numbers = {
+        head: column
+        for head, column in cells.items()
+        if any(column) and all(is_number(c.replace(",", ".")) for c in column if c)
+    }
+    column, quantity = _value_column(list(numbers), name, protocol, cells, lines)
+    unit = units[column].casefold()
+    if unit not in _UNITS[quantity]:
+        allowed = ", ".join(u for u in _UNITS[quantity] if u)
+        raise DataError(f'{column} is in "{units[column]}"', where=name, allowed=allowed)
+    values = np.array([float(c.replace(",", ".")) if c else np.nan for c in numbers[column]])
+    values *= _UNITS[quantity][unit]
+    top = _LARGEST[quantity]
+    wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
+    if len(wrong):
+        text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
+        raise DataError(text, where=name, allowed=f"0 to {top:g}")
+    runs = next((cells[c] for c in cells if c.casefold() in _RUN), [""] * len(values))
+    texts = {
+        k.casefold(): v
+        for k, v in cells.items()
+        if k.casefold() not in _RUN
+        and k != column
+        and (k not in numbers or k.casefold() in _LABELS)
+    }
+    one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
+    checks: dict[tuple[str, str], list[int]] = {}
+    rows: dict[tuple[str, ...], list[int]] = {}
+    for i, run in enumerate(runs):
+        key = tuple(text[i] for text in texts.values())
+        if quantity == "ptv" and _CHECK.search(run):
+            checks.setdefault(
+                (_slider(dict(zip(texts, key, strict=True))), " ".join((run, *key))), []
+            ).append(i)
+        else:
+            rows.setdefault(key, []).append(i)
+    checked = [_check(name, *key, values[members]) for key, members in checks.items()]
+    results = []
+    for key, members in rows.items():
+        label = ", ".join(part for part in key if part)
+        conditions = {k: v for k, v in zip(texts, key, strict=True) if v}
+        file = f"{name}: {label}" if label and len(rows) > 1 else name
+        draft = Draft(file, {**noted, **conditions}, checksum)
+        refer_to(record, draft)
+        used = [c for c in checked if _slider(conditions) in ("", c.slider)]
+        draft.refusals += [c.description for c in used if c.failed]
+        check_surfaces = "; ".join(c.description for c in used) or "none in the table"
+        _one_sample(
+            draft, values[members], [runs[i] for i in members], quantity, protocol, check_surfaces
+        )
+        results.append(draft.finished(protocol))
+    return results
+
+
+def _slider(noted: Mapping[str, Any]) -> str:
+    text = " ".join(str(noted.get(name, "")) for name in NOTED["slider"]).strip()
+    known = next((s for s in ("96", "55", "57") if s in text), "")
+    return known or _SLIDERS.get(re.sub(r"[\s_-]|slider", "", text.casefold()), text)
+
+
+def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
+    surface = next((s for s in _SURFACES if s in label.casefold()), None)
+    if surface is None:
+        raise DataError(
+            f'a check on an unknown surface: "{label.strip()}"',
+            where=name,
+            allowed="float glass, lapping film, Pavigres tile",
+        )
+    mean = float(np.nanmean(values))
+    low, high = _SURFACES[surface].get(slider, (0, 0))
+    if not high:
+        return _Check(slider, f"{surface} read {mean:.1f} with an unknown slider", True)
+    failed = not low - 0.5 <= mean <= high + 0.5
+    text = f"slider {slider} on {surface} read {mean:.1f} ({low} to {high})"
+    return _Check(slider, f"check failed: {text}" if failed else text, failed)
+
+
+def _one_sample(
+    draft: Draft,
+    values: np.ndarray,
+    runs: Sequence[str],
+    quantity: str,
+    protocol: Protocol,
+    checked: str,
+) -> None:
+    zero = np.array([bool(_ZERO.search(text)) for text in runs])
+    first = np.array([bool(_CONDITIONING.search(text)) for text in runs])
+    offset = float(np.nanmean(values[zero])) if np.isfinite(values[zero]).any() else 0.0
+    counted = values[~zero & ~first & np.isfinite(values)]
+    last = int(protocol.number("readings", "1", 0.0))
+    drop = 0 if first.any() else int(protocol.number("conditioning", "1", 0.0))
+    # A report prints the readings that count; a record sheet has those of conditioning too.
+    readings = counted[-last:] if last and len(counted) > last else counted
+    draft.facts["repeats"] = float(len(readings))
+    if not len(readings):
+        draft.refusals.append("no reading is left after zero and conditioning runs")
+        return
+    flags = []
+    if last and len(counted) not in (last, last + drop):
+        several = f" or {last + drop} with the {drop} of conditioning" if drop else ""
+        words = (
+            f"{len(counted)} readings, {len(readings)} of them used; expected are {last}{several}"
+        )
+        flags.append(caution(words))
+    low, high, words = _MISTAKEN[quantity]
+    if low <= float(readings.min()) and float(readings.max()) < high and high > 0:
+        text = f"readings of {readings.min():g} to {readings.max():g}: {words}"
+        (draft.cautions if quantity == "cof" else draft.refusals).append(text)
+    widest = protocol.number("widest", "1", 0.0)
+    if widest and float(np.ptp(readings)) > widest:
+        flags.append(
+            caution(f"readings differ by {np.ptp(readings):g}, expected at most {widest:g}")
+        )
+    missing = [
+        asked
+        for asked in protocol.texts("noted")
+        if not any(heading in draft.conditions for heading in NOTED.get(asked, (asked,)))
+    ]
+    if missing:
+        flags.append(caution(f"not noted: {', '.join(missing)}"))
+    if quantity == "ptv" and _slider(draft.conditions) not in ("", "96", "55", "57"):
+        flags.append(caution(f'unknown slider "{_slider(draft.conditions)}": 96 or 55?'))
+    if quantity == "ptv" and abs(offset) > 1.0:
+        flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
+    spread = float(readings.std(ddof=1)) if len(readings) > 1 else None
+    value, middle = float(readings.mean()) - offset, float(np.median(readings)) - offset
+    if value < 0.0 or (value == 0.0 and quantity == "cof"):
+        draft.refusals.append(f"a mean of {value:g}: no floor reads that; sign, zero or decimals?")
+    away = ", ".join(f"{v:g}" for v in counted[: len(counted) - len(readings)])
+    conventions = {
+        "readings": f"mean of {len(readings)} of {len(counted)}; median {middle:.4g}",
+        "left out": f"{int(first.sum())} conditioning, {int(zero.sum())} zero runs"
+        + (f"; before those that count: {away}" if away else ""),
+        "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
+    }
+    if quantity == "ptv":
+        conventions["check surfaces"] = checked
+    part = protocol.number("calibration_uncertainty", "1", 0.0) * abs(value)
+    scatter = (None, "a single reading has no scatter")
+    if spread is not None:
+        scatter = (math.hypot(spread / math.sqrt(len(readings)), part), "")
+        if part:
+            conventions["uncertainty"] = f"scatter of the mean and {part:.2g} of the calibration"
+    name = protocol.text("classes")
+    if name:
+        state = " ".join(str(draft.conditions.get(key, "")) for key in NOTED["condition"])
+        scheme = class_scheme(name, dry=bool(_DRY.search(state)))
+        if scheme.quantity != quantity:
+            draft.cautions.append(f"{scheme.title} is about {scheme.quantity}, not {quantity}")
+        else:
+            draft.curves["class"] = scheme.class_of(value)
+            draft.curves["scheme"] = scheme.name
+            if scheme.class_of(middle) != scheme.class_of(value):
+                words = (
+                    f"{scheme.class_of(middle)} by the median, {scheme.class_of(value)} by the mean"
+                )
+                flags.append(caution(words))
+    unit = "deg" if quantity == "angle" else "1"
+    about = (len(readings), tuple(flags), conventions, spread)
+    draft.add("sample", Measurement(quantity, value, unit, *scatter, *about), main=quantity)
+    draft.curves["readings"] = [float(v) for v in readings - offset]
+
+
+def _value_column(
+    names: list[str],
+    where: str,
+    protocol: Protocol,
+    cells: Mapping[str, Sequence[str]],
+    lines: Sequence[int],
+) -> tuple[str, str]:
+    quantity, named = protocol.text("quantity"), protocol.text("column")
+    folded = {name.casefold().strip(): name for name in names}
+    if named and named.casefold() in folded:
+        return folded[named.casefold()], quantity or "cof"
+    remedy = 'Name it in the protocol: column = "..."'
+    for candidate in (quantity,) if quantity else QUANTITIES:
+        for head, column in cells.items():
+            if head.casefold() not in QUANTITIES[candidate] or head in names:
+                continue
+            bad = [i for i, c in enumerate(column) if c and not is_number(c.replace(",", "."))]
+            if bad:
+                text = f'line {lines[bad[0]]}: {head} is "{column[bad[0]]}"'
+                raise DataError(text, where=where, allowed="a number alone, or nothing")
+        found = [folded[n] for n in QUANTITIES[candidate] if n in folded]
+        if len(found) > 1:
+            text = f"several columns of readings: {', '.join(found)}"
+            raise DataError(text, where=where, remedy=remedy)
+        if found and not named:
+            return found[0], candidate
+    raise DataError(
+        "no column of readings was recognised",
+        where=where,
+        allowed=", ".join(names) or "a column of numbers",
+        remedy=remedy,
+    )

@@ -1,0 +1,533 @@
+"""What a whole folder says: fits, maps, means and tests over its usable files."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import UnderfootError
+
+from ..machines.pressure_map import PressureScan, pressure_map
+from ..machines.stribeck_fit import METHODS as FIT_METHODS
+from ..machines.stribeck_fit import master_curve, stribeck_fit
+from ..recording.protocols import Protocol
+from ..statistics import precision
+from . import tables
+from .boundary import alpha_beta, friction_split
+from .conditions import NUMBERS, person_condition
+from .field_statistics import agreement_findings, curve_findings
+from .file_result import FileResult
+from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
+from .readings import NOTED
+from .study_tests import comparison_findings, persons_of, slip_findings, varying
+from .tables import Finding, Table, condition_table, quantity_name
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """Results over the folder: ``tables``, ``findings`` (tests), and ``curves`` for figures."""
+
+    tables: tuple[Table, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    curves: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
+    """Return what the usable files say together, by the kind of the protocol.
+
+    A fit, map or test that can't be done is a note with its reason, never an end.
+    """
+    usable = [one for one in files if one.usable]
+    if not usable:
+        return Study(notes=("no usable file",))
+    try:
+        return _STUDIES[protocol.kind](usable, protocol)
+    except UnderfootError as error:
+        # The numbers of the files are worth having even when they don't fit together.
+        return Study(notes=(f"no result over all files: {error.what}",))
+
+
+def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]:
+    """Return those of the wanted conditions that some file has."""
+    return tuple(key for key in wanted if any(key in f.conditions for f in files))
+
+
+def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = _keys(files, protocol.texts("group"))
+    rows, notes, fits = [], [], []
+    parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
+    for group, members in tables.grouped(files, keys).items():
+        label = ", ".join(group) or "all files"
+        speed, cof = _speed_and_cof(members)
+        try:
+            fit = stribeck_fit(speed, cof)
+            simplex = stribeck_fit(speed, cof, method="nelder_mead")
+        except UnderfootError as error:
+            notes.append(f"{label}: not fitted ({error.what})")
+            continue
+        fitted = (fit.boundary, fit.tau, fit.asymptote)
+        cells = (cell for p in fitted for cell in (p.value, p.low, p.high, p.remark))
+        beside = (p.value for p in (simplex.boundary, simplex.tau, simplex.asymptote))
+        rows.append((*group, fit.n, fit.r_squared, fit.verdict, *cells, *beside))
+        first = group[0] if group else ""
+        mean = float(np.mean(cof))
+        fits.append(
+            {"label": label, "group": first, "speed": speed, "cof": cof, "raw": list(fit.raw),
+             "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
+        )  # fmt: skip
+        levels = dict(zip(keys, group, strict=True)) or {"group": ""}
+        for parameter in fitted:
+            keep = parameter.value is not None and not parameter.remark.startswith("not identified")
+            parameters[parameter.name].append((levels, parameter.value) if keep else None)
+    intervals = (
+        (name, "95 % low", "95 % high", "remark")
+        for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
+    )
+    columns = (
+        *keys, "n", "R^2", "verdict", *(name for four in intervals for name in four),
+        "COF_BL by Nelder-Mead", "tau by Nelder-Mead", "asymptote by Nelder-Mead",
+    )  # fmt: skip
+    title = "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17"
+    explained = (
+        f"Fitted by {FIT_METHODS['separable']}; beside it {FIT_METHODS['nelder_mead']}.",
+        "Intervals are profile likelihoods; a dash means that the profile does not close.",
+        "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
+    )
+    made = [Table("stribeck", title, columns, tuple(rows), explained)]
+    findings: list[Finding] = []
+    compared = protocol.texts("compare") or keys[:1]
+    for name, values in parameters.items():
+        kept = [pair for pair in values if pair is not None]
+        factors = {
+            key: [levels[key] for levels, _ in kept]
+            for key in compared
+            if len({levels.get(key) for levels, _ in kept}) > 1
+        }
+        if factors:
+            tests = comparison_findings(name, [value for _, value in kept], factors)
+            lost = len(values) - len(kept)
+            if lost and tests:
+                text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
+                tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
+            findings += tests
+    curves: dict[str, Any] = {"fits": fits}
+    wanted = [f for f in files if "viscosity" in f.conditions and {"speed", "cof"} <= {*f.main}]
+    if len(wanted) >= 6:
+        viscosity = [float(f.conditions["viscosity"]) for f in wanted]
+        speed, cof = _speed_and_cof(wanted)
+        try:
+            curve = master_curve(viscosity, speed, cof)
+            numbers = {"r_squared": curve.r_squared, "residual_sd": curve.residual_sd}
+            curves["master"] = {
+                "product": np.multiply(viscosity, speed).tolist(), "cof": cof,
+                "label": [str(f.conditions.get("fluid", "")) for f in wanted],
+                "grid": curve.product.tolist(), "fitted": curve.fitted.tolist(), **numbers,
+            }  # fmt: skip
+            title = "One curve of COF against viscosity times speed"
+            columns = ("R^2", "residual sd", "points")
+            notes_of = ("Isotonic regression: nothing is assumed but the fall.",)
+            row = (*numbers.values(), len(cof))
+            made.append(Table("master_curve", title, columns, (row,), notes_of))
+        except UnderfootError as error:
+            notes.append(f"no master curve: {error.what}")
+    return Study(tuple(made), tuple(findings), curves, tuple(notes))
+
+
+def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float]]:
+    both = [(f.main["speed"], f.main["cof"]) for f in files if {"speed", "cof"} <= {*f.main}]
+    return [speed for speed, _ in both], [cof for _, cof in both]
+
+
+def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
+    dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
+    keys = protocol.texts("pair")
+    rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
+    parts: dict[str, list[tuple[float, dict[str, str]]]] = {
+        "dry_adhesion": [],
+        "hysteresis": [],
+        "lubricated_adhesion": [],
+    }
+    for pair, members in tables.grouped(files, keys).items():
+        by_fluid: dict[str, list[float]] = {}
+        for f in members:
+            if "friction_force" in f.main:
+                fluid = str(f.conditions.get("fluid", ""))
+                by_fluid.setdefault(fluid, []).append(f.main["friction_force"])
+        if dry not in by_fluid or blocked not in by_fluid:
+            notes.append(f"{' on '.join(pair)}: needs fluid {dry} and fluid {blocked}")
+            continue
+        others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
+        split = friction_split(by_fluid[dry], by_fluid[blocked], others)
+        own = dict(zip(keys, pair, strict=True))
+        oiled = split.hysteresis.value or 0.0
+        parts["dry_adhesion"] += [(force - oiled, own) for force in by_fluid[dry]]
+        parts["hysteresis"] += [(force, own) for force in by_fluid[blocked]]
+        parts["lubricated_adhesion"] += [
+            (force - oiled, {**own, "lubricant": fluid})
+            for fluid, forces in others.items()
+            for force in forces
+        ]
+        for name, m in (
+            ("dry", split.dry),
+            ("hysteresis", split.hysteresis),
+            ("adhesion", split.adhesion),
+            *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
+        ):
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, "; ".join(map(str, m.flags))))
+        for fluid, m in split.lubricated_adhesion.items():
+            fluids.append(fluid)
+            dry_adhesions.append(split.adhesion.value or 0.0)
+            wet.append(m.value or 0.0)
+    title = "Adhesion and hysteresis, Eq. 22 to 25"
+    columns = (*keys, "part", "force (N)", "standard error (N)", "n", "flags")
+    note = f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked."
+    made = [Table("friction_split", title, columns, tuple(rows), (note,))]
+    findings: list[Finding] = []
+    curves: dict[str, Any] = {}
+    try:
+        fit = alpha_beta(fluids, dry_adhesions, wet)
+        columns = ("fluid", "alpha (N)", "SE", "beta", "SE", "n")
+        lines = tuple(
+            (r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids
+        )
+        note = (
+            f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
+            f"mean absolute residual {fit.mean_absolute_residual:.3g} N."
+        )
+        title = "Adhesion a fluid leaves, Eq. 26"
+        made.append(Table("alpha_beta", title, columns, lines, (note,)))
+        findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]
+        drawn = [(r.fluid, r.alpha, r.beta) for r in fit.fluids]
+        curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
+    except (UnderfootError, ValueError) as error:
+        notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
+    if parts["lubricated_adhesion"]:
+        made.append(_range_over_fluids(keys[0], parts["lubricated_adhesion"]))
+    for name, readings in parts.items():
+        findings += _crossed_findings(name, readings)
+    return Study(tuple(made), tuple(findings), curves, tuple(notes))
+
+
+def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, str]]]) -> Table:
+    """Return how far apart the fluids are on each sole, of means over floors and repeats."""
+    rows = []
+    for sole in dict.fromkeys(own[key] for _, own in readings):
+        by_fluid: dict[str, list[float]] = {}
+        for force, own in readings:
+            if own[key] == sole:
+                by_fluid.setdefault(own["lubricant"], []).append(force)
+        mean = {fluid: float(np.mean(forces)) for fluid, forces in by_fluid.items()}
+        low, high = min(mean, key=mean.__getitem__), max(mean, key=mean.__getitem__)
+        rows.append((sole, mean[low], low, mean[high], high, mean[high] - mean[low]))
+    title = "Range of adhesion over the fluids: a small one is a polymer that no fluid blocks more"
+    columns = (key, "lowest (N)", "under", "highest (N)", "under", "range (N)")
+    note = "The report: polyurethane 0.89 N, soft rubber 3.88 N, hard rubber 4.61 N."
+    return Table("fluid_range", title, columns, tuple(rows), (note,))
+
+
+def _crossed_findings(
+    response: str, readings: Sequence[tuple[float, Mapping[str, str]]]
+) -> list[Finding]:
+    """Return the analysis of variance of a force on all conditions with every interaction.
+
+    Tukey's comparisons of the levels follow. Adhesions of a pair share its mean under the oil.
+    """
+    if not readings:
+        return []
+    values = [value for value, _ in readings]
+    factors = {key: [own[key] for _, own in readings] for key in readings[0][1]}
+    factors = {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+    return comparison_findings(response, values, factors)
+
+
+def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = _keys(files, protocol.texts("group"))
+    notes, maps, rows = [], [], []
+    wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
+    for group, members in tables.grouped(files, keys).items():
+        label = ", ".join(group) or "all files"
+        broken = wanted.broken_by(float(len(members))) if wanted is not None else ""
+        if broken:
+            notes.append(f"{label}: {broken}")
+        scans = [PressureScan(f.file, **_scan(f)) for f in members if "scan" in f.curves]
+        if len(scans) < 2:
+            continue
+        spacing, inlet = (
+            protocol.number(name, "m", 0.0) or None for name in ("scan_spacing", "inlet_diameter")
+        )
+        try:
+            joined = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
+        except UnderfootError as error:
+            notes.append(f"{label}: no map ({error.what})")
+            continue
+        load, change = joined.load, joined.half_spacing_change
+        place = (1e3 * (p.value or 0.0) for p in (joined.peak_along, joined.peak_lateral))
+        rows.append(
+            (label, len(scans), load.value, load.uncertainty,
+             tables.scaled("peak_pressure", joined.peak.value), *place, 100 * joined.outer_share,
+             None if change is None else 100 * change, "; ".join(map(str, load.flags)),
+             load.conventions.get("inlet", ""))
+        )  # fmt: skip
+        thin = max(1, len(joined.along) // 200)
+        numbers = ("load", "peak", "peak_along", "peak_lateral")
+        maps.append(
+            {"label": label, "lateral": joined.lateral.tolist(),
+             "along": joined.along[::thin].tolist(),
+             "pressure": np.nan_to_num(joined.pressure[:, ::thin]).tolist(),
+             **{name: getattr(joined, name).value for name in numbers}}
+        )  # fmt: skip
+    made = [condition_table(files, keys, ("cof",), person=_sample(files))]
+    if rows:
+        columns = (
+            "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
+            "peak from heel's back (mm)", "peak left of middle (mm)", "share of outer scans (%)",
+            "change at double spacing (%)", "flags", "sensor inlet",
+        )  # fmt: skip
+        note = "The load is what the scans cover; pressure beyond them is not in it."
+        title = "Load carried by the fluid, Eq. 27"
+        made.append(Table("maps", title, columns, tuple(rows), (note,)))
+    findings: list[Finding] = []
+    labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
+    factors = varying(labelled, keys)
+    if keys and keys[0] in factors:
+        values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
+        findings = comparison_findings("cof", values, factors, margin=margin)
+    shown = tuple(table for table in made if table)
+    return Study(shown, tuple(findings), {"maps": maps}, tuple(notes))
+
+
+def _condition_tables(
+    files: list[FileResult], keys: Sequence[str], numbers: tuple[str, ...], person: str
+) -> list[Table]:
+    """Return the table of each condition alone, without those that have nothing to show."""
+    made = (
+        condition_table(files, (key,), numbers, person=person, name=f"conditions_{key}")
+        for key in keys
+    )
+    return [table for table in made if table]
+
+
+def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = _keys(files, protocol.texts("compare"))
+    numbers = ("slip", "rcof", "acof", "peak_slipping_speed", "slip_distance", "peak_pressure")
+    person = person_condition(files, protocol.text("subject"))
+    made = _condition_tables(files, keys, numbers, person)
+    if not keys:
+        # The table of all trials says nothing that one by conditions does not.
+        table = condition_table(files, (), numbers, person=person)
+        made = [table] if table else []
+    findings, curves = slip_findings(files, protocol, keys)
+    return Study((*made, tables.steps_table(files)), tuple(findings), curves)
+
+
+def _gait(files: list[FileResult], protocol: Protocol) -> Study:
+    with_rcof = [f for f in files if "rcof" in f.main]
+    person = person_condition(files, protocol.text("subject"))
+    keys = protocol.texts("compare") or tuple(
+        dict.fromkeys(
+            key
+            for f in with_rcof
+            for key, value in f.conditions.items()
+            if isinstance(value, str) and key != person and key not in NUMBERS
+        )
+    )
+    everywhere = [key for key in keys if all(key in f.conditions for f in with_rcof)]
+    several = max(len(with_rcof), 2)
+    factors = {k: v for k, v in varying(with_rcof, everywhere).items() if len(set(v)) < several}
+    numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
+    persons = persons_of(with_rcof, person)
+    values, margin = [f.main["rcof"] for f in with_rcof], protocol.number("equivalence", "1", 0.0)
+    findings = comparison_findings("rcof", values, factors, persons, margin=margin)
+    findings += curve_findings(with_rcof, tuple(factors), person)
+    table = condition_table(with_rcof, tuple(factors), numbers, person=person)
+    made = [table] if table else []
+    if len(factors) > 1:
+        made += _condition_tables(with_rcof, tuple(factors), numbers, person)
+    if person:
+        made.append(_person_table(with_rcof, tuple(factors), person))
+    return Study((*made, tables.steps_table(files)), tuple(findings))
+
+
+def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> Table:
+    groups: dict[tuple[str, ...], list[FileResult]] = {}
+    for who, f in zip(persons_of(files, person), files, strict=True):
+        groups.setdefault((who, *(str(f.conditions[k]) for k in factors)), []).append(f)
+    rows = tuple(
+        (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
+         sum(map(tables.counted_steps, own)))
+        for key, own in sorted(groups.items())
+    )  # fmt: skip
+    columns = (person, *factors, "RCOF", "trials", "steps")
+    note = "Mean of the trials' means; these are the values that the tests compare."
+    return Table("persons", "Persons", columns, rows, (note,), {"RCOF": 4})
+
+
+MODULI = tuple(
+    f"{time}-time {what}"
+    for what in ("stiffness", "modulus", "Young's modulus")
+    for time in ("short", "long")
+)
+
+
+def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
+    keys = _keys(files, (protocol.text("compare", "material"),))
+    numbers = ("force_2_percent", "peak_force", "final_force", *MODULI)
+    table = condition_table(files, keys, numbers, person=_sample(files))
+    return Study((table,) if table else ())
+
+
+def _readings(files: list[FileResult], protocol: Protocol) -> Study:
+    """Return means by sample with their classes, and the precision over operators or machines."""
+    quantity = next(q for q in ("ptv", "angle", "cof") if any(q in f.main for f in files))
+    keys = _keys(files, protocol.texts("group")) or tuple(
+        dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
+    )
+    rows, schemes = [], {}
+    for f in files:
+        m = f.measurements[0]
+        low = high = None
+        if m["spread"] is not None:
+            _, _, low, high = tables.mean_and_interval(f.curves["readings"], quantity)
+        cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
+        cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
+        if quantity == "ptv":
+            cells += cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+        if "scheme" in f.curves:
+            scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
+            cells += _classes(scheme, m)
+        rows.append(tuple(cells))
+    numbers = [*tables.number_columns(quantity), "u"]
+    columns = ["file", *keys, "readings", *numbers]
+    columns += ["COF from PTV", "u of COF"] if quantity == "ptv" else []
+    notes = [
+        "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
+        "uncertainty, with the calibration where it is known."
+    ]
+    columns += ["class", "2 u reaches"] if schemes else []
+    notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
+    spreads = [f.measurements[0]["uncertainty"] for f in files]
+    places = max((tables.decimals_of(u) for u in spreads if u), default=2)
+    decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3, "u of COF": 3}
+    title = f"Samples, {quantity_name(quantity)}"
+    made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
+    findings: list[Finding] = []
+    for by in ("laboratory", "operator", "machine"):
+        groups = _readings_by(files, by, keys)
+        made += _precision(groups, by, quantity, keys)
+        findings += agreement_findings(groups, by, quantity)
+    return Study(tuple(made), tuple(findings))
+
+
+def _readings_by(
+    files: Sequence[FileResult], by: str, keys: tuple[str, ...]
+) -> dict[tuple[str, ...], dict[str, list[float]]]:
+    """Return readings by the other conditions, and by laboratory, operator or machine."""
+    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
+    for f in files:
+        if by in f.conditions:
+            level = tuple(str(f.conditions.get(k, "")) for k in keys if k != by)
+            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
+    return groups
+
+
+def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None]:
+    """Return the class of a number and the others that twice its uncertainty reaches."""
+    value, wide = float(m["value"]), 2.0 * float(m["uncertainty"] or 0.0)
+    own = scheme.class_of(value)
+    others = {scheme.class_of(end) for end in (value - wide, value + wide)} - {own}
+    return own, ", ".join(sorted(others)) or None
+
+
+def _lowest(
+    files: Sequence[FileResult],
+    quantity: str,
+    keys: tuple[str, ...],
+    places: int,
+    directions: int,
+) -> list[Table]:
+    """Return each sample with all its directions and the lowest, which gives the class."""
+    heading = next((k for k in keys if k in NOTED["direction"]), "")
+    others = tuple(k for k in keys if k != heading)
+    rows = []
+    for level, members in tables.grouped(files, others).items() if heading else ():
+        values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
+        low = min(members, key=lambda f: f.main[quantity])
+        m, scheme = low.measurements[0], low.curves.get("scheme")
+        told = "; ".join(f"{name} {value:.{places}f}" for name, value in values.items())
+        lacking = f"{len(values)} of {directions}" if len(values) < directions else ""
+        numbers = (m["value"], m["uncertainty"])
+        classes = _classes(class_scheme(scheme), m) if scheme else (None, None)
+        rows.append((*level, told, low.conditions.get(heading), *numbers, *classes, lacking))
+    if not rows:
+        return []
+    name = quantity_name(quantity)
+    columns = (*others, "directions", "lowest", name, "u", "class", "2 u reaches",
+               "directions measured")  # fmt: skip
+    note = "The class of a sample is that of its lowest direction."
+    decimals = {name: places, "u": places}
+    title = f"Samples, lowest direction, {name}"
+    return [Table("lowest", title, columns, tuple(rows), (note,), decimals)]
+
+
+def _precision(
+    groups: Mapping[tuple[str, ...], Mapping[str, Sequence[float]]],
+    by: str,
+    quantity: str,
+    keys: tuple[str, ...],
+) -> list[Table]:
+    """Return repeatability and reproducibility of each floor over laboratories or operators."""
+    others = [k for k in keys if k != by]
+    rows, tests = [], []
+    for level, readings in groups.items():
+        try:
+            spread = precision(readings)
+        except UnderfootError:
+            continue
+        rows.append(
+            (*level, spread.laboratories, spread.n, spread.mean, spread.repeatability,
+             spread.reproducibility, spread.repeatability_limit, spread.reproducibility_limit)
+        )  # fmt: skip
+        tests += [
+            f"{', '.join(level) or 'all'}: {test.name}, {by} {test.laboratory}, {test.verdict} "
+            f"({test.statistic:.3f}; 5 % {test.critical_5_percent:.3f}, 1 % "
+            f"{test.critical_1_percent:.3f})"
+            for test in spread.outliers
+            if test.verdict != "correct"
+        ]
+    if not rows:
+        return []
+    name = quantity_name(quantity)
+    columns = (*others, {"laboratory": "laboratories"}.get(by, by + "s"), "readings", name, "s_r",
+               "s_R", "r = 2.8 s_r", "R = 2.8 s_R")  # fmt: skip
+    notes = (
+        f"Repeatability s_r and reproducibility s_R over each {by} (ISO 5725-2); nothing left out.",
+        *(tests or ("Cochran's and Grubbs' tests name no straggler or outlier.",)),
+    )
+    title = f"Repeatability and reproducibility by {by}"
+    places = max(tables.decimals_of(row[-3]) for row in rows)
+    return [Table(f"precision_{by}", title, columns, tuple(rows), notes,
+                  dict.fromkeys(columns[-5:], places))]  # fmt: skip
+
+
+def _sample(files: Sequence[FileResult]) -> str:
+    """Return the condition that names what was tested, where readings repeat it."""
+    return next((n for n in ("sample", "specimen") if any(n in f.conditions for f in files)), "")
+
+
+def _scan(result: FileResult) -> dict[str, Any]:
+    stored = result.curves["scan"]
+    return {**stored, **{key: np.array(stored[key]) for key in ("along", "pressure")}}
+
+
+_STUDIES: Mapping[str, Callable[[list[FileResult], Protocol], Study]] = {
+    "pin_on_disk": _pin_on_disk,
+    "boundary": _boundary,
+    "slip_tester": _slip_tester,
+    "human_slip": _human_slip,
+    "gait": _gait,
+    "relaxation": _relaxation,
+    "readings": _readings,
+}

@@ -1,0 +1,380 @@
+"""What the files of a study say against each other, told before any statistics."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from ..recording.protocols import Protocol
+from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
+from .file_result import REFUSED, FileResult
+from .person_measures import FORCE, HEIGHT
+from .tables import Table, grouped
+
+_BODY = {
+    **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
+}  # fmt: skip
+"""Conditions that a person keeps, and how far they may differ (relative)."""
+_JUDGED, _UNLIKE = 8, 0.3  # trials needed; ln of RCOF over the person's others; assumed
+_LEAST, _SCATTERS = 0.02, 6.0
+_LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
+"""A body is another's from six times the scatter within the study's persons, but at least 2 %, and
+from these shares on whatever the scatter (relative; "" distances of markers); assumed."""
+_STEP = ("contact", "peak_force")  # what tells one step from all others
+_TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
+"""Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
+0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
+_MOST = 0.5  # share of the files from which a condition counts as meant for all
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """One doubt about a study: what, in words, the files it is about, and whether they are out.
+
+    Files of an ``out`` doubt take no part in means and tests.
+    """
+
+    message: str
+    files: tuple[str, ...]
+    out: bool = False
+
+    def __str__(self) -> str:
+        shown = ", ".join(self.files[:4]) + (" ..." if len(self.files) > 4 else "")
+        return f"{self.message} ({shown}){'; left out' if self.out else ''}"
+
+
+def guarded_files(
+    recordings: Sequence[Sequence[FileResult]],
+) -> tuple[list[FileResult], list[Doubt]]:
+    """Return all results with copies refused, and the doubts about copies.
+
+    Of equal bytes, numbers or steps (a copy cut, filtered, or exported with another start or gain)
+    under two names the first counts, where all that is noted agrees.
+    Where it does not, nobody knows whose they are, and none counts.
+    """
+    copies: dict[object, list[int]] = defaultdict(list)
+    for i, results in enumerate(recordings):
+        if results and results[0].checksum:
+            copies[results[0].checksum].append(i)
+        values = [v for one in results for v in one.facts.values()]
+        values += [m["value"] for one in results for m in one.measurements]
+        values += [step[key] for one in results for step in one.steps for key in _STEP]
+        numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
+        if len(numbers) >= 3:
+            copies[numbers].append(i)
+    copies |= {frozenset(pair): sorted(pair) for pair in _with_same_steps(recordings)}
+    doubts: list[Doubt] = []
+    refused: dict[int, str] = {}
+    told: set[tuple[int, ...]] = set()
+    for key, members in copies.items():
+        if len(members) < 2 or tuple(members) in told:
+            continue
+        told.add(tuple(members))
+        what = "the same numbers" if isinstance(key, tuple) else "the same steps"
+        what = "the same bytes" if isinstance(key, str) else what
+        names = tuple(recordings[i][0].file for i in members)
+        noted = [_noted(recordings[i][0]) for i in members]
+        same = all(one == noted[0] for one in noted)
+        words = f"{what} as {names[0]}, which counts"
+        if not same:
+            words = f"{what}, noted differently: nobody knows whose they are, none counts"
+        doubts.append(Doubt(words, names[1:] if same else names, True))
+        refused |= dict.fromkeys(
+            members[1:] if same else members,
+            f"{what} as {names[0]}"
+            if same
+            else f"{what} under {', '.join(names)}, noted differently",
+        )
+    files = [
+        replace(one, verdict=REFUSED, reasons=(refused[i], *one.reasons)) if i in refused else one
+        for i, results in enumerate(recordings)
+        for one in results
+    ]
+    return sorted(files, key=lambda one: one.file), doubts
+
+
+def _with_same_steps(recordings: Sequence[Sequence[FileResult]]) -> set[tuple[int, int]]:
+    """Pairs of recordings that share steps: their forces and noise, whatever the gain."""
+    shapes, noises, times, owners = [], [], [], []
+    for i, results in enumerate(recordings):
+        steps = [c for one in results for c in one.curves.get("steps", ()) if "along" in c]
+        forces = [c for one in results for c in one.curves.get("normalised", ())]
+        for step, curves in zip(steps, forces, strict=False):
+            shape = np.concatenate([curves[name][::5] for name in ("vertical", "braking")])
+            along = np.diff(np.nan_to_num(step["along"]), 2)
+            noise = along[len(along) // 4 :][:_NOISE]
+            if len(noise) == _NOISE and noise.any():
+                shapes.append(shape / max(float(shape.max()), 1.0))
+                noises.append(noise / np.linalg.norm(noise))
+                times.append(step["time"][-1])
+                owners.append(i)
+    order = np.argsort(times)
+    time, owner = (np.array(values)[order] for values in (times, owners))
+    shape, noise = (np.array(values)[order] for values in (shapes, noises)) if owners else ([], [])
+    shared: Counter[tuple[int, int]] = Counter()
+    for i, last in enumerate(np.searchsorted(time, time + _TIMES)):
+        near = slice(i + 1, last)
+        apart = np.sqrt(np.mean((shape[near] - shape[i]) ** 2, axis=1))
+        same = (apart < _ALIKE) & (noise[near] @ noise[i] > _CORRELATED)
+        for other in owner[near][same]:
+            shared[(int(min(owner[i], other)), int(max(owner[i], other)))] += 1
+    steps_of = Counter(owners)
+    return {
+        pair
+        for pair, n in shared.items()
+        if pair[0] != pair[1] and 2 * n >= min(steps_of[i] for i in pair)
+    }
+
+
+def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]:
+    """Return the doubts about the usable files of a study, each with the files it is about."""
+    usable = [one for one in files if one.usable]
+    person = person_condition(usable, protocol.text("subject"))
+    tables = protocol.kind == "readings"
+    doubts = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
+    if not tables:
+        doubts += _single_levels(usable, person)
+    if person:
+        doubts += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
+        doubts += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
+    if protocol.kind == "slip_tester":
+        doubts += _repeats(usable, protocol)
+    if protocol.kind in ("slip_tester", "readings"):
+        doubts += _not_on_record(usable, protocol)
+    return doubts
+
+
+def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
+    """Return the doubts as a table, a row each, or None where there is none."""
+    if not doubts:
+        return None
+    rows = tuple(
+        (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
+    )
+    columns = ("doubt", "left out of means and tests", "number", "files")
+    return Table("doubts", "Read this first: doubts about the study's files", columns, rows)
+
+
+def _noted(result: FileResult) -> dict[str, Any]:
+    return {k: v for k, v in result.conditions.items() if k not in NUMBERS}
+
+
+def _names(files: Sequence[FileResult]) -> tuple[str, ...]:
+    return tuple(one.file for one in files)
+
+
+def _factors(files: Sequence[FileResult]) -> dict[str, list[FileResult]]:
+    """Return the files that have each condition in words."""
+    having: dict[str, list[FileResult]] = defaultdict(list)
+    for one in files:
+        for key, value in one.conditions.items():
+            if isinstance(value, str) and value and key not in NUMBERS:
+                having[key].append(one)
+    return having
+
+
+def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
+    for key, having in _factors(files).items():
+        named = set(_names(having))
+        lacking = [one for one in files if one.file not in named]
+        if not lacking:
+            continue
+        if len(having) >= _MOST * len(files):
+            words = f'"{key}" is noted for {len(having)} of {len(files)} files, not for these'
+            yield Doubt(words, _names(lacking), True)
+        else:
+            words = f'"{key}" is noted for {len(having)} of {len(files)} files only: no factor'
+            yield Doubt(words, _names(having))
+
+
+def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
+    for key in dict.fromkeys(k for one in files for k in one.conditions if k not in NUMBERS):
+        lacking = [one for one in files if key not in one.conditions]
+        having = len(files) - len(lacking)
+        number = any(isinstance(one.conditions.get(key), float) for one in files)
+        if number and lacking and having >= _MOST * len(files):
+            words = f'"{key}" is noted for {having} of {len(files)} files, not for these'
+            yield Doubt(words, _names(lacking))
+
+
+def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A person who has twice the trials of a level and lacks another that the others have."""
+    for key, having in _factors([one for one in files if person in one.conditions]).items():
+        counts = {
+            who: Counter(str(one.conditions[key]) for one in own)
+            for (who,), own in grouped(having, (person,)).items()
+        }
+        usual = {
+            level: float(np.median([one[level] for one in counts.values()]))
+            for level in {level for one in counts.values() for level in one}
+        }
+        if key == person or 2 * sum(len(one) > 1 for one in counts.values()) <= len(counts):
+            continue  # a condition between persons
+        for who, one in counts.items():
+            lacks = [level for level, n in usual.items() if n and not one[level]]
+            crowd = [level for level, n in one.items() if usual[level] and n >= 2 * usual[level]]
+            if lacks and crowd:
+                words = (
+                    f'{who} has {one[crowd[0]]} trials with {key} "{crowd[0]}" and none with '
+                    f'"{sorted(lacks)[0]}": the others {usual[crowd[0]]:g} with each?'
+                )
+                named = [o for o in having if str(o.conditions[person]) == who]
+                yield Doubt(words, _names([o for o in named if o.conditions[key] == crowd[0]]))
+
+
+def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A trial whose RCOF lies far from the person's others, levels of conditions allowed for."""
+    having = [one for one in files if one.main.get("rcof", 0.0) > 0.0 and person in one.conditions]
+    left = np.log([one.main["rcof"] for one in having])
+    for key in (person, *(k for k in _factors(having) if k != person), person):
+        for level in {str(one.conditions.get(key)) for one in having}:
+            own = [i for i, one in enumerate(having) if str(one.conditions.get(key)) == level]
+            left[own] -= np.median(left[own])
+    if len(having) < _JUDGED:
+        return
+    limit = max(_SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
+    for one, away in zip(having, left, strict=True):
+        if abs(away) > limit:
+            words = f"RCOF {one.main['rcof']:.3f}, {100 * np.expm1(away):+.0f} % against the other"
+            yield Doubt(
+                f"{words} trials of {one.conditions[person]}: gain, or another?", (one.file,)
+            )
+
+
+def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """Two levels one slip of the finger apart, one of them rare."""
+    for key, having in _factors(files).items():
+        counts = Counter(str(one.conditions[key]) for one in having)
+        for rare, n in counts.items():
+            plain = plain_spelling(rare, person=key in PERSON)
+            if len(plain) < 4 or any(letter.isdigit() for letter in plain):
+                continue
+            for usual, m in counts.items():
+                other = plain_spelling(usual, person=key in PERSON)
+                if m >= max(2, 3 * n) and _one_slip(plain, other):
+                    words = f'{key} "{rare}" ({n}) is one letter from "{usual}" ({m})'
+                    yield Doubt(words, _names([o for o in having if o.conditions[key] == rare]))
+
+
+def _one_slip(a: str, b: str) -> bool:
+    """True when one letter is wrong, missing, too many, or two neighbours are exchanged."""
+    if a == b or abs(len(a) - len(b)) > 1:
+        return False
+    start = next(
+        (i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(map(len, (a, b)))
+    )
+    a, b = a[start:], b[start:]
+    return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
+
+
+def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    for key, having in _factors(files).items():
+        counts = Counter(str(one.conditions[key]) for one in having)
+        usual = float(np.median(list(counts.values())))
+        rare = [level for level, n in counts.items() if n == 1]
+        if usual >= 3 and 0 < len(rare) <= 0.5 * len(counts) and key != "date":
+            for level in rare:
+                words = f'{key} "{level}" has one trial, the others {usual:g}'
+                yield Doubt(words, _names([o for o in having if o.conditions[key] == level]))
+
+
+def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    for (who,), own in grouped(files, (person,)).items():
+        for key, limit in _BODY.items():
+            noted = {one.conditions[key] for one in own if key in one.conditions}
+            numbers = [value for value in noted if isinstance(value, float)]
+            apart = len(numbers) > 1 and max(numbers) > (1.0 + limit) * min(numbers)
+            if apart or (len(noted) > 1 and not numbers):
+                listed = ", ".join(f"{v:g}" if isinstance(v, float) else v for v in sorted(noted))
+                yield Doubt(f"{key} of {who} is noted as {listed}", _names(own))
+
+
+def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A recording that shows another body than the person's other recordings."""
+    measured = {
+        who: [(one.file, one.curves["person"]) for one in own if one.curves.get("person")]
+        for (who,), own in grouped(files, (person,)).items()
+    }
+    away: dict[tuple[str, str], dict[str, float]] = {}
+    for who, own in measured.items():
+        for file, body in own:
+            others = [other for name, other in own if name != file]
+            middles = {name: _middle(others, name) for name in body}
+            away[who, file] = {n: body[n] / middle - 1.0 for n, middle in middles.items() if middle}
+    limits = {}
+    for kind, largest in _LARGEST.items():
+        sizes = [abs(v) for one in away.values() for name, v in one.items() if _kind(name) == kind]
+        scatter = 1.4826 * float(np.median(sizes)) if sizes else largest
+        limits[kind] = min(max(_SCATTERS * scatter, _LEAST), largest)
+    usual = {
+        who: {name: _middle([body for _, body in own], name) for name in own[0][1]}
+        for who, own in measured.items()
+        if own
+    }
+    for (who, file), one in away.items():
+        beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
+        distances, wrong = (sum(not _kind(name) for name in part) for part in (one, beyond))
+        texts = [
+            f"{name.split(' (')[0]} {100 * v:+.0f} %" for name, v in beyond.items() if _kind(name)
+        ]
+        if wrong > max(1, 0.3 * distances):
+            texts.append(f"{wrong} of {distances} distances of markers")
+        if texts:
+            words = f"another person in the place of {who}? {'; '.join(texts)} against the others"
+            yield Doubt(words + _nearest(dict(measured[who])[file], who, usual), (file,))
+
+
+def _kind(measure: str) -> str:
+    return measure if measure in _LARGEST else ""
+
+
+def _middle(bodies: Sequence[Mapping[str, float]], name: str) -> float:
+    values = [body[name] for body in bodies if name in body]
+    return median(values) if len(values) >= 2 else 0.0
+
+
+def _nearest(body: Mapping[str, float], who: str, usual: Mapping[str, Mapping[str, float]]) -> str:
+    """Return who of the others has the body, where somebody has."""
+    distances = {}
+    for other, middles in usual.items():
+        shared = [abs(body[name] / m - 1.0) for name, m in middles.items() if m and name in body]
+        if other != who and shared:
+            distances[other] = max(shared)
+    best = min(distances, key=lambda name: distances[name], default="")
+    return f", nearest {best}" if best and distances[best] < _LEAST else ""
+
+
+def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
+    """A COF far from the other repeats of the same shoe, floor and fluid."""
+    keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
+    for level, own in grouped(files, keys).items() if keys else ():
+        values = np.array([one.main["cof"] for one in own if "cof" in one.main])
+        if len(values) < 4:
+            continue
+        middle = float(np.median(values))
+        usual = 1.4826 * float(np.median(np.abs(values - middle)))
+        for one in own:
+            away = abs(one.main.get("cof", middle) - middle)
+            if away > max(6.0 * usual, 0.15 * middle):
+                words = f"COF {one.main['cof']:.3f} against {middle:.3f} of the other repeats"
+                yield Doubt(f"{', '.join(level)}: {words}: gain or sample?", (one.file,))
+
+
+def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
+    """What nobody can judge, told once."""
+    said = [m["conventions"] for one in files for m in one.measurements]
+    if any(c.get("calibration", "").startswith("no record") for c in said):
+        words = "no calibration record (calibration.toml): the tester's gain can't be judged"
+        yield Doubt(words, ("all",))
+    if protocol.text("quantity") == "ptv":
+        lacking = [
+            name
+            for name, key, without in (("zero runs", "zero", "not measured"),
+                                       ("check surfaces", "check surfaces", "none in the table"))
+            if any(c.get(key) == without for c in said)
+        ]  # fmt: skip
+        if lacking:
+            yield Doubt(f"not in the table: {', '.join(lacking)} of the pendulum", ("all",))

@@ -1,0 +1,391 @@
+"""The statistical tests of a study, each with its convention and what is doubtful about it."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from underfoot.core import DataError, UnderfootError
+
+from .. import statistics
+from ..recording.protocols import Protocol
+from ..statistics.logistic import METHODS, risk_curve
+from .conditions import person_condition
+from .field_statistics import (
+    corrected_p,
+    curve_findings,
+    effect_cells,
+    equivalence_findings,
+    multiplicity_findings,
+    person_columns,
+    prediction_finding,
+    rank_findings,
+    reliability_findings,
+)
+from .file_result import FileResult
+from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
+
+_Fit = TypeVar("_Fit")
+
+
+def comparison_findings(
+    response: str,
+    values: Sequence[float],
+    factors: Mapping[str, Sequence[str]],
+    persons: Sequence[str] = (),
+    *,
+    margin: float = 0.0,
+) -> list[Finding]:
+    """Return tests of factors on a response, and Tukey's comparisons of the levels.
+
+    Where persons repeat, the mixed model of their means comes first (and repeated measures, when
+    every person has every condition); Tukey's comparisons are then its. The analysis of variance
+    that takes trials as independent follows with a warning. Otherwise it stands alone. Rank tests
+    follow where the scatter is not normal, tests of equivalence where there is a ``margin``, and
+    the reliability of repeated trials.
+    """
+    repeated = reliability_findings(response, values, factors, persons)
+    if not factors:
+        return repeated
+    if margin:
+        repeated = [*equivalence_findings(response, values, factors, persons, margin), *repeated]
+    repeated = [*rank_findings(response, values, factors, persons), *repeated]
+    warning = statistics.independence_warning(persons)
+    name = quantity_name(response)
+    findings, model = _mixed(response, values, factors, persons) if warning else ([], None)
+    try:
+        table = _crossed(
+            factors,
+            lambda terms: statistics.analysis_of_variance(values, factors, terms, name=name),
+        )
+    except UnderfootError as error:
+        title = f"Analysis of variance of {name}"
+        return [*findings, not_done(f"anova_{response}", title, error), *repeated]
+    if model is None and not any("empty cells" in text for text in table.warnings):
+        model = table.model
+    tukey = _tukey(response, model, values, factors, persons) if model is not None else []
+    anova = Finding.of_anova(table, warning)
+    return [*findings, *tukey, anova, *repeated] if warning else [anova, *tukey, *repeated]
+
+
+def _crossed(
+    factors: Mapping[str, Sequence[str]], fit: Callable[[tuple[str, ...] | None], _Fit]
+) -> _Fit:
+    """Return a crossed model; the main effects alone where there are too few values for it."""
+    try:
+        return fit(None)
+    except DataError:
+        return fit(tuple(factors))
+
+
+def _mixed(
+    response: str,
+    values: Sequence[float],
+    factors: Mapping[str, Sequence[str]],
+    persons: Sequence[str],
+) -> tuple[list[Finding], statistics.MixedModel | None]:
+    name = quantity_name(response)
+    title = f"Mixed model of {name}: means of persons, random intercept for each (REML)"
+    key = f"mixed_{response}"
+    try:
+        model = _crossed(
+            factors,
+            lambda terms: statistics.mixed_model(values, factors, persons, terms, name=name),
+        )
+    except UnderfootError as error:
+        return [not_done(key, title, error)], None
+    note = (
+        f"{model.persons} persons, {model.trials} trials; standard deviation between persons "
+        f"{model.person_sd:.3g}, within {model.residual_sd:.3g}. Wald F tests, type III, degrees "
+        "of freedom between and within persons."
+    )
+    if model.within and model.residual_sd > 0:
+        spread = np.sqrt(2.0) * model.residual_sd
+        least = statistics.detectable_difference("paired", model.persons, spread)
+        half = statistics.persons_needed(
+            lambda n: statistics.power("paired", n, difference=least / 2, sd=spread)
+        )
+        note += (
+            f" So many persons find a difference of {least:.2g} between two conditions with 80 % "
+            f"power (paired t); half of it would take {half}."
+        )
+    columns = ("term", "df", "df of error", "F", "p")
+
+    def cells(tests: Sequence[statistics.AnovaRow]) -> list[tuple[Cell, ...]]:
+        return [(row.term, row.df, row.error_df, row.f, row.p) for row in tests]
+
+    findings = [finding(key, title, columns, cells(model.tests), note, model.warnings)]
+    try:
+        repeated = statistics.repeated_measures(values, factors, persons)
+    except UnderfootError:
+        return findings, model
+    title = f"Repeated-measures analysis of variance of {name}, means of persons"
+    note = ""
+    if repeated.epsilon is not None and repeated.p_corrected is not None:
+        note = (
+            f"Greenhouse-Geisser epsilon {repeated.epsilon:.3f}, p corrected with it "
+            f"{repeated.p_corrected:.4g}."
+        )
+    more = finding(f"repeated_{response}", title, columns, cells(repeated.rows), note)
+    return [*findings, more], model
+
+
+def _tukey(
+    response: str,
+    model: statistics.LinearModel | statistics.MixedModel,
+    values: Sequence[float],
+    factors: Mapping[str, Sequence[str]],
+    persons: Sequence[str],
+) -> list[Finding]:
+    findings = []
+    mixed = isinstance(model, statistics.MixedModel)
+    by = "mixed model" if mixed else "analysis of variance"
+    for factor, levels in factors.items():
+        if len(set(levels)) < 3 and not mixed:
+            continue
+        title = f"Tukey's comparisons of {quantity_name(response)} by {factor} ({by})"
+        name = f"tukey_{response}_{factor}".replace(" ", "_")
+        try:
+            comparisons = statistics.tukey_hsd(model, factor)
+        except UnderfootError as error:
+            findings.append(not_done(name, title, error))
+            continue
+        marks = statistics.letters(comparisons)
+        drawn = person_columns(values, levels, persons or range(len(values)))
+        rows = tuple(
+            (c.first, c.second, c.difference, c.standard_error, c.low, c.high, c.p,
+             *effect_cells(drawn, c.first, c.second))
+            for c in comparisons
+        )  # fmt: skip
+        columns = (
+            "first", "second", "difference", "SE", "95 % low", "95 % high", "p adjusted",
+            "Hedges' g", "g 95 % low", "g 95 % high",
+        )  # fmt: skip
+        listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
+        note = (
+            f"Levels that share a letter do not differ at 0.05: {listed}. Hedges' g of the persons "
+            "who have both levels (difference over the SD of their differences), else over the "
+            "pooled SD; its interval is exact and holds one comparison."
+        )
+        places = decimals_of(min(c.standard_error for c in comparisons))
+        decimals = {name: 2 if "g" in name.split() or "'" in name else places
+                    for name in columns[2:] if name != "p adjusted"}  # fmt: skip
+        table = Table(name, title, columns, rows, (note,), decimals)
+        findings.append(Finding(name, title, table, (), response, factor, marks, drawn))
+    return findings
+
+
+def slip_findings(
+    files: Sequence[FileResult], protocol: Protocol, keys: tuple[str, ...]
+) -> tuple[list[Finding], dict[str, Any]]:
+    """Return the tests a human-slip protocol asks for, and curves for figures."""
+    findings: list[Finding] = []
+    curves: dict[str, Any] = {}
+    wanted = protocol.texts("tests")
+    judged = [f for f in files if "slip" in f.main]
+    person = person_condition(files, protocol.text("subject"))
+    for key in keys:
+        if "fisher" in wanted:
+            findings.append(_fisher(judged, key, person))
+        levels = {str(f.conditions.get(key)) for f in files if key in f.conditions}
+        if "anova" not in wanted and len(levels) == 2:
+            findings += _t_tests(files, key, sorted(levels), person)
+    if "anova" in wanted:
+        for name in ("rcof", "acof"):
+            having = [f for f in files if name in f.main and all(k in f.conditions for k in keys)]
+            if having:
+                values = [f.main[name] for f in having]
+                factors, persons = varying(having, keys), persons_of(having, person)
+                margin = protocol.number("equivalence", "1", 0.0)
+                findings += comparison_findings(name, values, factors, persons, margin=margin)
+        findings += multiplicity_findings(findings)
+    findings += curve_findings(files, keys, person)
+    if "logistic" in wanted:
+        found, curves["risk"] = _logistic(judged, person)
+        findings += found
+    if "line" in wanted:
+        findings.append(_line(files, curves, person))
+    if "subsets" in wanted:
+        findings += _subsets(files)
+    return findings, curves
+
+
+def persons_of(files: Sequence[FileResult], person: str) -> tuple[str, ...]:
+    """Return whom each file is of; a file without the condition is a person of its own."""
+    if not person:
+        return ()
+    return tuple(str(f.conditions.get(person, f.file)) for f in files)
+
+
+def varying(files: Sequence[FileResult], keys: Sequence[str]) -> dict[str, list[str]]:
+    """Return the conditions that have several levels, each with its level by file."""
+    factors = {key: [str(f.conditions[key]) for f in files] for key in keys}
+    return {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+
+
+def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
+    having = [f for f in files if key in f.conditions]
+    counts: dict[str, list[int]] = {}
+    for f in having:
+        counts.setdefault(str(f.conditions[key]), [0, 0])[f.main["slip"] != 1.0] += 1
+    title = f"Slips by {key}: Fisher's exact test"
+    name = f"fisher_{key}"
+    try:
+        exact = statistics.fisher_exact(list(counts.values()))
+    except UnderfootError as error:
+        return not_done(name, title, error)
+    rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
+    note = f"Two-sided exact p = {exact.p:.4g}, by enumeration of all tables with these margins."
+    if exact.p_error is not None:
+        note = (
+            f"Two-sided p = {exact.p:.4g} ± {exact.p_error:.1g} (standard error) from 100 000 "
+            "random tables with these margins: counting all would take too long."
+        )
+    if exact.odds_ratio is not None:
+        note += (
+            f" Odds ratio {exact.odds_ratio:.3g} (conditional estimate; 95 % {exact.low:.3g} to "
+            f"{exact.high:.3g})."
+        )
+    warning = statistics.independence_warning(persons_of(having, person))
+    return finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)
+
+
+def _t_tests(
+    files: Sequence[FileResult], key: str, levels: list[str], person: str
+) -> list[Finding]:
+    """Return t tests of persons' means where persons are known, of trials otherwise."""
+    rows, findings = [], []
+    for name in ("peak_pressure", "peak_slipping_speed", "rcof"):
+        having = [f for f in files if name in f.main and str(f.conditions.get(key)) in levels]
+        values = [f.main[name] for f in having]
+        group = [str(f.conditions[key]) for f in having]
+        if min(group.count(level) for level in levels) < 2:
+            continue
+        persons = persons_of(having, person)
+        if statistics.independence_warning(persons):
+            mixed, model = _mixed(name, values, {key: group}, persons)
+            tukey = _tukey(name, model, values, {key: group}, persons) if model else []
+            findings += mixed + tukey
+            continue
+        samples = [[v for v, g in zip(values, group, strict=True) if g == lv] for lv in levels]
+        for kind in ("welch", "pooled"):
+            try:
+                t = statistics.t_test(*samples, kind=kind)
+            except UnderfootError:
+                continue
+            rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
+    if rows:
+        # rows come in pairs: Welch's test, on which the correction stands, then Student's
+        corrected = iter(corrected_p([row[-1] for row in rows if row[1].startswith("Welch")]))
+        rows = [(*row, next(corrected) if row[1].startswith("Welch") else None) for row in rows]
+        title = f"t tests of {levels[0]} against {levels[1]} ({key})"
+        columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")
+        findings.insert(0, finding(f"t_{key}", title, columns, rows))
+    return findings
+
+
+def _logistic(
+    files: Sequence[FileResult], subject: str
+) -> tuple[list[Finding], list[dict[str, Any]]]:
+    findings, drawn = [], []
+    for name in ("acof", "rcof", "acof_minus_rcof"):
+        having = [f for f in files if name in f.main]
+        if len(having) < 8:
+            continue
+        y = [int(f.main["slip"]) for f in having]
+        x = [f.main[name] for f in having]
+        title = f"Logistic regression of slip on {quantity_name(name)}"
+        rows: list[tuple[Cell, ...]] = []
+        cautions: list[str] = []
+        best: statistics.LogisticFit | statistics.ClusteredFit | None = None
+        for method in ("maximum_likelihood", "firth"):
+            try:
+                fit = statistics.logistic_regression(y, {name: x}, method=method)
+            except UnderfootError as error:
+                cautions.append(f"{METHODS[method].split(' (')[0]}: {error.what}")
+                continue
+            best = best or fit
+            cautions += fit.warnings
+            c = fit[name]
+            intercept = fit["intercept"].estimate
+            rows.append((method.replace("_", " "), intercept, c.estimate, c.low, c.high, c.p))
+        persons = persons_of(having, subject)
+        warning = statistics.independence_warning(persons)
+        if warning:
+            cautions += [*warning, "read the last line, errors by person"]
+            try:
+                best = gee = statistics.clustered_logistic(y, {name: x}, persons)
+                c = gee[name]
+                intercept = gee["intercept"].estimate
+                by_person = "estimating equations, errors by person"
+                rows.append((by_person, intercept, c.estimate, c.low, c.high, c.p))
+            except UnderfootError as error:
+                cautions.append(f"estimating equations: {error.what}")
+        columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
+        note = (
+            "Intervals of the first lines are profile likelihoods, p from likelihood ratios; those "
+            "by person are Kauermann and Carroll's errors with t, p from flipped signs of persons."
+        )
+        cautions = list(dict.fromkeys(cautions))
+        findings.append(finding(f"logistic_{name}", title, columns, rows, note, cautions))
+        told = prediction_finding(name, y, x, persons)
+        findings += [told] if told is not None else []
+        if best is not None:
+            reach = 0.1 * (max(x) - min(x))
+            curve = risk_curve(best, np.linspace(min(x) - reach, max(x) + reach, 121))
+            drawn.append(
+                {
+                    "name": name, "x": x, "y": y, "grid": curve.x.tolist(),
+                    "risk": curve.risk.tolist(), "low": curve.low.tolist(),
+                    "high": curve.high.tolist(), "method": METHODS[best.method],
+                    "slope": float(best[name].estimate), "half": curve.half,
+                }
+            )  # fmt: skip
+    return findings, drawn
+
+
+def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> Finding:
+    having = [
+        f for f in files
+        if {"peak_slipping_speed", "peak_pressure"} <= {*f.main} and f.main.get("crossed_array", 1)
+    ]  # fmt: skip
+    x = [1e-3 * f.main["peak_pressure"] for f in having]
+    y = [f.main["peak_slipping_speed"] for f in having]
+    title = "Peak slipping speed against peak pressure"
+    try:
+        line = statistics.regression_line(x, y)
+    except UnderfootError as error:
+        return not_done("line", title, error)
+    curves["line"] = {"x": x, "y": y, "slope": line.slope, "intercept": line.intercept, "r": line.r}
+    columns = ("r", "p", "slope (m/s per kPa)", "SE", "intercept (m/s)", "n")
+    row = (line.r, line.p, line.slope, line.slope_error, line.intercept, line.n)
+    note = "Trials whose heel crossed the sensor array."
+    warning = statistics.independence_warning(persons_of(having, person))
+    return finding("line", title, columns, [row], note, warning)
+
+
+def _subsets(files: Sequence[FileResult]) -> list[Finding]:
+    rows = [
+        row for f in files for row in f.curves.get("sensor_rows", []) if f.main.get("slip", 1.0)
+    ]
+    title = "Adjusted R^2 of sensor peak pressure by subsets of variables (as Table 7)"
+    if len(rows) < 12:
+        return []
+    pressure = [1e-3 * r["pressure"] for r in rows]
+    shared = {"ML distance": [abs(r["ml"]) for r in rows], "IRSS": [r["irss"] for r in rows]}
+    made = []
+    for label, kind in (("as a factor (2 df)", str), ("as a trend (1 df)", float)):
+        try:
+            found = statistics.all_subsets(
+                pressure, {"SPRWD": [kind(r["row"]) for r in rows], **shared}
+            )
+        except UnderfootError as error:
+            return [not_done("subsets", title, error)]
+        made += [
+            (" + ".join(s.predictors), label, s.adjusted_r_squared, s.r_squared, len(rows))
+            for s in found
+        ]
+    columns = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
+    note = "Sensor passages of trials with a slip; ML is the distance without its sign."
+    caution = "Nine sensors of one slip are not independent: p values would be too small."
+    return [finding("subsets", title, columns, made, note, (caution,))]

@@ -1,0 +1,420 @@
+"""Plain tables and findings: what ends in CSV, spreadsheet and page."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+
+from underfoot.core import UnderfootError
+
+from .. import statistics
+from ..walking.gait_context import PERCENT
+from .conditions import NUMBERS, person_condition
+from .file_result import FileResult
+
+Cell = str | float | int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending.
+
+    ``decimals`` are those a reader should see, by column, after the uncertainty; files keep all.
+    """
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...] = ()
+    decimals: Mapping[str, int] = field(default_factory=dict)
+
+    def filled(self, always: Collection[str] = ()) -> list[int]:
+        """Return the numbers of the columns with content, and of those named in ``always``."""
+        return [
+            i
+            for i, name in enumerate(self.columns)
+            if name in always or any(row[i] not in (None, "") for row in self.rows)
+        ]
+
+    def only(self, keep: Collection[int]) -> Self:
+        """Return the table with the columns of these numbers alone."""
+        rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
+        return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One test: what was asked, the table, and cautions.
+
+    Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
+    ``values`` the means of the persons (or the single values) by level.
+    """
+
+    name: str
+    title: str
+    table: Table
+    cautions: tuple[str, ...] = ()
+    response: str = ""
+    factor: str = ""
+    marks: Mapping[str, str] = field(default_factory=dict)
+    values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of_anova(cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
+        """Return an analysis of variance as a finding."""
+        rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
+        plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
+        name = f"anova_{plain}_type_{anova.ss_type}"
+        columns = ("term", "sum of squares", "df", "F", "p")
+        table = Table(name, anova.title, columns, rows)
+        return cls(name, anova.title, table, (*cautions, *anova.warnings))
+
+
+def finding(
+    name: str,
+    title: str,
+    columns: tuple[str, ...],
+    rows: Sequence[tuple[Cell, ...]],
+    note: str = "",
+    cautions: Sequence[str] = (),
+    *,
+    decimals: Mapping[str, int] | None = None,
+) -> Finding:
+    """Return a finding from the rows of its table."""
+    table = Table(name, title, columns, tuple(rows), (note,) if note else (), decimals or {})
+    return Finding(name, title, table, tuple(cautions))
+
+
+def not_done(name: str, title: str, error: UnderfootError) -> Finding:
+    """Return the finding of a test that could not be done, with the reason."""
+    return finding(name, title, ("not done",), ((error.what,),))
+
+
+# Names that are not the key in words, units shown, and what an SI value is multiplied by for one.
+_NAMES = {
+    "rcof": "RCOF", "acof": "ACOF", "acof_minus_rcof": "ACOF - RCOF", "cof": "COF", "ptv": "PTV",
+    "cof_bl": "COF_BL", "tau_hydro": "tau_hydro", "cof_asymptote": "COF_asymptote",
+    "crossed_array": "heel crossed the array", "scan_peak_pressure": "peak pressure of the scan",
+    "force_2_percent": "force at 2 %",
+}  # fmt: skip
+_UNITS = {
+    "angle": "deg", "tau_hydro": "m/s", "peak_slipping_speed": "m/s", "slip_margin": "m/s",
+    "speed": "m/s", "slip_distance": "mm", "peak_pressure": "kPa", "scan_peak_pressure": "kPa",
+    "friction_force": "N", "force_2_percent": "N", "peak_force": "N", "final_force": "N",
+    **{f"{time}-time stiffness": "N/mm" for time in ("short", "long")},
+    **{f"{time}-time {of}modulus": "MPa" for time in ("short", "long") for of in ("", "Young's ")},
+}  # fmt: skip
+_FACTORS = {"mm": 1e3, "kPa": 1e-3, "N/mm": 1e-3, "MPa": 1e-6}
+
+
+def quantity_name(name: str) -> str:
+    """Return a quantity's name as people write it."""
+    return _NAMES.get(name, name.replace("_", " "))
+
+
+def shown_unit(name: str) -> str:
+    """Return the unit that people read a quantity in; "" for a ratio."""
+    return _UNITS.get(name, "")
+
+
+def heading(name: str, what: str = "") -> str:
+    """Return a column heading of a quantity (its mean, or ``what`` of it) with its unit."""
+    tail = f" ({_UNITS[name]})" if name in _UNITS else ""
+    return quantity_name(name) + (f" {what}" if what else "") + tail
+
+
+def scaled(name: str, value: float | None) -> float | None:
+    """Return an SI value in the unit of its heading."""
+    return None if value is None else value * _FACTORS.get(_UNITS.get(name, ""), 1.0)
+
+
+def grouped(
+    files: Iterable[FileResult], keys: Sequence[str]
+) -> dict[tuple[str, ...], list[FileResult]]:
+    """Return the files that have all the conditions ``keys``, by their levels."""
+    groups: dict[tuple[str, ...], list[FileResult]] = {}
+    for one in files:
+        if all(key in one.conditions for key in keys):
+            groups.setdefault(tuple(str(one.conditions[key]) for key in keys), []).append(one)
+    return groups
+
+
+def file_table(files: Sequence[FileResult]) -> Table:
+    """Return one row per file: verdict, main numbers, conditions, reasons."""
+    numbers = list(dict.fromkeys(name for one in files for name in one.main))
+    noted = list(dict.fromkeys(name for one in files for name in one.conditions))
+    # A number that the analysis took over from the conditions is shown once.
+    noted = [name for name in noted if name not in numbers]
+    rows = tuple(
+        (
+            one.file,
+            one.verdict,
+            *(scaled(name, one.main.get(name)) for name in numbers),
+            *(one.conditions.get(name) for name in noted),
+            "; ".join(one.reasons),
+        )
+        for one in files
+    )
+    columns = ("file", "verdict", *map(heading, numbers), *noted, "reasons")
+    return Table("files", "Every file with its verdict", columns, rows)
+
+
+def measurement_table(files: Sequence[FileResult]) -> Table:
+    """Return one row per number with uncertainty, reason, flags and conventions."""
+    person = person_condition(files)
+    rows = tuple(
+        (
+            one.file,
+            str(one.conditions.get(person, "")),
+            *(m[key] for key in _NUMBER_COLUMNS.values()),
+            "yes" if any(flag["matters"] for flag in m["flags"]) else "",
+            "; ".join(flag["message"] for flag in m["flags"]),
+            "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
+        )
+        for one in files
+        for m in one.measurements
+    )
+    columns = ("file", "person", *_NUMBER_COLUMNS, "caution", "flags", "conventions")
+    return Table("measurements", "Every number with its conventions", columns, rows)
+
+
+_NUMBER_COLUMNS = {
+    "item": "item", "quantity": "name", "value": "value", "unit": "unit",
+    "standard uncertainty": "uncertainty", "not estimated because": "reason", "n": "n",
+}  # fmt: skip
+
+
+def edit_table(files: Iterable[FileResult]) -> Table | None:
+    """Return the edit log: every edit by hand with event and number before and after, or None."""
+    edits = [(one.file, edit) for one in files for edit in one.edits]
+    if not edits:
+        return None
+    rows = tuple((file, *edit.values()) for file, edit in edits)
+    return Table("edits", "Edits by hand", ("file", *edits[0][1]), rows)
+
+
+# Column, entry of the step and decimals that a reader sees.
+_STEP_COLUMNS = (
+    ("step", "item", None), ("side", "side", None), ("contact (s)", "contact", 3),
+    ("RCOF", "rcof", 3), ("RCOF standard uncertainty", "rcof_uncertainty", 3),
+    ("walking speed (m/s)", "walking_speed", 2), ("slip", "outcome", None),
+    ("verdict", "verdict", None), ("reason", "reason", None), ("cautions", "cautions", None),
+    ("by hand", "by_hand", None),
+)  # fmt: skip
+
+
+def steps_table(files: Iterable[FileResult]) -> Table:
+    """Return one row for each contact with a plate, rejected ones with the reason."""
+    rows = []
+    for one in files:
+        for step in one.steps:
+            values = [step.get(key) for _, key, _ in _STEP_COLUMNS]
+            texts = ["; ".join(map(str, v)) if isinstance(v, list | tuple) else v for v in values]
+            rows.append((one.file, *texts))
+    table = Table(
+        "steps",
+        "Every contact, rejected ones with the reason",
+        ("file", *(column for column, _, _ in _STEP_COLUMNS)),
+        tuple(rows),
+        ("All that is known of a step is in tables/steps_wide.csv and steps_long.csv.",),
+        {column: places for column, _, places in _STEP_COLUMNS if places is not None},
+    )
+    return table.only(table.filled(("file", "step", "RCOF", "verdict", "reason", "cautions")))
+
+
+def condition_table(
+    files: Iterable[FileResult],
+    keys: tuple[str, ...],
+    numbers: tuple[str, ...],
+    *,
+    person: str = "",
+    name: str = "conditions",
+) -> Table | None:
+    """Return mean, SD and 95 % interval of numbers by conditions, persons counted once in each.
+
+    Trials of a person are averaged first, so that SD and interval are those between persons (the
+    interval is t times SD / sqrt(persons)). Without a condition that names the persons (``person``)
+    files take their place, and the table says so. The slip is a share, with persons who slipped.
+    """
+    usable = [f for f in files if f.usable and all(key in f.conditions for key in keys)]
+    numbers = tuple(n for n in numbers if any(n in f.main for f in usable))
+    if not usable or not numbers:
+        return None
+    groups = grouped(usable, keys)
+    if len(groups) > 1:
+        groups[("all", *("" for _ in keys[1:]))] = usable
+    unit = "persons" if person else "files"
+    rows = []
+    errors: dict[str, list[float]] = {}
+    for group, members in groups.items():
+        people = [str(m.conditions.get(person, m.file)) for m in members]
+        steps = sum(counted_steps(m) for m in members)
+        cells: list[Cell] = [*group, len(set(people)), len(members), steps or None]
+        for number in numbers:
+            values: dict[str, list[float]] = {}
+            for one, who in zip(members, people, strict=True):
+                if number in one.main:
+                    values.setdefault(who, []).append(float(scaled(number, one.main[number]) or 0))
+            if number == "slip":
+                trials = [x for v in values.values() for x in v]
+                cells += [float(np.mean(trials)) if trials else None]
+                counts = [(sum(v), len(v)) for v in values.values()]
+                ends = (
+                    statistics.share_interval(*zip(*counts, strict=True))
+                    if person and counts
+                    else None
+                )
+                cells += [*(ends or (None, None)), sum(max(v) > 0 for v in values.values())]
+                continue
+            means = [float(np.mean(v)) for v in values.values()]
+            mean, spread, low, high = mean_and_interval(means, number)
+            cells += [mean, spread, low, high]
+            if spread:
+                errors.setdefault(number, []).append(spread / np.sqrt(len(values)))
+        rows.append(tuple(cells))
+    trials = "trials" if person or any(f.steps for f in usable) else "readings"
+    shares = ["share of trials with a slip", "95 % from", "95 % to", f"{unit} who slipped"]
+    named = (shares if number == "slip" else number_columns(number) for number in numbers)
+    columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
+    averaged = ", each person's trials averaged first." if person else "."
+    notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
+    if not person and len(usable) > 1:
+        notes.append(
+            "No condition names the persons or samples: every file counts as one. Where files "
+            'repeat a person, note it ("subject" in conditions.csv, or a pattern of names).'
+        )
+    decimals = {
+        column: decimals_of(float(np.median(values)))
+        for number, values in errors.items()
+        for column in number_columns(number)
+    }
+    title = "By " + ", ".join(keys) if keys else "All trials"
+    table = Table(name, title, columns, tuple(rows), tuple(notes), decimals)
+    return table.only(table.filled(keys))
+
+
+def number_columns(name: str) -> list[str]:
+    """Return the headings of mean, SD and interval of a quantity."""
+    ends = [f"{quantity_name(name)} 95 % {end}" for end in ("low", "high")]
+    return [heading(name), heading(name, "SD"), *ends]
+
+
+INTERVALS = (
+    "Intervals: t on the logarithm of a mean that can't be negative (none from two values), on the "
+    "logit of a share."
+)
+_SIGNED = ("acof_minus_rcof", "slip_margin")
+
+
+def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[float | None, ...]:
+    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values."""
+    if not len(values):
+        return None, None, None, None
+    mean = float(np.mean(values))
+    if len(values) < 2:
+        return mean, None, None, None
+    ends = statistics.mean_interval(values, positive=name not in _SIGNED) or (None, None)
+    return mean, float(np.std(values, ddof=1)), *ends
+
+
+def counted_steps(result: FileResult) -> int:
+    """Return the number of steps of a file that gave a required friction."""
+    return sum(
+        m["name"] == "rcof" and m["value"] is not None and str(m["item"]).startswith("step ")
+        for m in result.measurements
+    )
+
+
+def decimals_of(uncertainty: float) -> int:
+    """Return the decimals that show two digits of an uncertainty."""
+    if not uncertainty > 0:
+        return 3
+    return int(np.clip(1 - np.floor(np.log10(uncertainty)), 0, 8))
+
+
+# Numbers of a step with their SI unit, in the order of the tables.
+STEP_NUMBERS = {
+    "rcof": "1", "rcof_uncertainty": "1", "peak_slipping_speed": "m/s", "slip_start": "s",
+    "slip_distance": "m", "toe_slip": "m", "trailing_slip": "m", "contact": "s", "toe_off": "s",
+    "stance_time": "s", "peak_force": "N", "walking_speed": "m/s", "step_length": "m",
+    "step_time": "s", "cadence": "1/s", "foot_angle": "rad", "heel_speed": "m/s",
+    "belt_speed": "m/s",
+}  # fmt: skip
+_TEXTS = ("plate", "side", "verdict", "reason", "outcome", "slip_direction", "recovery_or_fall")
+_CURVES = ("vertical", "braking", "to the left", "ratio")
+
+
+def step_tables(files: Iterable[FileResult]) -> list[Table]:
+    """Return one row a step (``steps_wide``) and one row a number (``steps_long``).
+
+    Conditions stand beside. Refused files and rejected steps are in both, with their verdict.
+    """
+    files = [one for one in files if one.steps]
+    if not files:
+        return []
+    noted = list(dict.fromkeys(name for one in files for name in one.conditions))
+    wide: list[tuple[Cell, ...]] = []
+    long: list[tuple[Cell, ...]] = []
+    for one in files:
+        own = [one.conditions.get(name) for name in noted]
+        for step in one.steps:
+            head = (one.file, one.verdict, *own, step["number"])
+            texts = [step.get(name) or "" for name in _TEXTS]
+            cautions = "; ".join(step["cautions"])
+            wide.append((*head, *texts, cautions, *(step.get(name) for name in STEP_NUMBERS)))
+            long += [
+                (*head, step["side"], step["verdict"], name, step[name], unit)
+                for name, unit in STEP_NUMBERS.items()
+                if step.get(name) is not None
+            ]
+    first = ("file", "file verdict", *noted, "step")
+    units = [f"{n} ({u})" if u != "1" else n for n, u in STEP_NUMBERS.items()]
+    columns = (*first, *_TEXTS, "cautions", *units)
+    tidy = (*first, "side", "step verdict", "quantity", "value", "unit")
+    return [
+        Table("steps_wide", "Every step with its numbers", columns, tuple(wide)),
+        Table("steps_long", "Every number of every step", tidy, tuple(long)),
+    ]
+
+
+def curve_table(files: Iterable[FileResult]) -> Table | None:
+    """Return mean and SD of the forces over 0 to 100 % of stance, by condition, or None.
+
+    The steps of a person (of a file, where no person is named) are averaged first; SD is that
+    between persons.
+    """
+    files = [one for one in files if one.usable and one.curves.get("normalised")]
+    if not files:
+        return None
+    person = person_condition(files)
+    keys = [
+        name
+        for name in dict.fromkeys(name for one in files for name in one.conditions)
+        if name != person
+        and name not in NUMBERS
+        and 1 < len({str(one.conditions.get(name)) for one in files}) < len(files)
+        and all(isinstance(one.conditions.get(name, ""), str) for one in files)
+    ]
+    groups: dict[tuple[str, ...], dict[str, list[np.ndarray]]] = {}
+    for one in files:
+        key = tuple(str(one.conditions.get(name, "")) for name in keys)
+        who = str(one.conditions.get(person, one.file))
+        for curve in one.curves["normalised"]:
+            values = np.array([curve[name] for name in _CURVES], dtype=float)  # None gives NaN
+            groups.setdefault(key, {}).setdefault(who, []).append(values)
+    rows: list[tuple[Cell, ...]] = []
+    for key, people in groups.items():
+        means = np.array([np.mean(curves, axis=0) for curves in people.values()])
+        mean = means.mean(axis=0)
+        spread = means.std(axis=0, ddof=1) if len(means) > 1 else np.full_like(mean, np.nan)
+        pairs = np.stack((mean, spread), axis=1).reshape(-1, len(PERCENT)).T.tolist()
+        rows += [
+            (*key, int(percent), len(people), *(v if np.isfinite(v) else None for v in own))
+            for percent, own in zip(PERCENT, pairs, strict=True)
+        ]
+    names = [f"{n} (N)" if n != "ratio" else n for n in _CURVES]
+    both = [column for name in names for column in (f"mean {name}", f"SD {name}")]
+    columns = (*keys, "percent of stance", "persons" if person else "files", *both)
+    return Table("stance_curves", "Forces over stance", columns, tuple(rows))

@@ -1,0 +1,1 @@
+"""Steps: events, required friction, slips, and whether a step can be believed."""

@@ -1,0 +1,361 @@
+"""Required friction (RCOF) of a step, every convention named."""
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.presentation import Presentable, Table
+
+from ..recording.axes import Axes
+from ..recording.measurement import Flag, Measurement, remark
+from ..recording.plates import baseline_words, plate_axes, up_from_normal
+from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
+from ..recording.trial import Plate, Trial
+from .events import Stance, stances
+from .likelihood import impossible
+from .plausibility import (
+    baseline_error,
+    judged_features,
+    other_foot_flags,
+    rcof_flags,
+    step_flags,
+)  # fmt: skip
+from .slips import Outcome, Slip, slip_of
+from .walkway import Walkway, walkway_of
+
+PEAKS = {
+    "largest-local-maximum": "largest local maximum",
+    "first-local-maximum": "first local maximum",
+    "after-10-percent": 'largest local maximum after 10 % of stance (the classical "peak 3")',
+    "plain-maximum": "largest value, local maximum or not",
+}
+SHEARS = {
+    "resultant": "resultant of both shear components",
+    "anterior-posterior": "shear along the walking direction only",
+}
+_TILT = math.radians(1.0)  # plates are levelled better than that; it shifts the ratio by 0.017
+
+
+@dataclass(frozen=True, slots=True)
+class RcofDefinition:
+    """What "required coefficient of friction" means; each choice goes with every number.
+
+    ``filter``: low-pass of the forces. ``gate``: the normal force must have passed this (N), or
+    ``gate_body_weight`` (share of body weight) when that is given. ``shear``: a key of ``SHEARS``.
+    ``peak``: a key of ``PEAKS``. ``braking``: only while the floor pushes the foot backward (the
+    foot pushes the floor forward). ``part``: share of the stance, from contact, that is searched.
+    """
+
+    filter: LowPass = field(default_factory=lambda: FORCE_FILTER)
+    gate: float = 100.0
+    gate_body_weight: float | None = None
+    shear: str = "resultant"
+    peak: str = "largest-local-maximum"
+    braking: bool = True
+    part: float = 0.5
+
+    def __post_init__(self) -> None:
+        if self.shear not in SHEARS:
+            raise unknown_name("shear", self.shear, SHEARS, where="rcof.shear")
+        if self.peak not in PEAKS:
+            raise unknown_name("peak", self.peak, PEAKS, where="rcof.peak")
+        if not 0 < self.part <= 1:
+            raise InputError(f"part {self.part}", where="rcof.part", allowed="above 0, up to 1")
+        if not self.gate > 0 or (self.gate_body_weight is not None and self.gate_body_weight <= 0):
+            raise InputError("the gate must be above zero", where="rcof.gate")
+
+    def conventions(self) -> dict[str, str]:
+        """Return the choices in words."""
+        share = self.gate_body_weight
+        gate = f"{self.gate:g} N" if share is None else f"{100 * share:g} % of body weight"
+        direction = "while the reaction on the foot points backward (foot pushes forward)"
+        return {
+            "filter": str(self.filter),
+            "gate": f"normal force above {gate}",
+            "shear": SHEARS[self.shear],
+            "peak": PEAKS[self.peak],
+            "direction": direction if self.braking else "any",
+            "searched": f"first {100 * self.part:g} % of the stance",
+        }
+
+
+DEFINITIONS: dict[str, RcofDefinition] = {
+    "default": RcofDefinition(),
+    "first-maximum": RcofDefinition(peak="first-local-maximum"),
+    "peak-3": RcofDefinition(peak="after-10-percent"),
+    "anterior-posterior": RcofDefinition(shear="anterior-posterior"),
+    "plain-maximum": RcofDefinition(peak="plain-maximum", braking=False),
+    "gate-50": RcofDefinition(gate=50.0),
+    "gate-body-weight": RcofDefinition(gate_body_weight=0.15),
+    "corrected-cutoff": RcofDefinition(filter=LowPass("butterworth-4-zero-phase-corrected")),
+    "eighth-order": RcofDefinition(filter=LowPass("butterworth-8-zero-phase")),
+    "one-pass": RcofDefinition(filter=LowPass("butterworth-4-one-pass")),
+    "unfiltered": RcofDefinition(filter=LowPass("none")),
+}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class RequiredFriction(Presentable):
+    """Required friction of one stance, with what a figure needs.
+
+    ``time`` (n,), ``ratio`` (n,) and ``normal`` (n,) cover the stance; ``peak_time`` and
+    ``gate_time`` are NaN when there is no value. ``slip`` is what the heel did, None without its
+    marker.
+    """
+
+    measurement: Measurement
+    stance: Stance
+    time: np.ndarray
+    ratio: np.ndarray
+    normal: np.ndarray
+    peak_time: float = math.nan
+    gate_time: float = math.nan
+    slip: Slip | None = None
+
+    @property
+    def verdict(self) -> str:
+        """ "accepted", "caution" (a flag matters) or "rejected"."""
+        if self.measurement.value is None:
+            return "rejected"
+        return "caution" if self.measurement.caution_flags else "accepted"
+
+    def __repr__(self) -> str:
+        value = self.measurement.value
+        number = self.measurement.reason[:60] if value is None else f"RCOF {value:.3f}"
+        return f"<RequiredFriction {self.stance.label}: {number}, {self.verdict}>"
+
+    def headline(self) -> tuple[str, ...]:
+        """Return the step's RCOF or why it has none."""
+        return (f"{self.stance.label}: {self.verdict}.", *self.measurement.headline())
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return the flags of the number that matter, in words."""
+        return self.measurement.cautions()
+
+    def table(self) -> Table:
+        """Return the step with its number, flags and conventions."""
+        stance, own = self.stance, self.measurement.table()
+        rows: list[tuple[Any, ...]] = [
+            ("verdict", self.verdict),
+            ("contact (s)", stance.contact),
+            ("toe off (s)", stance.toe_off),
+            ("foot", stance.side),
+            ("peak force (N)", stance.peak),
+            ("peak of the ratio (s after contact)", self.peak_time - stance.contact),
+        ]
+        return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *own.rows])
+
+
+def required_friction(
+    walk: Trial | Walkway,
+    stance: Stance,
+    definition: RcofDefinition | None = None,
+    *,
+    checked: bool = True,
+) -> RequiredFriction:
+    """Return the required friction (RCOF) of one stance: a peak of shear over normal force.
+
+    A rejected stance gives "not estimated" with the reason of its rejection, and so does a step
+    whose heel slides: there the ratio is the available friction. The uncertainty holds the
+    baseline, the readings of the filter's name and the plate's specification.
+
+    ``checked``: look whether the heel slides and whether signals and result are plausible; without
+    it only the number is taken.
+
+    InputError: the filter does not fit the sampling rate.
+
+    Source: definitions collected from Redfern 2001, Chang 2011, Beschorner 2016 and others; the
+    default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.
+    """
+    definition = definition or DEFINITIONS["default"]
+    walk = walkway_of(walk)
+    axes, weight, plate = walk.axes, walk.weight, walk.plate(stance.plate)
+    choices = {
+        **definition.conventions(),
+        "baseline": baseline_words(plate),
+        "walking direction": stance.direction.explanation,
+        **walk.surface(stance.plate, stance.contact),
+    }
+    slip: Slip | None = None
+
+    def without(reason: str) -> RequiredFriction:
+        missing, empty = Measurement.not_estimated("rcof", reason, conventions=choices), np.empty(0)
+        return RequiredFriction(missing, stance, empty, empty, empty, slip=slip)
+
+    if not stance.accepted or stance.walking is None:
+        return without(stance.reason or "no walking direction")
+    if checked and stance.heel:
+        slip = slip_of(walk, stance)
+        if slip.slides:
+            speed, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
+            return without(
+                f"the heel slides at {speed:.2f} m/s over {way:.0f} mm: the ratio is available "
+                "friction (ACOF), not required"
+            )
+    gate = definition.gate
+    if definition.gate_body_weight is not None:
+        if weight is None:
+            return without("the gate is a share of body weight and the mass is not known")
+        gate = definition.gate_body_weight * weight.newtons
+    features = judged_features(walk, stance) if checked else {}
+    reason = impossible(features)
+    if reason:
+        return without(reason)
+    surface = axes.ramp.surface(axes.up, stance.walking)
+    try:
+        curves = _curves(plate, stance, definition, surface)
+    except DataError as error:
+        return without(error.what)
+    normal, ratio, along = curves
+    time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
+    passed = np.flatnonzero(normal > gate)
+    if not len(passed):
+        return without(f"the normal force never passes {gate:.0f} N")
+    at = _peak(definition, ratio, _allowed(definition, normal, along, gate))
+    if at is None:
+        return without(f"no {PEAKS[definition.peak]} while the gate is passed")
+    value = float(ratio[at])
+    flags = plate.flags + stance.flags + _tilt_flags(plate, stance, axes)
+    after = 1e3 * (at - passed[0]) / plate.rate
+    if after < 2.0:
+        text = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
+        flags += (remark(text),)
+    uncertainty, parts = None, "not estimated"
+    if checked:
+        flags += step_flags(walk, stance, definition.filter, features)
+        flags += rcof_flags(value, axes.ramp)
+        if slip is not None and slip.outcome is Outcome.MICROSLIP:
+            flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
+        uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
+    unasked, choices = "" if checked else "not asked for", {**choices, "uncertainty": parts}
+    once = tuple(dict.fromkeys(flags))
+    measurement = Measurement(
+        "rcof", value, "1", uncertainty, unasked, flags=once, conventions=choices
+    )
+    instants = float(time[at]), float(time[passed[0]])
+    return RequiredFriction(measurement, stance, time, ratio, normal, *instants, slip)
+
+
+def required_frictions(
+    walk: Trial | Walkway, definition: RcofDefinition | None = None
+) -> list[RequiredFriction]:
+    """Return the required friction of every stance of a trial, rejected ones with the reason."""
+    walk = walkway_of(walk)
+    return stance_frictions(walk, stances(walk), definition)
+
+
+def stance_frictions(
+    walk: Trial | Walkway, chosen: list[Stance], definition: RcofDefinition | None = None
+) -> list[RequiredFriction]:
+    """Return the required friction of the stances given, each compared with the others."""
+    walk = walkway_of(walk)
+    steps = [required_friction(walk, stance, definition) for stance in chosen]
+    values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
+    for i, step in enumerate(steps):
+        friction = step.measurement
+        if friction.value is not None:
+            more = other_foot_flags(step.stance, friction.value, values)
+            steps[i] = replace(step, measurement=replace(friction, flags=friction.flags + more))
+    return steps
+
+
+def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
+    """Caution where the plate's corners slope along the walk and the ramp says otherwise.
+
+    Forces of a plate with corners stand in laboratory axes.
+    """
+    if plate.corners is None or stance.walking is None:
+        return ()
+    normal = up_from_normal(plate_axes(plate.corners)[:, 2])
+    slope = math.atan2(-float(normal @ stance.walking), float(normal @ axes.up))
+    stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
+    if abs(slope - stated) <= _TILT:
+        return ()
+    text = (
+        f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
+        f"are taken as on a slope of {math.degrees(stated):.1f} deg: is the ramp given rightly?"
+    )
+    return (Flag("plate slope", text, True, abs(slope - stated), _TILT, "rad"),)
+
+
+def _curves(
+    plate: Plate, stance: Stance, definition: RcofDefinition, surface: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return normal force, ratio and shear along the walk over the stance, (n,) each.
+
+    ``surface`` holds normal and forward tangent of the walking surface.
+    """
+    part = stance.start, stance.stop
+    force = low_passed_part(plate.force, plate.rate, definition.filter, *part)
+    up, forward = surface
+    normal = force @ up
+    shear = force - np.outer(normal, up)
+    along = shear @ forward
+    size = np.linalg.norm(shear, axis=1) if definition.shear == "resultant" else np.abs(along)
+    return normal, np.where(normal > 1.0, size / np.maximum(normal, 1.0), np.nan), along
+
+
+def _uncertainty(
+    plate: Plate,
+    stance: Stance,
+    definition: RcofDefinition,
+    surface: tuple[np.ndarray, np.ndarray],
+    gate: float,
+    at: int,
+    curves: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> tuple[float, str]:
+    """Return the standard uncertainty of one step's RCOF, and its parts in words.
+
+    Baseline: the largest effect of the unloaded level before or after the step. Filter: the range
+    between the four filters that "4th order Butterworth" can mean, as a rectangle. Plate: gain of
+    shear and of normal force, and crosstalk, each a rectangle of its specification.
+    """
+    normal, ratio, _ = curves
+    value = float(ratio[at])
+    third = math.sqrt(3.0)
+    accuracy = plate.accuracy
+    plate_part = math.hypot(math.sqrt(2.0) * accuracy.gain * value, accuracy.crosstalk) / third
+    baseline = baseline_error(plate, stance, surface[0], float(normal[at]), value)
+    readings = [value]
+    if definition.filter.kind != "none":
+        for kind in set(FILTERS) - {"none", definition.filter.kind}:
+            other = replace(definition, filter=replace(definition.filter, kind=kind))
+            load, curve, push = _curves(plate, stance, other, surface)
+            top = _peak(other, curve, _allowed(other, load, push, gate))
+            if top is not None:
+                readings.append(float(curve[top]))
+    filtering = (max(readings) - min(readings)) / math.sqrt(12.0)
+    words = (
+        f"baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate "
+        f"{plate_part:.4f} (gain {100 * accuracy.gain:g} %, crosstalk {100 * accuracy.crosstalk:g} "
+        f"%, {accuracy.source})"
+    )
+    return math.hypot(baseline, filtering, plate_part), words
+
+
+def _allowed(
+    definition: RcofDefinition, normal: np.ndarray, along: np.ndarray, gate: float
+) -> np.ndarray:
+    allowed = normal > gate
+    allowed[round(definition.part * len(normal)) :] = False
+    if definition.peak == "after-10-percent":
+        allowed[: round(0.1 * len(normal))] = False
+    if definition.braking:
+        allowed &= along < 0
+    return allowed
+
+
+def _peak(definition: RcofDefinition, ratio: np.ndarray, allowed: np.ndarray) -> int | None:
+    top = np.isfinite(ratio)
+    if definition.peak != "plain-maximum":
+        filled = np.nan_to_num(ratio, nan=0.0)
+        top = np.zeros(len(ratio), dtype=bool)
+        top[1:-1] = (filled[1:-1] > filled[:-2]) & (filled[1:-1] >= filled[2:])
+    candidates = np.flatnonzero(allowed & top)
+    if not len(candidates):
+        return None
+    first = definition.peak == "first-local-maximum"
+    return int(candidates[0 if first else np.argmax(ratio[candidates])])

@@ -1,0 +1,283 @@
+"""The walk around a step, curves over stance, and what happens around a slip."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..recording.measurement import Flag
+from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, low_passed_part
+from ..recording.trial import Marker, Trial
+from .events import Stance
+from .slips import OutcomeLimits, Slip, heel_motion
+from .walkway import Walkway, walkway_of
+
+FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
+PERCENT = np.arange(101)
+_FOOT_FILTER = LowPass(cutoff=10.0)
+
+
+@dataclass(frozen=True, slots=True)
+class GaitContext:
+    """What a reviewer asks about a step; SI, None where it was not recorded.
+
+    ``walking_speed`` of the body during the stance; ``step_length`` along the walk and
+    ``step_time`` since the other foot's contact; ``cadence`` 1 / step time (steps a second);
+    ``foot_angle`` between sole and floor at contact, toe up positive; ``heel_speed`` of the heel
+    at contact, in the plane of the floor; ``belt_speed`` of a treadmill under the foot. On a belt
+    all of them are over the belt.
+    """
+
+    walking_speed: float | None = None
+    step_length: float | None = None
+    step_time: float | None = None
+    cadence: float | None = None
+    foot_angle: float | None = None
+    heel_speed: float | None = None
+    belt_speed: float | None = None
+
+
+def gait_context(walk: Trial | Walkway, stance: Stance, stances: Sequence[Stance]) -> GaitContext:
+    """Return the walk around one of the ``stances`` of a trial, as seen from its surface."""
+    walk = walkway_of(walk)
+    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
+    length, time = _step(walk, stance, stances)
+    angle, belt = foot_angle(walk, stance), walk.belts.get(stance.plate)
+    return GaitContext(
+        walking_speed=None if body is None else _number(float(np.linalg.norm(body))),
+        step_length=length,
+        step_time=time,
+        cadence=1.0 / time if time else None,
+        foot_angle=None if angle is None else _number(float(angle[1][0])),
+        heel_speed=heel_speed(walk, stance),
+        belt_speed=None if belt is None else belt.speed(stance.contact),
+    )
+
+
+def heel_speed(walk: Trial | Walkway, stance: Stance) -> float | None:
+    """Return the heel's speed at contact in the plane of the floor (m/s), None where unknown."""
+    walk = walkway_of(walk)
+    heel = _marker(walk, stance.heel, stance)
+    if heel is None or heel.times is not None:
+        return None
+    motion = heel_motion(heel, walk.up)
+    return _number(float(np.interp(stance.contact, motion.time, motion.speed)))
+
+
+def _marker(walk: Walkway, name: str | None, stance: Stance) -> Marker | None:
+    """A marker as seen from the surface under a stance; None without a name."""
+    return walk.marker(name, stance.plate, stance.contact) if name else None
+
+
+def _step(
+    walk: Walkway, stance: Stance, stances: Sequence[Stance]
+) -> tuple[float | None, float | None]:
+    """Return length and time since the contact of the other foot (0.25 to 1.5 s before)."""
+    before = [
+        other
+        for other in stances
+        if 0.25 < stance.contact - other.contact < 1.5
+        and {other.side, stance.side} == {"left", "right"}
+    ]
+    if not before:
+        return None, None
+    other = max(before, key=lambda one: one.contact)
+    time = stance.contact - other.contact
+    heels = [(_marker(walk, one.heel, stance), one) for one in (other, stance)]
+    if stance.walking is None:
+        return None, time
+    first, second = (_standing_place(heel, one) for heel, one in heels)
+    return _number(float((second - first) @ stance.walking)), time
+
+
+def _standing_place(heel: Marker | None, stance: Stance) -> np.ndarray:
+    """Median place (3,) of a heel between 10 and 40 % of its stance; NaN where it is not seen."""
+    if heel is None:
+        return np.full(3, np.nan)
+    share = (heel.time - stance.contact) / max(stance.duration, 1e-9)
+    inside = (share > 0.1) & (share < 0.4) & ~heel.missing
+    return np.median(heel.positions[inside], axis=0) if inside.sum() > 2 else np.full(3, np.nan)
+
+
+def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return times (n,) from contact to toe off and the angle of sole and floor (rad), or None.
+
+    From the line heel marker to toe marker of the same side, low-passed at 10 Hz, against its
+    angle while the foot lies flat (30 to 50 % of stance).
+    """
+    walk = walkway_of(walk)
+    heel, toe = _marker(walk, stance.heel, stance), _toe(walk, stance.side, stance)
+    if heel is None or toe is None or stance.walking is None:
+        return None
+    if len(heel.positions) != len(toe.positions) or heel.rate != toe.rate or heel.times is not None:
+        return None
+    line, _ = bridged(toe.positions - heel.positions, round(0.1 * heel.rate))
+    near = (heel.time > stance.contact - 0.2) & (heel.time < stance.toe_off + 0.2)
+    time, line = heel.time[near], line[near]
+    if len(line) < 30 or not np.isfinite(line).all():
+        return None
+    if heel.rate > 2.3 * _FOOT_FILTER.cutoff:
+        line = low_passed(line, heel.rate, _FOOT_FILTER)
+    tilt = np.unwrap(np.arctan2(line @ walk.up, line @ stance.walking))
+    share = (time - stance.contact) / stance.duration
+    flat = (share > FLAT[0]) & (share < FLAT[1])
+    if not flat.any():
+        return None
+    steps = np.arange(stance.contact, stance.toe_off, 1.0 / heel.rate)
+    return steps, np.interp(steps, time, tilt - np.median(tilt[flat]))
+
+
+def stance_curves(
+    walk: Trial | Walkway, stance: Stance, ratio: np.ndarray, low_pass: LowPass
+) -> dict[str, np.ndarray]:
+    """Return forces (N) and ratio at 0, 1 ... 100 % of a stance, (101,) each.
+
+    ``vertical`` (on a ramp: normal to it), ``braking`` (positive when the floor pushes backward),
+    ``to the left``, ``ratio``.
+    """
+    walk = walkway_of(walk)
+    plate, axes = walk.plate(stance.plate), walk.axes
+    force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
+    walking = stance.walking if stance.walking is not None else np.zeros(3)
+    normal, forward = axes.ramp.surface(axes.up, walking)
+    curves = {
+        "vertical": force @ normal,
+        "braking": -(force @ forward),
+        "to the left": force @ np.cross(axes.up, walking),
+        "ratio": np.nan_to_num(ratio),
+    }
+    share = np.linspace(0.0, 100.0, len(force))
+    return {name: np.interp(PERCENT, share, values) for name, values in curves.items()}
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+FALL = 0.8  # of the pelvis's height before contact; assumed: a recovering walker squats less
+_RISEN = 0.93  # of it, at which the walker stands again; assumed
+_AFTER = 1.5  # s looked at after contact
+_TOE_FIRST = np.radians(-5.0)
+_PELVIS = re.compile(r"asis?$|psis?$|pelv|sacr|troch|hip$|(^|[ _.:\-])[lr]?v?sac", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class SlipCourse:
+    """How a slip went on; lengths in m, None where markers don't tell.
+
+    ``body`` is "recovery", "fall" or empty, with the reason in ``body_reason``; ``toe_slip`` the
+    way of the toe between 40 and 80 % of a stance whose heel did not slide, ``trailing_slip``
+    that of the other foot while it stood, between contact and the slip's end; ``misstep`` says in
+    words how the foot came down wrongly.
+    """
+
+    body: str = ""
+    body_reason: str = ""
+    toe_slip: float | None = None
+    trailing_slip: float | None = None
+    misstep: str = ""
+    flags: tuple[Flag, ...] = ()
+
+
+def slip_course(
+    walk: Trial | Walkway, stance: Stance, slip: Slip, limits: OutcomeLimits | None = None
+) -> SlipCourse:
+    """Return what happened around a slip (or a step without one)."""
+    walk, limits = walkway_of(walk), limits or OutcomeLimits()
+    body, why = _body(walk, slip)
+    toe = None if slip.slides else _toe_way(walk, stance)
+    trailing = _trailing_way(walk, stance, slip)
+    misstep = _misstep(walk, stance)
+    flags = []
+    for name, way, text in (
+        ("toe slip", toe, "the toe slides by {:.0f} mm: a toe slip"),
+        ("trailing foot", trailing, "the trailing foot slides by {:.0f} mm"),
+    ):
+        if way is not None and way > limits.microslip:
+            flags.append(Flag(name, text.format(1e3 * way), True, way, limits.microslip, "m"))
+    if misstep:
+        flags.append(Flag("misstep", f"misstep: {misstep}"))
+    return SlipCourse(body, why, toe, trailing, misstep, tuple(flags))
+
+
+def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
+    """Recovery or fall by the height of the pelvis's markers."""
+    if not slip.slides:
+        return "", "no slide to recover from"
+    markers = [
+        marker
+        for name, marker in walk.trial.markers.items()
+        if _PELVIS.search(name.rsplit(":", 1)[-1].strip()) and marker.times is None
+    ]
+    if not markers:
+        return "", "no marker of the pelvis"
+    time = markers[0].time
+    heights = np.array([m.positions @ walk.up for m in markers if len(m.positions) == len(time)])
+    seen = np.isfinite(heights).any(axis=0)
+    if not seen.any():
+        return "", "no marker of the pelvis is seen"
+    height = np.full(len(time), np.nan)
+    height[seen] = np.nanmean(heights[:, seen], axis=0)
+    before = height[(time > slip.contact - 0.6) & (time < slip.contact)]
+    after = height[(time >= slip.contact) & (time < slip.contact + _AFTER)]
+    if not (np.isfinite(before).any() and np.isfinite(after).any()):
+        return "", "the pelvis is not seen before and after contact"
+    usual, lowest = float(np.nanmedian(before)), float(np.nanmin(after))
+    share = f"the pelvis goes down to {100 * lowest / usual:.0f} % of its height"
+    if lowest < FALL * usual:
+        return "fall", f"{share}; a fall below {100 * FALL:.0f} % (assumed)"
+    if float(after[np.isfinite(after)][-1]) < _RISEN * usual:
+        return "", f"{share} and is not up again when the record ends"
+    return "recovery", share
+
+
+def _toe_way(walk: Walkway, stance: Stance) -> float | None:
+    marker = _toe(walk, stance.side, stance)
+    begin, end = (stance.contact + share * stance.duration for share in (0.4, 0.8))
+    return None if marker is None else _way(marker, begin, end, walk.up)
+
+
+def _toe(walk: Walkway, side: str, stance: Stance) -> Marker | None:
+    return _marker(walk, None if side == "unknown" else walk.toes.get(side), stance)
+
+
+def _trailing_way(walk: Walkway, stance: Stance, slip: Slip) -> float | None:
+    other = {"left": "right", "right": "left"}.get(stance.side, "unknown")
+    marker = _toe(walk, other, stance)
+    if marker is None or not np.isfinite(slip.end):
+        return None
+    # The trailing foot stands on its toe until it lifts.
+    height = marker.positions @ walk.up
+    inside = (marker.time >= stance.contact) & (marker.time <= slip.end)
+    known = inside & np.isfinite(height)
+    if known.sum() < 3:
+        return None
+    up = known & (height > np.nanmin(height[known]) + 0.03)
+    end = float(marker.time[up][0]) if up.any() else slip.end
+    return _way(marker, stance.contact, end, walk.up)
+
+
+def _way(marker: Marker, begin: float, end: float, up: np.ndarray) -> float | None:
+    """Largest displacement (m) in the floor's plane from ``begin`` until ``end``."""
+    if marker.times is not None:
+        return None
+    path, _ = bridged(marker.positions, round(0.1 * marker.rate))
+    near = (marker.time > begin - 0.3) & (marker.time < end + 0.3)
+    path, time = path[near], marker.time[near]
+    if len(path) < 30 or not np.isfinite(path).all() or marker.rate < 2.3 * MARKER_FILTER.cutoff:
+        return None
+    path = low_passed(path, marker.rate, MARKER_FILTER)
+    flat = path - np.outer(path @ up, up)
+    inside = (time >= begin) & (time <= end)
+    if inside.sum() < 2:
+        return None
+    return float(np.linalg.norm(flat[inside] - flat[inside][0], axis=1).max())
+
+
+def _misstep(walk: Walkway, stance: Stance) -> str:
+    angle = foot_angle(walk, stance)
+    if angle is not None and angle[1][0] < _TOE_FIRST:
+        return f"the toe comes down first ({np.degrees(angle[1][0]):.0f} deg)"
+    return ""

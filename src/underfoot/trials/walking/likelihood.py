@@ -1,0 +1,117 @@
+"""How likely a sound step looks like this one: each feature against recorded steps, both sides."""
+
+import csv
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from ..recording.measurement import Flag, remark
+
+UNLIKELY = 0.002  # of sound steps lie as far out; 0.05 over some 25 features, before any fault
+IMPOSSIBLE = 1e-6  # for features that mechanics bounds
+_NEEDS = {
+    "mass": ("body mass", "a gain of the normal force"),
+    "pelvis": ("pelvis markers with a centre of pressure", "a gain or tilt of the shear"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """Distribution of one feature over recorded steps: a normal one, known from ``persons``.
+
+    ``logarithm``: of the natural logarithm. ``bound``: mechanics, not habit, sets it: a value that
+    is impossible rejects the step. ``needs`` names what a recording must hold ("mass", "pelvis").
+    """
+
+    feature: str
+    mean: float
+    sd: float
+    persons: int
+    steps: int
+    logarithm: bool
+    bound: bool
+    needs: str
+    source: str
+
+    def likelihood(self, value: float) -> float:
+        """Return the share of sound steps that lie as far from the mean as ``value``, two-sided.
+
+        Student's t of a new step after ``steps`` with mean and deviation estimated from
+        ``persons``: t = (x - mean) / (sd sqrt(1 + 1 / persons)), steps - 1 degrees of freedom.
+        """
+        from scipy.special import stdtr
+
+        t = abs(value - self.mean) / (self.sd * math.sqrt(1.0 + 1.0 / self.persons))
+        return float(2.0 * stdtr(self.steps - 1, -t))
+
+    def limit(self, value: float) -> float:
+        """Return the value on the same side whose likelihood is ``UNLIKELY``."""
+        from scipy.special import stdtrit
+
+        t = float(stdtrit(self.steps - 1, 1.0 - 0.5 * UNLIKELY))
+        reach = t * self.sd * math.sqrt(1.0 + 1.0 / self.persons)
+        return self.mean + math.copysign(reach, value - self.mean)
+
+    def shown(self, value: float) -> float:
+        """Return a value of the feature as people read it."""
+        return math.exp(value) if self.logarithm else value
+
+
+@cache
+def references() -> tuple[Reference, ...]:
+    """Return the packaged references, learned by ``python -m benchmarks.walk_screen --learn``."""
+    text = (files("underfoot") / "data" / "step_features.csv").read_text(encoding="utf-8")
+    rows = csv.DictReader(io.StringIO(text))
+    return tuple(
+        Reference(
+            row["feature"], float(row["mean"]), float(row["sd"]), int(row["persons"]),
+            int(row["steps"]), row["logarithm"] == "yes", row["bound"] == "yes", row["needs"],
+            row["source"],
+        )
+        for row in rows
+    )  # fmt: skip
+
+
+def unlikely_flags(
+    features: Mapping[str, float], known: tuple[Reference, ...] | None = None
+) -> tuple[Flag, ...]:
+    """Return a caution for each feature that is unlikely, and a remark on what can't be judged."""
+    flags = []
+    known = references() if known is None else known
+    for law in known:
+        if law.feature not in features:
+            continue
+        value = features[law.feature]
+        likelihood = law.likelihood(value)
+        if likelihood < UNLIKELY:
+            rare = (
+                f"1 step in {1.0 / likelihood:.0f}" if likelihood > 1e-5 else "no step in 100 000"
+            )
+            text = (
+                f"{law.feature} {law.shown(value):.3g}, where sound steps have "
+                f"{law.shown(law.mean):.3g}: as far out lies {rare}"
+            )
+            limit = law.shown(law.limit(value))
+            flags.append(
+                Flag(law.feature, text, True, law.shown(value), limit, "", law.source, likelihood)
+            )
+    for need, (what, missed) in _NEEDS.items():
+        if not any(one.needs == need and one.feature in features for one in known):
+            flags.append(remark(f"without {what} {missed} can't be judged"))
+    return tuple(flags)
+
+
+def impossible(features: Mapping[str, float], known: tuple[Reference, ...] | None = None) -> str:
+    """Return why a step can't be one of walking, or nothing."""
+    for one in references() if known is None else known:
+        value = features.get(one.feature)
+        if one.bound and value is not None and one.likelihood(value) < IMPOSSIBLE:
+            usual = one.shown(one.mean)
+            return (
+                f"{one.feature} {one.shown(value):.3g} is impossible (sound steps {usual:.3g}): "
+                "gain, unit or axes of the forces?"
+            )
+    return ""

@@ -1,0 +1,524 @@
+"""Is a step what it looks like? Checks of signals, markers and results, each with its limit.
+
+The limits are wide against the real steps that come with this package; where no publication is
+named, they are assumed. A flag that matters makes a step "caution".
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from underfoot.core import UnderfootError
+
+from ..recording.axes import LEVEL, DirectionSource, Ramp
+from ..recording.measurement import Flag, remark
+from ..recording.plates import plate_contacts
+from ..recording.signals import (
+    CONTACT_FORCE,
+    LowPass,
+    longest_run,
+    low_passed,
+    low_passed_part,
+    runs,
+)
+from ..recording.trial import MADE_UP, Plate
+from .events import Stance
+from .likelihood import unlikely_flags
+from .slips import contact_from_heel, heel_motion, marker_jumps
+from .step_features import VERTICAL, step_features
+from .walkway import BodyWeight, Walkway
+
+_ASSUMED = "assumed; kept by every real step that comes with this package"
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A bound of a plausible value, in ``unit``, and where it comes from."""
+
+    name: str
+    value: float
+    unit: str
+    source: str = _ASSUMED
+
+    def flag(self, measured: float, message: str) -> Flag:
+        """Return the flag of a value beyond the limit."""
+        return Flag(self.name, message, True, float(measured), self.value, self.unit, self.source)
+
+    def above(self, measured: float, message: str) -> tuple[Flag, ...]:
+        """Return the flag of a value if it lies above the limit."""
+        return (self.flag(measured, message),) if measured > self.value else ()
+
+
+RCOF = Limit(
+    "RCOF of level walking", 0.30, "1",
+    "mean 0.20 and standard deviation 0.03 between adults who walk straight on level floor "
+    "(Redfern et al. 2001, Chang et al. 2011; from memory, not verified), 3.3 of them on both "
+    "sides: 1 sound step in 1000",
+)  # fmt: skip
+LOW_RCOF = Limit("RCOF of level walking", 0.10, "1", RCOF.source)
+HIGH_PEAK = Limit("peak over body weight", 1.6, "1")
+MEAN_LOW = Limit(
+    "mean over body weight", 0.74, "1",
+    "two stances of 58 to 66 % of a stride carry body weight together: 0.76 to 0.86; 0.79 to 0.93 "
+    "in 6 recorded steps of children",
+)  # fmt: skip
+MEAN_HIGH = Limit("mean over body weight", 0.97, "1", MEAN_LOW.source)
+HUMP = Limit("single hump", 1.05, "1")  # largest mid-stance force over both humps
+LOADING_RATE = Limit("loading rate", 100.0, "1/s")
+LONG_STANCE = Limit("stance time", 1.0, "s")
+SHORT_STANCE = Limit("stance time", 0.45, "s")
+REST_JUMP = Limit("jump from rest", 0.2, "1")
+SHEAR_SPIKE = Limit("spike", 30.0, "N")
+NORMAL_SPIKE = Limit("spike", 120.0, "N")
+STEP = Limit(
+    "step of the forces", 0.03, "1",
+    "beyond the steps of 3 ms to both sides, over the mean force; up to 0.011 in 16 recorded steps",
+)  # fmt: skip
+HELD = Limit("held samples", 0.004, "s")
+STRAIGHT = Limit("straight lines", 0.03, "s", "up to 0.021 s in 16 recorded steps")
+DRAWN = Limit("samples drawn out", 0.006, "s", "forces need 150 samples a second and more")
+DROP_OUT = Limit("drop-out", 0.0, "s")
+DRIFT = Limit(
+    "baseline drift", 0.01, "1", "change of RCOF by the unloaded level before or after the step"
+)
+VIBRATION = Limit(
+    "vibration", 0.01, "1", "two standard deviations of the unloaded, filtered shear in RCOF"
+)
+SHEAR_BEFORE = Limit(
+    "shear before contact", 0.004, "1",
+    "shear over the mean force of the stance; up to 0.002 in 16 recorded steps, up to 0.007 after",
+)  # fmt: skip
+SHEAR_AFTER = Limit("shear after toe off", 0.01, "1", SHEAR_BEFORE.source)
+FILTERED = Limit(
+    "already filtered", 0.01, "1",
+    "forces at 50 to 100 Hz over those at 10 to 30 Hz: 0.05 and more in 18 unfiltered real steps, "
+    "below 0.013 in the same steps after a low-pass of 25 Hz",
+)  # fmt: skip
+TURNS = Limit(
+    "turns of the shear", 7.0, "1",
+    "maxima and minima of the shear along and across, filtered at 36 Hz, that stand out by 0.6 % "
+    "of the mean force, between 8 and 50 % of the stance; up to 7 in 16 recorded steps",
+)  # fmt: skip
+OTHER_FOOT = Limit("shear against the other foot", 1.4, "1")
+TURN = Limit("turn", math.radians(20.0), "rad")
+SHEAR_TURN = Limit(
+    "turn", math.radians(60.0), "rad",
+    "angle between braking and driving; up to 55 deg in 17 real straight steps, 106 deg in a turn",
+)  # fmt: skip
+CLIMB = Limit("climb", 0.15, "m/s")
+PLATE_HEIGHT = Limit("plate height", 0.03, "m")
+FAST = Limit("walking speed", 2.2, "m/s", "people run above 2.0 to 2.1 m/s (textbook value)")
+LATE = Limit("forces against markers", 0.06, "s")
+_LOADING = (0.08, 0.5)  # share of the stance in which the turns of the shear are counted
+_STANDS_OUT = 0.006
+_OUTSIDE = 0.004, 0.04  # s from contact or toe off in which nothing loads the plate
+_QUIET = 0.2  # s of unloaded record looked at before and after a step
+_MARGIN = 0.025  # s away from the load
+
+
+def step_flags(
+    walk: Walkway, stance: Stance, low_pass: LowPass, features: Mapping[str, float]
+) -> tuple[Flag, ...]:
+    """Return what is doubtful about signals, markers and features of one accepted step."""
+    plate = walk.plate(stance.plate)
+    forces = tuple(_force_flags(plate, stance, walk.up, walk.weight))
+    if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
+        features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
+    return (
+        *forces,
+        *_level_flags(plate, stance, walk.up, low_pass),
+        *_path_flags(walk, stance),
+        *_marker_flags(walk, stance),
+        *(unlikely_flags(features) if features else (_NOT_JUDGED,)),
+        *([] if not features or VERTICAL[0] in features else [_TOO_FAST]),
+    )
+
+
+_NOT_JUDGED = remark(
+    "likelihood not judged: recorded steps on level ground tell it neither for a ramp nor for "
+    "made-up recordings"
+)
+
+
+_FASTEST = 1.8  # m/s
+_TOO_FAST = remark(
+    f"shape of the normal force not judged: above {_FASTEST} m/s sound steps have others"
+)
+
+
+def judged_features(walk: Walkway, stance: Stance) -> dict[str, float]:
+    """Return the features of a step that recorded steps can be compared with: on level ground.
+
+    Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
+    2008) up to it fewer than 1 % look unlikely by one of them, of faster ones a half.
+    """
+    if walk.axes.ramp.angle or walk.trial.settings.get("software") == MADE_UP:
+        return {}
+    features = step_features(walk, stance)
+    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
+    if body is not None and float(np.linalg.norm(body)) > _FASTEST:
+        return {name: value for name, value in features.items() if name not in VERTICAL}
+    return features
+
+
+def rcof_flags(value: float, ramp: Ramp = LEVEL) -> tuple[Flag, ...]:
+    """Return the flag of an RCOF that walking does not need.
+
+    On a ramp the limits of level walking widen by the tangent of the angle, which is what a body
+    at rest there adds or takes off.
+    """
+    slope, ground = math.tan(abs(ramp.angle)), ramp.description.split(",")[0]
+    where = f"straight walking on a {ground}" if slope else "level, straight walking"
+    if value > RCOF.value + slope:
+        return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
+    if value < LOW_RCOF.value - slope:
+        return (LOW_RCOF.flag(value, f"RCOF {value:.2f} is less than walking needs"),)
+    return ()
+
+
+def other_foot_flags(
+    stance: Stance, shear: float, others: Sequence[tuple[Stance, float]]
+) -> tuple[Flag, ...]:
+    """Return the flag of a step whose RCOF differs from that of the recording's other plates."""
+    values = [value for other, value in others if other.plate != stance.plate]
+    if not values:
+        return ()
+    middle = float(np.median(values))
+    ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
+    words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
+    return OTHER_FOOT.above(ratio, words)
+
+
+def _force_flags(
+    plate: Plate, stance: Stance, up: np.ndarray, weight: BodyWeight | None
+) -> Iterator[Flag]:
+    part = plate.force[stance.start : stance.stop]
+    normal = part @ up
+    rate, duration = plate.rate, stance.duration
+    text = f"stance of {duration:.2f} s: is the sampling rate right?"
+    yield from LONG_STANCE.above(duration, text)
+    if duration < SHORT_STANCE.value:
+        yield SHORT_STANCE.flag(duration, f"stance of {duration:.2f} s: running, or a wrong rate")
+    thirds = len(normal) // 3
+    humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
+    middle = float(normal[thirds : 2 * thirds].max())
+    if middle > HUMP.value * humps:
+        text = "the force is largest in mid-stance: running or hopping, not walking"
+        yield HUMP.flag(middle / float(humps), text)
+    if weight is not None:
+        ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
+        yield from HIGH_PEAK.above(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
+        if not MEAN_LOW.value <= mean <= MEAN_HIGH.value:
+            limit = MEAN_LOW if mean < MEAN_LOW.value else MEAN_HIGH
+            text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
+            yield limit.flag(mean, text)
+    own = weight.newtons if weight else 0.9 * stance.peak
+    step = float(normal[0] - (plate.force @ up)[max(stance.start - 1, 0)]) / own
+    if stance.start and step > REST_JUMP.value + 100.0 / rate:
+        text = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
+        yield REST_JUMP.flag(step, text)
+    smooth = low_passed_part(
+        plate.force, rate, LowPass(cutoff=min(36.0, 0.4 * rate)), stance.start, stance.stop
+    )
+    slope = float(np.diff((smooth @ up)[: len(smooth) // 2]).max(initial=0.0)) * rate / own
+    yield from LOADING_RATE.above(slope, f"loading rate of {slope:.0f} body weights a second")
+    yield from _sample_flags(plate, stance, up)
+
+
+def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag]:
+    rate = plate.rate
+    margin = round(_MARGIN * rate)
+    part = plate.force[max(0, stance.start - margin) : stance.stop + margin]
+    normal = part @ up
+    shear = part - np.outer(normal, up)
+    spikes = [(_spike(normal[:, None], rate), NORMAL_SPIKE), (_spike(shear, rate), SHEAR_SPIKE)]
+    spikes = [(size, limit) for size, limit in spikes if size > limit.value]
+    if spikes:
+        size, limit = max(spikes, key=lambda pair: pair[0])
+        yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
+    inner = slice(margin, len(part) - margin)
+    step = _step(part[inner], rate) / max(float(normal[inner].mean()), 1.0)
+    text = f"the forces step by {100 * step:.0f} % of their mean in one sample: samples missing?"
+    yield from STEP.above(step, text)
+    still = (np.diff(part[inner], axis=0) == 0.0).all(axis=1) & (normal[inner][1:] > 50.0)
+    held = longest_run(still) + 1
+    if held >= 4 and held / rate >= HELD.value:
+        text = f"all forces stand still for {held} samples: held values"
+        yield HELD.flag(held / rate, text)
+    yield from _straight_flags(part[inner], rate)
+    firm = normal[inner]
+    edge = max(1, len(firm) // 20)
+    lost = firm[edge:-edge] < 20.0
+    text = f"the force drops out for {int(lost.sum())} samples"
+    yield from DROP_OUT.above(lost.sum() / rate, text)
+    if rate >= 150.0:
+        begin, end = stance.start - 2 * margin, stance.start + (stance.stop - stance.start) // 4
+        share = _high_share(plate.force[max(0, begin) : end], rate)
+        if share < FILTERED.value:
+            text = "nothing in the forces is faster than 25 Hz: they were filtered before"
+            yield FILTERED.flag(share, text)
+
+
+def _straight_flags(force: np.ndarray, rate: float) -> Iterator[Flag]:
+    """Flags of samples (n, 3) on straight, sloping lines: drawn between others, not measured."""
+    first, second = np.diff(force, axis=0)[1:], np.diff(force, 2, axis=0)
+    drawn = (np.abs(second) < 1e-3 * np.abs(first)) & (first != 0.0)
+    lengths = [(stop - start + 2) / rate for mask in drawn.T for start, stop in runs(mask)]
+    longest = max(lengths, default=0.0)
+    words = f"a force runs straight for {1e3 * longest:.0f} ms: a gap filled by a line"
+    yield from STRAIGHT.above(longest, words)
+    if drawn.mean() > 0.5:
+        usual = float(np.median(lengths))
+        words = f"forces lie on lines of {1e3 * usual:.0f} ms: recorded slower, then drawn out"
+        yield from DRAWN.above(usual, words)
+
+
+def _spike(values: np.ndarray, rate: float) -> float:
+    """Largest excursion (n, k) that stands out from the samples up to 2 ms to both sides.
+
+    Two samples to each side from 800 Hz on, else one: a heel's impact lasts longer.
+    """
+    reach = 2 if rate >= 800.0 else 1
+    here = values[reach:-reach]
+    before, after = here - values[: -2 * reach], here - values[2 * reach :]
+    out = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
+    return float(out.max(initial=0.0))
+
+
+def _step(force: np.ndarray, rate: float) -> float:
+    """Largest step (N) of forces (n, 3) beyond the largest ones of 3 ms to both sides.
+
+    The first and last 2 % are the foot's own.
+    """
+    reach, edge = max(2, round(0.003 * rate)), len(force) // 50
+    steps = np.abs(np.diff(force[edge : len(force) - edge], axis=0))
+    if len(steps) < 2 * reach + 1:
+        return 0.0
+    windows = np.lib.stride_tricks.sliding_window_view(steps, reach, axis=0).max(axis=2)
+    around = np.maximum(windows[: -reach - 1], windows[reach + 1 :])
+    beyond = np.maximum(steps[reach:-reach] - around, 0.0)
+    return float(np.linalg.norm(beyond, axis=1).max())
+
+
+def _high_share(force: np.ndarray, rate: float) -> float:
+    """Amplitude of the forces (n, 3) at 50 to 100 Hz over that at 10 to 30 Hz, about contact."""
+    line = np.linspace(0.0, 1.0, len(force))[:, None]
+    force = force - (force[0] + (force[-1] - force[0]) * line)
+    power = np.abs(np.fft.rfft(force * np.hanning(len(force))[:, None], axis=0)) ** 2
+    frequency = np.fft.rfftfreq(len(force), 1.0 / rate)
+    high = (frequency >= 50.0) & (frequency < min(100.0, 0.45 * rate))
+    low = (frequency >= 10.0) & (frequency < 30.0)
+    if not high.any() or not power[low].any():
+        return math.inf
+    return math.sqrt(float(power[high].mean(axis=0).sum() / power[low].mean(axis=0).sum()))
+
+
+def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.ndarray]:
+    """Return the mean forces (3,) of up to 0.2 s unloaded record before and after a step.
+
+    A side with less than 20 ms between the margins of neighbouring loads is left out.
+    """
+    rate = plate.rate
+    margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
+    free = _unloaded(plate, up, margin)
+    begin, end = max(0, stance.start - margin), stance.stop + margin
+    free[begin:end] = False
+    found = []
+    for window in (slice(max(0, begin - quiet), begin), slice(end, end + quiet)):
+        force = plate.force[window][free[window]]
+        force = force[np.isfinite(force).all(axis=1)]
+        if len(force) >= max(5, 0.02 * rate):
+            found.append(force.mean(axis=0))
+    return found
+
+
+def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
+    """Mask of the samples (n,) further than ``margin`` from any contact."""
+    free = np.ones(len(plate.force), dtype=bool)
+    for start, stop in plate_contacts(plate, up):
+        free[max(0, start - margin) : stop + margin] = False
+    return free
+
+
+def baseline_error(
+    plate: Plate, stance: Stance, up: np.ndarray, normal: float, rcof: float
+) -> float:
+    """Return what the unloaded level before or after a step, if not zero, does to its RCOF."""
+    effects = [
+        math.hypot(float(np.linalg.norm(level - (level @ up) * up)), rcof * float(level @ up))
+        for level in unloaded_levels(plate, stance, up)
+    ]
+    return max(effects, default=0.0) / max(normal, 1.0)
+
+
+def _turns(plate: Plate, stance: Stance, up: np.ndarray) -> int:
+    """Count the maxima and minima of the shear while the foot is loaded, along and across."""
+    from scipy.signal import find_peaks
+
+    assert stance.walking is not None  # an accepted step has one
+    low_pass = LowPass(cutoff=min(36.0, 0.4 * plate.rate))
+    force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
+    begin, end = (round(share * len(force)) for share in _LOADING)
+    least = _STANDS_OUT * float((force @ up).mean())
+    axes = stance.walking, np.cross(up, stance.walking)
+    parts = [sign * (force @ axis)[begin:end] for axis in axes for sign in (1, -1)]
+    return sum(len(find_peaks(part, prominence=least)[0]) for part in parts)
+
+
+def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass) -> Iterator[Flag]:
+    normal = 0.8 * stance.peak
+    drift = baseline_error(plate, stance, up, normal, 0.2)
+    text = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
+    yield from DRIFT.above(drift, text)
+    noise = unloaded_noise(plate, up, low_pass)
+    text = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
+    yield from VIBRATION.above(2.0 * noise / normal, text)
+    if stance.by_hand:  # who sets an instant may leave load outside
+        return
+    before, after = _shear_outside(plate, stance, up)
+    late = "the shear was shifted or filtered by itself"
+    text = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
+    yield from SHEAR_BEFORE.above(before, text)
+    text = f"shear of {100 * after:.1f} % of the mean force after the foot has left: {late}"
+    yield from SHEAR_AFTER.above(after, text)
+
+
+def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float, float]:
+    """Mean shear just before and just after a stance, against further away, over its mean force.
+
+    Where another load is near, or the record ends, there is nothing to compare: 0.
+    """
+    near, far = (round(time * plate.rate) for time in _OUTSIDE)
+    near = max(1, near)
+    mean = float((plate.force[stance.start : stance.stop] @ up).mean())
+    found = []
+    for values in (plate.force[: stance.start][::-1], plate.force[stance.stop :]):
+        close, away = values[near:far], values[far + near : 4 * far]
+        quiet = len(close) > 5 and len(away) > 10 and np.abs(away @ up).max() < CONTACT_FORCE
+        if not quiet:
+            found.append(0.0)
+            continue
+        push = close.mean(axis=0) - away.mean(axis=0)
+        found.append(float(np.linalg.norm(push - (push @ up) * up)) / mean)
+    return found[0], found[1]
+
+
+def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
+    """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
+    parts = []
+    for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
+        part = plate.force[start:stop]
+        if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
+            continue
+        try:
+            part = low_passed(part, plate.rate, low_pass)
+        except UnderfootError:
+            continue
+        line = np.linspace(-0.5, 0.5, len(part))[:, None]
+        part = part - part.mean(axis=0)
+        part = part - line * (line * part).sum(axis=0) / (line**2).sum()
+        parts.append(part - np.outer(part @ up, up))
+    if not parts:
+        return 0.0
+    return float(np.sqrt((np.concatenate(parts) ** 2).sum(axis=1).mean()))
+
+
+def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
+    axes = walk.axes
+    if stance.direction.source is DirectionSource.SHEAR:
+        yield Flag(
+            "walking direction",
+            "no markers and no centre of pressure: the walking direction comes from the shear "
+            "alone, and whether this was a walk can't be checked",
+        )
+    normal = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
+    heights = {
+        plate.name: float(plate.corners.mean(axis=0) @ normal)
+        for plate in walk.trial.plates
+        if plate.usable and plate.corners is not None
+    }
+    if stance.plate in heights:
+        away = max(abs(height - heights[stance.plate]) for height in heights.values())
+        text = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
+        yield from PLATE_HEIGHT.above(away, text)
+    turns = _turns(walk.plate(stance.plate), stance, axes.up) if stance.walking is not None else 0
+    text = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
+    yield from TURNS.above(turns, text)
+    angle = _braking_to_driving(walk, stance)
+    text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+    yield from SHEAR_TURN.above(angle, text)
+    middle = 0.5 * (stance.contact + stance.toe_off)
+    whole = walk.body_velocity(stance.plate, stance.contact, stance.toe_off, climb=True)
+    if whole is None:
+        return
+    climb = float(whole @ axes.up)
+    speed = float(np.linalg.norm(whole - climb * axes.up))
+    slope = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
+    expected = speed * math.tan(slope)
+    ground = f", the ramp at {expected:.2f} m/s" if slope else ": stairs, a ramp or a jump"
+    yield from CLIMB.above(abs(climb - expected), f"the body rises at {climb:.2f} m/s{ground}")
+    yield from FAST.above(speed, f"{speed:.1f} m/s is faster than people walk")
+    first = walk.body_velocity(stance.plate, stance.contact, middle)
+    second = walk.body_velocity(stance.plate, middle, stance.toe_off)
+    if first is None or second is None:
+        return
+    if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
+        return
+    angle = _angle(first, second)
+    text = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
+    yield from TURN.above(angle, text)
+
+
+def _braking_to_driving(walk: Walkway, stance: Stance) -> float:
+    """Angle (rad) between the braking and the opposite of the driving impulse of a step."""
+    if stance.walking is None:
+        return 0.0
+    up, forward = walk.axes.ramp.gravity(walk.up, stance.walking)
+    force = walk.plate(stance.plate).force[stance.start : stance.stop]
+    shear = force - np.outer(force @ up, up)
+    half = len(shear) // 2
+    along = shear @ forward
+    braking = shear[:half][along[:half] < 0].sum(axis=0)
+    driving = shear[half:][along[half:] > 0].sum(axis=0)
+    return _angle(braking, -driving)
+
+
+def _angle(first: np.ndarray, second: np.ndarray) -> float:
+    size = float(np.linalg.norm(first) * np.linalg.norm(second))
+    return math.acos(min(1.0, max(-1.0, float(first @ second) / size))) if size else 0.0
+
+
+def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
+    by_hand = "side" in stance.by_hand
+    for event in walk.trial.events:
+        sides = {event.side, stance.side}
+        near = event.name == "heel contact" and abs(event.time - stance.contact) < 0.15
+        if near and sides == {"left", "right"} and not by_hand:
+            yield Flag(
+                "side",
+                f"the {stance.side} heel stands here, the file's own event at {event.time:.2f} s "
+                f"says {event.side}: markers exchanged?",
+            )
+    if not walk.heels:
+        return
+    if not stance.heel:
+        if walk.plate(stance.plate).corners is not None and not by_hand:
+            text = "no heel marker comes down on the plate: are forces and markers in time?"
+            yield Flag("foot", text)
+        return
+    heel = walk.trial.marker(stance.heel)
+    if heel.times is not None:
+        jumps = marker_jumps(heel.positions)
+    else:
+        jumps = heel_motion(heel, walk.up).jumps
+        landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
+        gap = min((abs(t - stance.contact) for t in landings), default=0.0)
+        text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
+        yield from LATE.above(gap, text)
+    near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
+    leaps = int(jumps[near].sum())
+    if leaps:
+        text = f"the heel marker leaps off its path in {leaps} frames"
+        yield Flag("marker jumps", text, True, leaps, 0.0, "1")

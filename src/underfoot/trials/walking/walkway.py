@@ -1,0 +1,180 @@
+"""A recording of walking with what is resolved once: axes, body weight, feet, belts."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from underfoot.core.constants import GRAVITY
+
+from ..recording.axes import (
+    LEVEL,
+    Axes,
+    Direction,
+    Ramp,
+    axes_of,
+    heel_candidates,
+    marker_velocity,
+    toe_candidates,
+    walking_direction,
+)  # fmt: skip
+from ..recording.plates import plate_named
+from ..recording.trial import Marker, Plate, Trial
+from .belts import Belt, belts_of
+
+_STILL = 0.5  # s of quiet standing that give body weight
+_STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
+
+
+@dataclass(frozen=True, slots=True)
+class BodyWeight:
+    """Body weight (N) and where it comes from; ``standing`` when the record itself shows it."""
+
+    newtons: float
+    source: str
+    standing: bool = False
+
+
+def body_mass(trial: Trial) -> float | None:
+    """Return the subject's mass (kg) written in the trial's settings, or None."""
+    try:
+        return float(trial.settings["body mass (kg)"])
+    except (KeyError, ValueError):
+        return None
+
+
+def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
+    """Return the body weight: from the mass in the settings, else from quiet standing, else None.
+
+    Quiet standing: half a second in which the vertical forces of all plates together vary by less
+    than 1.5 % and push across by less than 3 % (on plates that measure along a ramp of angle a:
+    across by the tangent of a, and the weight is normal force / cos a); the heaviest such level
+    counts.
+    """
+    mass = body_mass(trial)
+    if mass is not None:
+        return BodyWeight(mass * GRAVITY, f"{mass:g} kg")
+    axes = axes or axes_of(trial)
+    up, ramp = axes.up, axes.ramp
+    tilt = abs(ramp.angle) if ramp.plate_frame == "surface" else 0.0
+    usable = [plate for plate in trial.plates if plate.usable]
+    if not usable or len({(p.rate, len(p.force), p.start) for p in usable}) > 1:
+        return None
+    force = np.nan_to_num(np.sum([plate.force for plate in usable], axis=0))
+    count = round(_STILL * usable[0].rate)
+    if count < 5 or len(force) < 2 * count:
+        return None
+    normal = force @ up
+    across = force - np.outer(normal, up)
+    values = np.column_stack((normal, normal**2, across))
+    total = np.concatenate((np.zeros((1, 5)), np.cumsum(values, axis=0)))
+    rolling = (total[count:] - total[:-count]) / count
+    mean, squares = rolling[:, 0], rolling[:, 1]
+    spread = np.sqrt(np.maximum(squares - mean**2, 0.0))
+    push = np.abs(np.linalg.norm(rolling[:, 2:], axis=1) - mean * math.tan(tilt))
+    still = (mean > 200.0) & (spread < _STILL_SD * mean) & (push < _STILL_SHEAR * mean)
+    if not still.any():
+        return None
+    newtons = float(mean[still].max()) / math.cos(tilt)
+    return BodyWeight(newtons, "standing in this record", standing=True)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Walkway:
+    """A trial on its walkway; ``walkway_of`` makes one.
+
+    ``axes``: vertical, walking direction over the whole recording, slope. ``weight``: of the body,
+    None when nothing tells it. ``heels`` and ``toes``: name of the best-seen marker by side.
+    ``belts``: by the name of their plate, none on a floor. ``walking`` is
+    the axis that a person set.
+    """
+
+    trial: Trial
+    axes: Axes
+    weight: BodyWeight | None
+    heels: Mapping[str, str]
+    toes: Mapping[str, str]
+    belts: Mapping[str, Belt] = field(default_factory=dict)
+    walking: str | None = None
+
+    @property
+    def up(self) -> np.ndarray:
+        """Vertical unit vector (3,)."""
+        return self.axes.up
+
+    def plate(self, name: str) -> Plate:
+        """Return the plate of that name."""
+        return plate_named(self.trial, name)
+
+    def surface_velocity(self, plate: str, time: float) -> np.ndarray:
+        """Return the velocity (3,) of a plate's surface at a time: zero but for belts (m/s)."""
+        belt = self.belts.get(plate)
+        return np.zeros(3) if belt is None else belt.velocity(time)
+
+    def marker(self, name: str, plate: str, time: float) -> Marker:
+        """Return a marker as seen from a plate's surface, in laboratory axes at ``time`` (s)."""
+        marker = self.trial.marker(name)
+        if plate not in self.belts:
+            return marker
+        way = np.outer(marker.time - time, self.surface_velocity(plate, time))
+        return replace(marker, positions=marker.positions - way)
+
+    def body_velocity(
+        self, plate: str, begin: float, end: float, *, climb: bool = False
+    ) -> np.ndarray | None:
+        """Return the velocity (3,) of the body over a plate's surface between two times (m/s).
+
+        In the plane of the floor, or with its vertical part (``climb``); None without markers.
+        """
+        body = marker_velocity(self.trial, begin, end, None if climb else self.up)
+        return None if body is None else body - self.surface_velocity(plate, begin)
+
+    def surface(self, plate: str, time: float) -> dict[str, str]:
+        """Return the surface under a plate's contact (level, a ramp, a belt), a belt's speed."""
+        belt, ground = self.belts.get(plate), self.axes.ramp.description
+        if belt is None:
+            return {"surface": ground}
+        return {"surface": f"treadmill belt, {ground}", "belt": belt.speed_text(time)}
+
+    @property
+    def surfaces(self) -> str:
+        """The surface of every plate in words."""
+        belts = [
+            f"{plate}: treadmill belt at {belt.speed_text(belt.times.mean())}"
+            for plate, belt in self.belts.items()
+        ]
+        return "; ".join([*belts, self.axes.ramp.description])
+
+    def direction(self, plate: Plate, start: int, stop: int) -> Direction:
+        """Return the walking direction during a contact and how it was found."""
+        if plate.name in self.belts and not self.walking:
+            return self.belts[plate.name].direction(plate.start + start / plate.rate)
+        return walking_direction(self.trial, plate, start, stop, self.up, self.walking)
+
+
+def walkway_of(
+    walk: Trial | Walkway,
+    *,
+    vertical: str | None = None,
+    walking: str | None = None,
+    ramp: Ramp = LEVEL,
+    heels: Mapping[str, str] | None = None,
+) -> Walkway:
+    """Return a trial with its axes, body weight, feet and belts resolved; a walkway as it is.
+
+    ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; ``heels`` names the heel
+    markers by side; ``ramp`` is the slope of the walkway. An axis that is none is an InputError, a
+    heel that is not in the trial a DataError.
+    """
+    if isinstance(walk, Walkway):
+        return walk
+    axes = axes_of(walk, vertical=vertical, walking=walking, ramp=ramp)
+    best = (
+        {side: names[0] for side, names in found.items() if names}
+        for found in (heel_candidates(walk, heels), toe_candidates(walk))
+    )
+    heel, toe = best
+    feet = [walk.marker(name) for name in (*heel.values(), *toe.values())]
+    belts = belts_of(walk, axes.up, [foot for foot in feet if foot.times is None])
+    return Walkway(walk, axes, body_weight(walk, axes), heel, toe, belts, walking)
