@@ -80,7 +80,9 @@ class MovedFinder(MetaPathFinder, Loader):
         """Return the module at the new path."""
         home = new_home(spec.name) or ""
         warnings.warn(
-            f"{spec.name} is now {home}; the old path ends with {UNTIL}", FutureWarning, stacklevel=2
+            f"{spec.name} is now {home}; the old path ends with {UNTIL}",
+            FutureWarning,
+            stacklevel=2,
         )
         module = import_module(home)
         spec.loader_state = module.__spec__

@@ -118,14 +118,19 @@ class RiskAssessment(Presentable):
             f"available COF of {value_text('cof', scalars['cof'])}.",
             str(self.limit),
         ]
-        if self.missing_friction:
+        if probability <= self.target:
+            sentences.append(
+                f"Friction is sufficient for a slip probability below {percent(self.target)}."
+            )
+        elif self.missing_friction is None:
+            sentences.append(
+                f"No COF gives a slip probability of {percent(self.target)} while so little is "
+                "known of the friction."
+            )
+        else:
             sentences.append(
                 f"A slip probability of {percent(self.target)} needs a COF higher by "
                 f"{self.missing_friction:.2f}."
-            )
-        elif self.missing_friction == 0.0:
-            sentences.append(
-                f"Friction is sufficient for a slip probability below {percent(self.target)}."
             )
         return tuple(sentences)
 
