@@ -45,7 +45,13 @@ from underfoot.core.presentation import (
 )
 from underfoot.core.threads import threads_limited
 from underfoot.friction import PairContactLaw
-from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, Pair
+from underfoot.friction.pair_contact import (
+    CONTACT_PRESSURE,
+    TERMS,
+    ContactTerms,
+    Pair,
+    UnexpectedReading,
+)
 from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
 from underfoot.friction.tread_error import tread_error
 from underfoot.slip import RcofPopulation, ReportG6, mean_of_draws, slip_chances
@@ -140,6 +146,7 @@ class Choice(Presentable):
     present: str
     effective: float
     floors_before_after: tuple[tuple[str, str, str], ...] = ()
+    outside: tuple[tuple[str, UnexpectedReading], ...] = ()
 
     def heading(self) -> str:
         """Return the title."""
@@ -193,6 +200,7 @@ class Choice(Presentable):
             "many more than people report. Compare shoes by their ratio. Steps on dry floors count "
             f"as safe; a worker takes {self.place.wet_steps:,.0f} steps a day in a fluid.",
         ]
+        lines += [f"{floor}: {told}" for floor, told in self.outside]
         twins = [
             f"{one.shoe.name} and {two.shoe.name}"
             for number, one in enumerate(self.shoes)
@@ -498,7 +506,7 @@ def chosen(
     }
     before = {name: interval(joint.between(f"roughness of floor {name}", rq))
               for name, rq in floor_rq.items()}  # fmt: skip
-    _learn(place, joint, floor_rq, new_cases)
+    outside = _learn(place, joint, floor_rq, new_cases)
     solver = _Solver(place, joint, quick, _read_floors(place, joint, floor_rq))
     shares: dict[str, dict[tuple[str, str], Array]] = {}
     worn_rate: dict[str, Array] = {}
@@ -589,7 +597,7 @@ def chosen(
     )
     return Choice(
         place, answers, tuple(levers), measurements, sources, tuple(cofs), present.name,
-        joint.fewest, _floors(place, joint, floor_rq, before),
+        joint.fewest, _floors(place, joint, floor_rq, before), outside,
     )  # fmt: skip
 
 
@@ -643,11 +651,17 @@ def _learn(
     joint: JointDraws,
     floor_rq: Mapping[str, tuple[float, float]],
     cases: Mapping[str, Any],
-) -> None:
-    """Teach the draws every reading of floors and shoes, in the order of names."""
-    for floor in sorted(place.floors, key=lambda each: each.name):
-        for one in floor.readings:
-            learn_floor(joint, floor.name, floor_rq[floor.name], one)
+) -> tuple[tuple[str, UnexpectedReading], ...]:
+    """Teach the draws every reading of floors and shoes, in the order of names.
+
+    Return the readings of floors that were not foretold.
+    """
+    outside = [
+        (floor.name, told)
+        for floor in sorted(place.floors, key=lambda each: each.name)
+        for one in floor.readings
+        for told in learn_floor(joint, floor.name, floor_rq[floor.name], one)
+    ]
     learned = []
     for shoe in sorted(place.shoes, key=lambda each: each.name):
         if any(same_shoe(shoe, other) for other in learned):
@@ -666,6 +680,7 @@ def _learn(
                 passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
+    return tuple(outside)
 
 
 def _read_floors(

@@ -145,7 +145,9 @@ class RiskAssessment(Presentable):
         ]
         return (
             *cautions(
-                outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions, model_name
+                *(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions),
+                model_name,
+                outcome.labels,
             ),
             *others,
         )
