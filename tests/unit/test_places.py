@@ -20,8 +20,8 @@ from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
 from underfoot.places.choice import chosen, slip_share
-from underfoot.places.evidence import learned, machine_scores, score
-from underfoot.places.joint import JointDraws, Reading
+from underfoot.places.evidence import floor_likeness, learned, machine_scores, score
+from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import (
     FLUIDS,
     SCALES,
@@ -229,6 +229,42 @@ def test_a_machine_of_ones_own_is_an_entry_of_the_catalogue(tmp_path):
 def test_a_machine_knows_what_another_read_of_the_floor():
     told = [method_prediction(read_case(ptv_96=ptv), "bot-3000e").median for ptv in (12, 60)]
     assert told[0] < told[1]
+
+
+@pytest.mark.parametrize("floor", ["polished_tile", "quarry_tile", None])
+def test_a_reading_is_foretold_again_and_named_where_it_was_not(floor):
+    """What is foretold of a floor holds what was read of it; a value outside is a caution."""
+    shoes, cautioned = [], []
+    for ptv in (12, 24, 40):
+        case = read_case(ptv_96=ptv)
+        case = case if floor is None else case.replace({"floor": floor})
+        told = method_prediction(case, "pendulum-96")
+        assert told.low <= ptv <= told.high
+        law = case.friction.build(resolved(case))
+        shoes.append(np.median(law.joint_draws(1000, 0)["pair"]))
+        before = method_prediction(case.replace({"friction": {"model": "pair"}}), "pendulum-96")
+        outside = not before.low <= ptv <= before.high
+        if floor is not None:  # else the reading tells which of all floors it is
+            assert bool(law.draws.outside) == outside
+            cautioned.append(outside)
+            assert any(f"read {ptv} PTV where" in text for text in told.cautions()) == outside
+    assert shoes == sorted(shoes)  # more on the pendulum, more under the shoe
+    assert floor is None or shoes[0] < 0.97 < 1.03 < shoes[-1] / shoes[0]
+    assert any(cautioned) == (floor is not None)
+
+
+def test_what_a_reading_says_of_a_shoe_is_what_machines_say_of_each_other():
+    """Nobody's shoe and pendulum read one floor; two machines did, and each laboratory less one
+    says the same.
+    """
+    assert floor_likeness() == pytest.approx(FLOOR_LIKENESS, abs=0.005)
+    for source in ("floor_testing_services", "safety_direct_coatings", "uksrg_verification"):
+        assert floor_likeness(source) == pytest.approx(FLOOR_LIKENESS, abs=0.1)
+    joint = JointDraws(count=20000)
+    one, two = (joint.beyond_roughness("hall", name) for name in "ab")
+    assert np.corrcoef(one, two)[0, 1] == pytest.approx(FLOOR_LIKENESS, abs=0.02)
+    for other in (joint.beyond_roughness("yard", "b"), joint.beyond_roughness("hall", "b2", "oil")):
+        assert np.corrcoef(one, other)[0, 1] == pytest.approx(0, abs=0.02)
 
 
 def test_a_machine_outside_its_standard_is_told_and_nothing_else_is_kept():

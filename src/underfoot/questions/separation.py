@@ -108,5 +108,6 @@ def _conditions(first: Case, second: Case) -> Iterator[tuple[str, str | float, M
             if abs(angle - first.motion.shoe_angle) > np.radians(1):
                 yield "angle", float(angle), {"motion.shoe_angle": float(angle)}
     depths = [case.value("shoe.tread.depth") or 0.0 for case in (first, second)]
-    if first.shoe.wear is None and second.shoe.wear is None and min(depths) > WORN:
-        yield "worn", WORN, {"shoe.wear": {"mode": "plane", "depth": f"{WORN!r} m"}}
+    new = not any(case.value("shoe.wear.depth") for case in (first, second))
+    if new and min(depths) > WORN:
+        yield "worn", WORN, {"shoe.wear.depth": WORN}
