@@ -167,7 +167,7 @@ _NO_NAME = set(
 
 def sourced_texts() -> Iterator[tuple[str, str]]:
     """Yield every source that code, data and pages of the physics state: the file and the text."""
-    for path in (*ROOT.glob("src/**/*.py"), *ROOT.glob("wings/*/underfoot*/**/*.py")):
+    for path in ROOT.glob("src/**/*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
                 for found in re.findall(
@@ -364,10 +364,11 @@ ROOMS = {
         "underfoot.explore.plan", "underfoot.explore.study_file",
         "underfoot.explore.goals", "underfoot.explore.result",
         "underfoot.explore.surrogate", "underfoot.explore.effects",
-        "underfoot.explore.posterior",
+        "underfoot.explore.posterior", "underfoot.places.choice", "underfoot.places.machines",
     ),
     "Measurements": (
-        "underfoot.trials", "underfoot.trials.recording.protocols", "underfoot.trials.machines.stribeck_fit",
+        "underfoot.trials", "underfoot.trials.recording.protocols",
+        "underfoot.trials.machines.stribeck_fit", "underfoot.trials.machines.compression",
         "underfoot.trials.machines.pressure_map", "underfoot.trials.study.folder",
         "underfoot.trials.study.file_result", "underfoot.trials.study.study",
         "underfoot.trials.study.tables", "underfoot.trials.machines.pin_on_disk",

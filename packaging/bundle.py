@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "out" / "bundle"
 PROGRAM = FOLDER / "underfoot" / ("underfoot.exe" if sys.platform == "win32" else "underfoot")
-EXTRAS = ("", "app", "cad", "study", "paraview", "recordings")
+EXTRAS = ("", "app", "cad", "study", "trials", "paraview", "recordings")
 """Extras of the package that the program has; MKL (``fast``) would add 400 MB."""
 LEFT_OUT = (
     "babel", "dask", "distributed", "duckdb", "hypothesis", "netgen", "ngsolve", "playwright",
@@ -45,11 +45,6 @@ def make() -> None:
     ]
     for name in ("underfoot", "SALib", "pymoo.functions"):  # parts are imported by name
         options += [f"--collect-submodules={name}"]
-    for wing in sorted((ROOT / "wings").iterdir()):
-        options += [f"--paths={wing}"]  # an editable wing is not found by its name alone
-        options += [f"--collect-submodules=underfoot_{wing.name}"]
-        options += [f"--collect-data=underfoot_{wing.name}"]
-        options += [f"--copy-metadata=underfoot-{wing.name.replace('_', '-')}"]
     options += ["--collect-data=underfoot", "--collect-data=nicegui", "--copy-metadata=underfoot"]
     for line in metadata.requires("underfoot") or ():
         name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == .(\w+)", line)
@@ -72,9 +67,7 @@ def make() -> None:
 
 def _optional() -> list[str]:
     """Return the modules that are imported by name where they are installed."""
-    texts = [
-        path.read_text("utf-8") for part in ("src", "wings") for path in (ROOT / part).rglob("*.py")
-    ]
+    texts = [path.read_text("utf-8") for path in (ROOT / "src").rglob("*.py")]
     found = set(re.findall(r'optional_module\(\s*"([\w.]+)"', "".join(texts)))
     found |= {f"matplotlib.backends.backend_{form}" for form in ("agg", "pdf", "svg")}
     return sorted(name for name in found if name.partition(".")[0] not in LEFT_OUT)

@@ -20,7 +20,7 @@ from queue import Queue
 from typing import NamedTuple
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-PARTS = ("src", "wings", "tests", "examples", "schema", "docs", "pyproject.toml", "README.md")
+PARTS = ("src", "tests", "examples", "schema", "docs", "pyproject.toml", "README.md")
 TIMEOUT = 600  # s; a change that never ends is seen
 
 
@@ -62,9 +62,10 @@ TESTS = {
 }
 SAMPLED, SPREAD = "friction/sampled_cof.py", "friction/propagation.py"
 PAIR, EDGES = "friction/pair_contact.py", "sole_contact/lug_edges.py"
-WORN, SLIDE, SLIPS = "shoe/worn/archard.py", "trials/slip_friction.py", "trials/slips.py"
+WORN, SLIDE = "shoe/worn/archard.py", "trials/machines/slip_friction.py"
+SLIPS = "trials/walking/slips.py"
 STRIKE, PATIR, WALKER = "film/pad_strike.py", "film/patir_cheng_1978.py", "slip/dynamics/walker.py"
-LAW, TREADS = "wings/studies/underfoot.studies/pair_law.py", "friction/tread_error.py"
+LAW, TREADS = "studies/pair_law.py", "friction/tread_error.py"
 
 # what earlier tests let pass
 SURVIVORS = (
@@ -189,7 +190,7 @@ def copied(folder: Path) -> Path:
 
 def passes(folder: Path, tests: tuple[str, ...]) -> bool:
     """Return whether the quick tests of some files pass in a copy."""
-    paths = [folder / "src", *sorted((folder / "wings").iterdir()), folder / "tests"]
+    paths = [folder / "src", folder / "tests"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))}
     options = ["-x", "-q", "-p", "no:xdist", "-m", "not slow"]
     command = [sys.executable, "-m", "pytest", *options, *(f"tests/{name}" for name in tests)]
@@ -206,8 +207,7 @@ def passes(folder: Path, tests: tuple[str, ...]) -> bool:
 
 def survives(mutant: Mutant, folder: Path) -> bool:
     """Return whether the quick tests of its room pass with a mutant."""
-    home = folder if mutant.file.startswith("wings/") else folder / "src" / "underfoot"
-    path = home / mutant.file
+    path = folder / "src" / "underfoot" / mutant.file
     text = path.read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise SystemExit(f"{mutant.file}: {text.count(mutant.old)} times {mutant.old!r}")

@@ -27,6 +27,12 @@ RAW = [name for name, one in vars(builtins).items() if isinstance(one, type) and
 SWEEP = "f (Hz),E_stor (Pa),E_loss (Pa)\n" + "".join(
     f"{10**k:g},{1e6 * 2**k:g},{2e5 * 2**k:g}\n" for k in range(-3, 4)
 )
+RUBBER, DATA_FORMS = (TESTS / "data" / name for name in ("rubber_forms", "surface_forms"))
+GSF = (
+    b"Gwyddion Simple Field 1.0\nXRes = 5\nYRes = 4\nXReal = 5e-5\nYReal = 4e-5\nXYUnits = m\n"
+    b"ZUnits = m\n\0\0\0\0"
+)
+GSF = GSF[: len(GSF) - 4 + (4 - (len(GSF) - 4) % 4)] + np.arange(20, dtype="<f4").tobytes()
 PRONY = """# M\u00fcller, compound with \u00b5m particles
 modulus = "young"
 equilibrium_modulus = "3 MPa"
@@ -66,6 +72,12 @@ def checked_mesh(path):
 
 def checked_sweep(path):
     for one in read.read_dynamic(path):
+        assert np.isfinite(one.storage_modulus).all()
+
+
+def checked_rubber(path):
+    test = read.read_rubber(path, modulus_unit="MPa", instantaneous_modulus=8e6)
+    for one in test.sweeps if test is not None else ():
         assert np.isfinite(one.storage_modulus).all()
 
 
@@ -112,6 +124,11 @@ SEEDS = {
     **{f"sole.{kind}": (lambda kind=kind: mesh_bytes(kind), checked_mesh) for kind in
        ("stl", "obj", "ply", "off", "glb")},
     "sweep.csv": (lambda: SWEEP.encode(), checked_sweep),
+    **{name: ((RUBBER / name).read_bytes, checked_rubber) for name in
+       ("reptate_25.osc", "rheocompass_utf16.csv", "general_viscoelastic.k", "viscoelastic.inp",
+        "viscoelastic.feb", "prony_beta.csv")},
+    "profile.x3p": ((DATA_FORMS / "profile.x3p").read_bytes, read_surface),
+    "floor.gsf": (lambda: GSF, read_surface),
     "prony.toml": (lambda: PRONY.encode("latin-1"), read.read_prony),
     "gait.csv": (lambda: HISTORY.encode("latin-1"), checked_history),
     "heights.txt": (lambda: HEIGHTS.encode("utf-16"), read_surface),

@@ -117,6 +117,20 @@ def test_a_compression_test_ends_in_moduli(tmp_path):
     assert "short-time modulus (MPa)" in conditions
 
 
+def test_a_series_takes_its_level_and_unit_from_the_command(tmp_path):
+    forms = ROOT / "tests" / "data" / "rubber_forms"
+    for name, options in (
+        ("prony_csv.csv", ("--at-rest", "0.8 MPa")),
+        ("viscoelastic.inp", ("--unit", "MPa")),
+    ):
+        refused = called("material", forms / name, folder=tmp_path)
+        assert refused.returncode != 0
+        assert options[0] in " ".join(refused.stderr.split())
+        done = called("material", forms / name, *options, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert "Young's modulus 4.5 MPa after 100 ms" in " ".join(done.stdout.split())
+
+
 def test_hardness_alone(tmp_path):
     done = called("material", "--shore", "40 Shore D", "--out", "h.toml", folder=tmp_path)
     assert done.returncode == 0, done.stderr

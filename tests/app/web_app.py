@@ -14,10 +14,7 @@ from chromium import browser
 
 COMMAND = "from underfoot.cli import main; main()"
 REPOSITORY = Path(__file__).resolve().parents[2]
-PATHS = [
-    *map(str, (REPOSITORY / "src", *sorted((REPOSITORY / "wings").iterdir()))),
-    os.environ.get("PYTHONPATH", ""),
-]
+PATHS = [str(REPOSITORY / "src"), os.environ.get("PYTHONPATH", "")]
 
 
 class Served:

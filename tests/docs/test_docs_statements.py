@@ -263,7 +263,7 @@ def test_every_file_that_a_page_names_is_in_the_repository():
     for page in PAGES:
         for span in spans(page):
             if re.fullmatch(
-                r"(?:src|tests|wings|docs|examples|benchmarks|packaging|schema)/[\w./-]+", span
+                r"(?:src|tests|docs|examples|benchmarks|packaging|schema)/[\w./-]+", span
             ):
                 assert span.rstrip("/") in inside, f"{page.name}: {span}"
                 count += 1

@@ -5,7 +5,9 @@ import json
 import subprocess
 import sys
 import textwrap
+from importlib import metadata
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +17,7 @@ import xarray as xr
 from underfoot.case import Case, CaseError
 from underfoot.case.section import Option
 from underfoot.compute.run import run
-from underfoot.core import InputError
+from underfoot.core import InputError, registry
 from underfoot.core.catalogue import Catalogue, offered_catalogues
 from underfoot.core.registry import all_offers, broken_offers, offered
 from underfoot.questions.ask import ask
@@ -273,6 +275,16 @@ def site(tmp_path, monkeypatch):
     folder = tmp_path / "site"
     folder.mkdir()
     monkeypatch.syspath_prepend(str(folder))
+
+    def ours():  # what else is installed on this machine is not tested here
+        return [
+            each
+            for each in metadata.distributions()
+            if each.name == "underfoot" or Path(str(each.locate_file(""))) == folder
+        ]
+
+    monkeypatch.setattr(registry, "metadata", SimpleNamespace(distributions=ours))
+    all_offers.cache_clear()
     yield folder
     for name in [name for name in sys.modules if name.startswith(("tribo_ext", "broken_ext"))]:
         del sys.modules[name]
@@ -497,6 +509,8 @@ def test_who_asks_for_a_broken_package_is_told_in_one_line(site):
         assert "broken_ext" in str(told.value)
         assert "\n" not in str(told.value)
     assert Case(**PARTS, friction="pair").friction.__class__.__module__.startswith("underfoot.")
+    with pytest.raises(InputError, match=r"friction\.dry.*package.*broken_ext.*no licence"):
+        Case(**PARTS).replace("friction.dry", 0.4)
     with pytest.raises(CaseError, match=r'unknown choice "stciky"'):
         Case(**PARTS, friction="stciky")
     with pytest.raises(InputError, match="no_such_module_anywhere"):

@@ -28,7 +28,7 @@ def test_an_old_path_answers_and_names_the_new_one(old):
 
 def test_what_never_was_is_still_missing():
     assert new_home("underfoot.trial") is None
-    with pytest.raises(ModuleNotFoundError, match="underfoot.trials.gaits"):
+    with pytest.raises(ModuleNotFoundError, match=r"underfoot\.trials\.gaits"):
         importlib.import_module("underfoot.trials.gaits")
     with pytest.warns(FutureWarning), pytest.raises(ModuleNotFoundError, match="nothing_here"):
         importlib.import_module("underfoot_places.nothing_here")

@@ -13,6 +13,7 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from underfoot.case import Case, unit_at
+from underfoot.core import InputError
 from underfoot.core.units import to_si
 
 from .session import Session
@@ -57,6 +58,21 @@ class Input:
         value = case.value(self.path)
         factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
         return None if value is None else float(value) / factor
+
+    def read(self, typed: str, units: str, *, comma: bool) -> float:
+        """Return what was typed, in the unit of the input; without a unit it is in that shown.
+
+        Raises:
+            InputError: No number, a unit of another quantity, or a number that can be two.
+        """
+        if not self.unit:
+            return to_si(typed, "1", where="", comma=comma)
+        si, shown = unit_at(self.path), self.unit
+        if units == "us" and self.unit in CUSTOMARY:
+            shown = CUSTOMARY[self.unit][1]
+        return to_si(typed, si, where="", usual=shown, comma=comma) / to_si(
+            f"1 {self.unit}", si, where=""
+        )
 
     def written(self, value: float) -> str | float:
         """Return a value in the unit as a case takes it."""
@@ -133,6 +149,25 @@ def _row(session: Session, each: Input, value: float) -> str:
     )
 
 
+def read_count(session: Session, field: ui.input) -> int | None:
+    """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
+
+    Raises:
+        InputError: Another text, which the field tells, too.
+    """
+    field.error = None
+    if not (field.value or "").strip():
+        return None
+    try:
+        number = to_si(field.value, "1", where="", comma=session.text.comma)
+        if number < 1 or number != int(number):
+            raise InputError(f"{field.value} is no count", allowed="1, 2, 3 ...")
+    except InputError as error:
+        field.error = str(error)
+        raise
+    return int(number)
+
+
 def number_field(
     session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
 ) -> None:
@@ -141,13 +176,21 @@ def number_field(
     if value is None and origin is None and case.value(each.path.rpartition(".")[0]) is None:
         return
     size, sign = each.shown_in(session.units)
-    shown = value and float(f"{value / size:.4g}")
-    field = ui.number(session.text(f"inputs.{each.path}"), value=shown)
-    field.props(f'dense outlined suffix="{sign}" step="any"').classes("number")
+    shown = None if value is None else value / size
+    label, text = session.text(f"inputs.{each.path}"), session.text.number(shown)
+    field = ui.input(label, value=text)
+    field.props(f'dense outlined suffix="{sign}" inputmode="decimal"').classes("number")
 
     def typed(_: GenericEventArguments) -> None:
-        if field.value is not None and field.value != shown:
-            change({each.path: each.written(size * float(field.value))})
+        if not field.value or field.value == text:
+            return
+        try:
+            value = each.read(field.value, session.units, comma=session.text.comma)
+        except InputError as error:
+            field.error = str(error)
+            return
+        field.error = None
+        change({each.path: each.written(value)})
 
     field.on("change", typed)
     if origin is not None:

@@ -20,6 +20,7 @@ from platformdirs import user_state_path
 
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
+from underfoot.core.units import si_unit, to_si
 
 from .frame import framed, open_session
 from .gate import UPLOADS, Gate, own_name
@@ -119,6 +120,18 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
             return await handler(await request.json())
         except Exception as error:
             return {"problem": " ".join(words for _, words in problem_parts(error))}
+
+    @application.post("/api/quantity")
+    async def quantity(request: Request) -> Any:
+        """Read what was typed into a field of a script: ``text``, ``unit``, ``comma``."""
+        asked = await request.json()
+        unit = str(asked["unit"])
+        try:
+            si = si_unit(f"1 {unit}", where="")
+            value = to_si(str(asked["text"]), si, where="", usual=unit, comma=bool(asked["comma"]))
+            return {"value": value / to_si(f"1 {unit}", si, where="")}
+        except InputError as error:
+            return {"problem": str(error)}
 
     @application.post(UPLOADS + "{place:path}")
     async def upload(place: str, request: Request) -> Any:

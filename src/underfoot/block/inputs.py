@@ -110,7 +110,7 @@ class MicroSurface:
             coefficients = np.ascontiguousarray(
                 spline_filter(heights - heights.mean(), order=3, mode="grid-wrap")
             )
-            steps = (self.height_map.spacing, self.height_map.spacing)
+            steps = self.height_map.spacings
         rate = 0.0 if math.isinf(self.radius) else 1.0 / self.radius
         numbers = np.array(
             [0.5 * self.peak_to_valley, 1.0 / self.wavelength, *self.offset, rate, *steps]

@@ -130,7 +130,7 @@ def check_pattern(block: MicroBlock, surface: MicroSurface, where: str) -> None:
     if surface.form == "map":
         assert surface.height_map is not None
         lengths = surface.height_map.size
-        shortest = surface.height_map.resolution or 2.0 * surface.height_map.spacing
+        shortest = surface.height_map.resolution or 2.0 * max(surface.height_map.spacings)
     else:
         lengths = (surface.wavelength, surface.wavelength)
         shortest = surface.wavelength

@@ -8,7 +8,7 @@ force). A spectrum is that of sweeps, else of relaxation; a hardness stands besi
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
@@ -29,14 +29,12 @@ from underfoot.material import (
     dynamic_master_curve,
     fit_dynamic,
     fit_relaxation,
-    read_dynamic,
-    read_prony,
-    read_relaxation,
     relaxation_master_curve,
     young_from_shear,
 )
 from underfoot.material.durometer_scales import DurometerReading
-from underfoot.material.read import is_shear
+from underfoot.material.read import read_rubber
+from underfoot.trials import Trial
 from underfoot.trials.machines.compression import Compression, compression
 from underfoot.trials.machines.relaxation_test import relaxation_reading
 from underfoot.trials.readers import read_trial
@@ -304,6 +302,9 @@ def compound_from_files(
     shear: bool | None = None,
     poisson_ratio: float = 0.49,
     polymer: str | None = None,
+    modulus_unit: str | None = None,
+    instantaneous_modulus: float | None = None,
+    equilibrium_modulus: float | None = None,
 ) -> Compound:
     """Return the compound of tests on one rubber.
 
@@ -314,6 +315,9 @@ def compound_from_files(
             the middle one.
         thickness, area: Of one block of a compression test (m, m^2).
         shear: Whether moduli are those of shear; None takes what the headings say (G', G_stor).
+        modulus_unit: Of moduli, where a file has none.
+        instantaneous_modulus, equilibrium_modulus: Pa, of the kind of the series: one of them fixes
+            the level of a Prony series that has none.
 
     Raises:
         InputError: Nothing given; a compression test without thickness and area.
@@ -327,9 +331,15 @@ def compound_from_files(
             allowed='FILES of tests, or --shore "68 A"',
         )
     sweeps, curves, compressions, notes = [], [], [], []
-    prony = None
+    prony: RelaxationSpectrum | None = None
+    given = {
+        "modulus_unit": modulus_unit,
+        "instantaneous_modulus": instantaneous_modulus,
+        "equilibrium_modulus": equilibrium_modulus,
+    }
     for file in files:
-        found = _read(file, thickness, area, poisson_ratio, shear)
+        found, taken = _read(file, thickness, area, poisson_ratio, shear, given)
+        notes += taken
         if isinstance(found, RelaxationSpectrum):
             prony = found
         elif isinstance(found, Compression):
@@ -363,6 +373,8 @@ def compound_from_files(
         notes.append("the Prony series is left out: tests go before it")
     if fit is not None:
         warnings += _fit_warnings(fit)
+    elif spectrum is not None:
+        warnings += spectrum.cautions()
     if at is None:
         at = temperature
     return Compound(
@@ -400,55 +412,65 @@ def _read(
     area: float | None,
     poisson_ratio: float,
     shear: bool | None,
-) -> list[DynamicSweep] | list[RelaxationCurve] | RelaxationSpectrum | Compression:
-    """Return what a file holds, moduli as Young's."""
-    reasons = []
+    given: Mapping[str, Any],
+) -> tuple[
+    list[DynamicSweep] | list[RelaxationCurve] | RelaxationSpectrum | Compression, list[str]
+]:
+    """Return what a file holds, moduli as Young's, and what was taken of it."""
     factor = 2 * (1 + poisson_ratio)
-    for kind, read in (
-        ("dynamic sweep", read_dynamic),
-        ("relaxation modulus", read_relaxation),
-        ("Prony series", read_prony),
-    ):
-        try:
-            found: Any = read(file)
-        except (DataError, InputError) as error:
-            reasons.append(f"no {kind}: {error.what}")
-            if kind == "Prony series" or not _meant(kind, str(error)):
-                continue
+    reason = ""
+    try:
+        test = read_rubber(file, **given)
+    except DataError as error:
+        if _recorded(file) is None:
             raise
-        if kind == "Prony series":
-            return young_from_shear(found, poisson_ratio) if shear else found
-        if is_shear(file) if shear is None else shear:
+        test, reason = None, error.what
+    if test is not None:
+        of_shear = bool(test.shear) if shear is None else shear
+        notes = [f"{file.name}: {note}" for note in test.notes]
+        if test.shear is None and shear is None:
+            notes.append(
+                f"{file.name}: nothing says whether its moduli are of shear or of tension: taken "
+                f"as Young's; of shear they are {factor:.3g} times as much (--shear)"
+            )
+        if test.series is not None:
+            series = test.series
+            return young_from_shear(series, poisson_ratio) if of_shear else series, notes
+        found: list[Any] = [*(test.sweeps or test.curves)]
+        if of_shear:
             names = ("storage_modulus", "loss_modulus", "modulus")
             found = [
                 replace(one, **{n: factor * getattr(one, n) for n in names if hasattr(one, n)})
                 for one in found
             ]
-        return found
-    try:
-        trial = read_trial(file)
-        trial.channel("force", "load", "normal force", "fz", "axial force")
-    except (DataError, InputError) as error:
-        told = "; ".join([*reasons, f"no recording: {error.what}"])
+        return found, notes
+    trial = _recorded(file)
+    if trial is None:
         raise DataError(
-            f"{file.name} is no test of a rubber ({told})",
+            f"{file.name} is no test of a rubber{f' ({reason})' if reason else ''}",
             where=str(file),
-            allowed="columns f, E', E'' (or G', G''); t, E; tau, E_i; or time, displacement, force",
+            allowed="columns f, E', E'' (or G', G''; tan delta; phase angle); t, E; tau, E_i; or "
+            "time, displacement, force",
             remedy="Name the columns with their units, as f (Hz)",
-        ) from error
+        )
     if thickness is None or area is None:
         raise InputError(
             f"{file.name} is a compression test: moduli need the size of a block",
             where="--thickness and --area",
             remedy='Give them, as --thickness "5.5 mm" --area "1.6 cm^2"',
         )
-    return compression(relaxation_reading(trial, thickness), thickness, area, file.name)
+    read = compression(relaxation_reading(trial, thickness), thickness, area, file.name)
+    return read, []
 
 
-def _meant(kind: str, told: str) -> bool:
-    """Return whether a file is of a kind but can't be used: its columns are there."""
-    missing = ("no column", "no headings", "no table", "is no", "can't be read", "not text")
-    return not any(words in told for words in missing)
+def _recorded(file: Path) -> Trial | None:
+    """Return the recording of a compression test in a file; None where there is no force."""
+    try:
+        trial = read_trial(file)
+        trial.channel("force", "load", "normal force", "fz", "axial force")
+    except (DataError, InputError):
+        return None
+    return trial
 
 
 def _refuse_rising(curve: RelaxationCurve) -> None:

@@ -13,10 +13,11 @@ from underfoot.core import InputError, display, unknown_name
 from underfoot.core.catalogue import Catalogue
 
 from .equations import EQUATIONS
-from .parts import field_at, paths, unit_at
+from .parts import field_at, keys, paths, unit_at
 from .quantity import default_of
-from .section import quantity_of
+from .section import Option, quantity_of
 from .terms import TERMS, term
+from .versions import current_path
 
 WIDTH = 80
 """Characters of a line in a list of formulas."""
@@ -58,6 +59,7 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
         parts.append(catalogue.describe(name))
     if key := _key(name):
         parts.append(key)
+    parts += _options_named(name)
     closures = dict(_closures())
     if (equation := _EQUATION.fullmatch(name.strip())) is not None:
         number = int(equation.group(1))
@@ -87,10 +89,13 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
 
 
 def _key(path: str) -> str:
+    """Return what a key of case files is: its unit, range and default, or the options of a slot."""
+    if (slot := keys().get(current_path(path))) is not None:
+        return _slot(path, slot)
     field = field_at(path)
     if field is None:
-        keys = [key for key in paths() if key.startswith(path + ".")]
-        return f"{path} holds: {', '.join(keys)}" if keys else ""
+        below = [key for key in paths() if key.startswith(path + ".")]
+        return f"{path} holds: {', '.join(below)}" if below else ""
     lines = [f"{path}: {field.description or 'a value of case files'}"]
     quantity = quantity_of(field)
     if quantity is not None:
@@ -101,6 +106,35 @@ def _key(path: str) -> str:
         mark = ", assumed" if default.assumed else ""
         lines.append(f"  default {default.text} ({default.source}{mark})")
     return "\n".join(lines)
+
+
+def _slot(path: str, slot: type[Option]) -> str:
+    """Return what the key that names the option of a slot can be, the default first."""
+    options = slot.options()
+    names = sorted(options, key=lambda each: (each != slot.usual, each))
+    width = max(map(len, names))
+    lines = [f"{path}: {_summary(slot, WIDTH)}", "Options (underfoot explain NAME):"]
+    for each in names:
+        text = _summary(options[each], WIDTH - width - 4)
+        lines.append(f"  {each:{width}}  {text}")
+    if slot.usual:
+        lines.append(f'  default "{slot.usual}"')
+    return "\n".join(lines)
+
+
+def _options_named(name: str) -> Iterator[str]:
+    """Yield each option of a slot that has a name: what it is, its keys, its source."""
+    for path, slot in keys().items():
+        option = slot.options().get(name)
+        if option is None:
+            continue
+        own = [key for key in option.model_fields if key != slot.key]
+        lines = [f'{path} = "{name}": {inspect.getdoc(option)}']
+        if own:
+            lines.append(textwrap.fill("Keys: " + ", ".join(own), WIDTH, subsequent_indent="  "))
+        if option.source:
+            lines.append(f"Source: {option.source}")
+        yield "\n".join(lines)
 
 
 def _closures() -> Iterator[tuple[str, Any]]:

@@ -631,6 +631,7 @@ def _hysteresis(context: Context) -> tuple[float | None, str]:
     if not _loss_tested(context):
         return None, ""
     wavenumber = np.geomspace(2 * math.pi / longest, 2 * math.pi / shortest, 60)
+    directions = floor.directions(wavenumber)
     if floor.file is None:
         rq = math.sqrt(math.prod(_span(floor, FLOOR_RQ, context.interface.hurst)))
         rq = float(real_slope(rq)) / SLOPE
@@ -646,9 +647,12 @@ def _hysteresis(context: Context) -> tuple[float | None, str]:
         context.rubber().complex_modulus,
         context.motion.speed,
         context.poisson_ratio,
+        directions,
     )
     assert contact.cof_hysteresis is not None  # the rubber is viscoelastic
     surface = "" if floor.file is None else " on the floor's scan"
+    if directions is not None:
+        surface += ", sliding along its x axis"
     return float(contact.cof_hysteresis[0]), f"Persson theory{surface}"
 
 

@@ -158,5 +158,10 @@ def path_kind(path: str) -> str:
 
 
 def unknown_path(path: str) -> InputError:
-    """Return the error for a path that is none, with the nearest one."""
-    return unknown_name("path", path, paths())
+    """Return the error for a path that is none: the nearest one, or the package that can't load."""
+    error = unknown_name("path", path, paths())
+    for at, slot in slot_table().items():
+        broken = "; ".join(slot.broken()) if path.startswith(f"{at}.") else ""
+        if broken:
+            error.remedy = f"If it is a key of a package: {broken}"
+    return error

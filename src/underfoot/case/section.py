@@ -8,7 +8,6 @@ checks, sources and ``build``. Defining the class is all that a new option takes
 import types
 import typing
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -274,10 +273,17 @@ class Option(Section):
     @classmethod
     def options(cls) -> dict[str, type["Option"]]:
         """Return the options of the slot by name, those of other packages too where they load."""
-        for name in offers(cls.slot).keys() - cls.known().keys():
-            with suppress(InputError):  # ``underfoot doctor`` and who asks for it are told
-                offered(cls.slot, name, cls._wrong)
+        list(cls.broken())  # ``underfoot doctor`` and who asks for it are told
         return dict(cls.known())
+
+    @classmethod
+    def broken(cls) -> Iterator[str]:
+        """Yield what is wrong with each option that a package offers and that can't be loaded."""
+        for name in offers(cls.slot).keys() - cls.known().keys():
+            try:
+                offered(cls.slot, name, cls._wrong)
+            except InputError as error:
+                yield error.what
 
     @classmethod
     def known(cls) -> dict[str, type["Option"]]:

@@ -117,6 +117,14 @@ class SurfaceRoughness(Section):
         scanned = scan.values["rq"].value or 0.0
         return scan.density(wavenumber) * (self.rq_or_estimate / scanned) ** 2
 
+    def directions(self, wavenumber: ArrayLike) -> tuple[Array, Array] | None:
+        """Return how a scan with a lay shares C(q) between directions from sliding (its x axis).
+
+        ``Scan.directions_at``; None where all directions are alike, or without a scan.
+        """
+        scan = self.scan()
+        return None if scan is None else scan.directions_at(wavenumber)
+
     def moment(self, order: int, shortest: float, longest: float) -> float:
         """Return rms height (order 0, m) or rms slope (order 1, 1) of the scan between two waves.
 

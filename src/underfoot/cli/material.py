@@ -33,6 +33,11 @@ def material(
     ] = None,
     poisson: Annotated[float, typer.Option("--poisson", help="Poisson's ratio.")] = 0.49,
     polymer: Annotated[str | None, optional("TPU, PU, SBR, NBR, ...")] = None,
+    unit: Annotated[str | None, optional("Of moduli, where a file has none: MPa.")] = None,
+    at_once: Annotated[
+        str | None, optional('Modulus that fixes a Prony series without one, as "8 MPa".')
+    ] = None,
+    at_rest: Annotated[str | None, optional('Or its modulus at rest, as "0.8 MPa".')] = None,
 ) -> None:
     """Moduli (Eq. 13 to 16), Prony terms, shift factors and loss tangent of a rubber's tests.
 
@@ -58,7 +63,18 @@ def material(
         "area": si("area", area, "m^2"),
     }
     reading = None if shore is None else durometer_reading(shore, where="--shore")
-    more = {"shear": shear, "poisson_ratio": poisson, "polymer": polymer, "hardness": reading}
+    levels = {
+        "instantaneous_modulus": si("at-once", at_once, "Pa"),
+        "equilibrium_modulus": si("at-rest", at_rest, "Pa"),
+    }
+    more = {
+        "modulus_unit": unit,
+        **levels,
+        "shear": shear,
+        "poisson_ratio": poisson,
+        "polymer": polymer,
+        "hardness": reading,
+    }
 
     def made(progress: Progress) -> Compound:
         progress("Reading the tests", 0.0)

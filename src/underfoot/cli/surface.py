@@ -30,8 +30,8 @@ def surface(
 ) -> None:
     """Ra, Rq, Rz, slope, spectrum and Hurst exponent of a scan; a case takes it as it is.
 
-    Dektak CSV, text (positions and heights, x y z, or a matrix; decimal commas), and the formats of
-    instruments that SurfaceTopography reads.
+    Dektak CSV, GSF, X3P, SDF, text (positions and heights, x y z, or a matrix; decimal commas), and
+    the formats of instruments that SurfaceTopography reads.
     """
     from underfoot.core import to_si
     from underfoot.surface import read_scan

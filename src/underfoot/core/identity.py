@@ -222,9 +222,6 @@ class _Walk:
         top = name.partition(".")[0]
         if top == OWN or (top in sys.stdlib_module_names and top != "__main__"):
             return True
-        if top.startswith(f"{OWN}_"):  # a wing of this project
-            self._text("text", _package_text(top))
-            return True
         if top not in _libraries():
             return False
         self._text("library", f"{top} {_versions(top)}")

@@ -1,4 +1,4 @@
-"""Modules that have moved: an import of an old path is answered, with a warning, for one version."""
+"""Modules that have moved: for one version, an old path answers with a warning."""
 
 import sys
 import warnings

@@ -1,9 +1,8 @@
 """Text files of instruments: encoding, cells, decimal commas, what stands for a missing value."""
 
+import csv
 import re
 from pathlib import Path
-
-import numpy as np
 
 from .errors import DataError
 
@@ -49,10 +48,16 @@ def utf16_of(data: bytes) -> str:
     """Return the name of the encoding when a file is UTF-16 (with or without its mark), or ""."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "utf-16"
-    even, odd = data[:400:2], data[1:400:2]
-    if len(data) > 20 and not any(odd) and all(even):
-        return "utf-16-le"
-    return "utf-16-be" if len(data) > 20 and not any(even) and all(odd) else ""
+    head = data[: min(400, len(data)) // 2 * 2]
+    if len(head) < 20:
+        return ""
+    for name, blank, filled in (("utf-16-le", head[1::2], head[::2]),
+                                ("utf-16-be", head[::2], head[1::2])):  # fmt: skip
+        # a letter that is not Latin may stand among them
+        if blank.count(0) >= 0.8 * len(blank) and all(filled):
+            text = head.decode(name, "replace")
+            return "" if re.search(r"[\x01-\x08\x0e-\x1f\ufffd]", text) else name
+    return ""
 
 
 def harmless(cell: str) -> str:
@@ -66,23 +71,24 @@ def with_content(lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
 
 
 def cells_of(line: str, separator: str | None) -> list[str]:
-    """Return the cells of a line, blanks and quotes around them removed; None: blanks separate."""
-    return [cell.strip().strip('"') for cell in line.split(separator)]
+    """Return the cells of a line, blanks and quotes around them removed; None: blanks separate.
 
-
-def row_of_numbers(cells: list[str], comma: bool, line: int, where: str) -> list[float]:
-    """Return the numbers of a row, NaN where one is missing; ``comma``: the decimal sign is one.
-
-    Raises:
-        DataError: Text among the numbers.
+    A separator between quotes is part of the cell.
     """
-    row = []
-    for cell in cells:
-        try:
-            missing = cell.casefold() in MISSING
-            row.append(np.nan if missing else float(cell.replace(",", ".") if comma else cell))
-        except ValueError:
-            raise DataError(
-                f'"{cell}" in line {line} is not a number', where=where, allowed="numbers"
-            ) from None
-    return row
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    if separator is None:
+        found = re.findall(r'"[^"]*"(?=\s|$)|\S+', line)
+        return [_unquoted(cell) for cell in found]
+    row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    return [cell.strip() for cell in row]
+
+
+def _unquoted(cell: str) -> str:
+    return cell[1:-1].strip() if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
+
+
+def excerpt(cell: str, longest: int = 40) -> str:
+    """Return what a cell of a damaged file holds as a message can show it."""
+    plain = "".join(letter if letter.isprintable() else "?" for letter in cell)
+    return plain if len(plain) <= longest else f"{plain[: longest - 3]}..."

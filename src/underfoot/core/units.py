@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from .errors import InputError, nearest_match
+from .typed import split_quantity
 
 _EXAMPLES = {
     "m": "3 mm",
@@ -57,8 +58,24 @@ _LEAST = {"in": 0.01}
 UNITS_VARIABLE = "UNDERFOOT_UNITS"
 """Environment variable that names the units of output, so that worker processes know them."""
 SYSTEMS = ("si", "us")
-_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
-_ALIASES = {"%": "percent", "deg C": "degC", "mPa s": "mPa*s", "mPas": "mPa*s", "Pa s": "Pa*s"}
+_ALIASES = {
+    "%": "percent",
+    "deg C": "degC",
+    "deg F": "degF",
+    "cps": "cP",
+    "mPas": "mPa*s",
+    "Pas": "Pa*s",
+    '"': "inch",
+    "in": "inch",
+    "in.": "inch",
+    "''": "inch",
+    "lbs": "lb",
+    "mil": "thou",
+}
+_SIGNS = str.maketrans(
+    {"µ": "u", "μ": "u", "°": "deg", "²": "^2", "³": "^3", "⁻": "^-", "¹": "1",
+     "·": "*", "⋅": "*", "∙": "*", "×": "*", "″": '"', "”": '"'}
+)  # fmt: skip
 _KNOWN = (
     "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
     "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 cm^3 N/mm 1/s 1/mm kg/m^3 "
@@ -91,15 +108,23 @@ def _registry() -> Any:
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 
 
-def to_si(given: object, unit: str, *, where: str) -> float:
+def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool = False) -> float:
     """Return ``given`` (text such as ``"219 cP"``) as a float in the SI unit ``unit``.
 
-    Plain numbers are accepted only where ``unit`` is ``"1"`` (dimensionless): elsewhere a number
-    without a unit is refused, because guessing it would change results silently.
+    Numbers are read as ``underfoot.core.typed.split_quantity`` says. Plain numbers are accepted
+    only where ``unit`` is ``"1"`` (dimensionless) or ``usual`` stands beside the field: elsewhere a
+    number without a unit is refused, because guessing it would change results silently.
 
-    Errors:
-        InputError: Unit missing, unknown or of another dimension; text that is no number; not
-            finite.
+    Parameters:
+        given: Text, or a number.
+        unit: The SI unit that is wanted.
+        where: Named in errors.
+        usual: Unit of a number without one, "" for none.
+        comma: The writer's decimal sign is the comma.
+
+    Raises:
+        InputError: Unit missing, unknown or of another dimension; text that is no number or can be
+            read as two; not finite.
 
     >>> to_si("219 cP", "Pa*s", where="contaminant.viscosity")
     0.219
@@ -112,31 +137,17 @@ def to_si(given: object, unit: str, *, where: str) -> float:
     if isinstance(given, int | float):
         if unit == "1":
             return _finite(float(given), given, where)
-        raise InputError(
-            f"{given} has no unit",
-            where=where,
-            allowed=f"a number with a unit of {unit}",
-            remedy=f'Write it as text with its unit, for example "{example}"',
-        )
+        raise _no_unit(given, unit, where, example)
     if not isinstance(given, str):
         raise InputError(
             f"{given!r} is not a quantity", where=where, allowed=f'text such as "{example}"'
         )
-    match = _NUMBER.match(_plain(given))
-    if match is None or match.group(2).startswith(","):
-        pointed = given.replace(",", ".")
-        comma = given.count(",") == 1 and _NUMBER.match(_plain(pointed)) is not None
-        raise InputError(
-            f'"{given}" is not a number with a unit',
-            where=where,
-            allowed=f'for example "{example}"',
-            nearest=pointed if comma else None,
-            remedy="Numbers have a decimal point" if comma else None,
-        )
-    number, text = float(match.group(1)), match.group(2)
+    number, text = _split(given, where, comma, example)
+    text = text or usual
+    if not text and unit != "1":
+        raise _no_unit(given, unit, where, example)
     if not text:
-        return to_si(number, unit, where=where)
-    text = _ALIASES.get(text, text)
+        return _finite(number, given, where)
     if unit == "K" and text in ("C", "F"):
         text = "deg" + text
     return _finite(_convert(number, text, unit, given, where, example), given, where)
@@ -196,10 +207,7 @@ def si_unit(given: str, *, where: str) -> str:
     Errors:
         InputError: No number, or a unit that fits none of the units in use.
     """
-    match = _NUMBER.match(_plain(given))
-    if match is None:
-        raise InputError(f'"{given}" is not a number with a unit', where=where)
-    text = _ALIASES.get(match.group(2), match.group(2))
+    _, text = _split(given, where, False, "219 cP")
     if not text:
         return "1"
     for unit, names in _POWERS.items():
@@ -216,8 +224,33 @@ def si_unit(given: str, *, where: str) -> str:
     )
 
 
-def _plain(text: str) -> str:
-    return text.replace("µ", "u").replace("μ", "u").replace("°", "deg")
+def _no_unit(given: object, unit: str, where: str, example: str) -> InputError:
+    return InputError(
+        f"{given} has no unit",
+        where=where,
+        allowed=f"a number with a unit of {unit}",
+        remedy=f'Write it as text with its unit, for example "{example}"',
+    )
+
+
+def _split(given: str, where: str, comma: bool, example: str) -> tuple[float, str]:
+    """Return number and unit of a text, the unit as this module writes it."""
+    try:
+        parts = split_quantity(given, comma=comma)
+    except InputError as error:
+        error.where = where
+        raise
+    if parts is None:
+        raise InputError(
+            f'"{given}" is not a number with a unit',
+            where=where,
+            allowed=f'for example "{example}"',
+        )
+    number, text = parts
+    text = re.sub(r"(?<=[A-Za-z])[ .](?=[A-Za-z])", "*", text.translate(_SIGNS).strip())
+    text = re.sub(r"(?<=[a-z])([23])(?!\d)", r"^\1", text)  # cm3
+    text = re.sub(r"^deg\*", "deg ", text.replace("^-^", "^-"))
+    return number, _ALIASES.get(text, text)
 
 
 def _convert(number: float, text: str, unit: str, given: str, where: str, example: str) -> float:

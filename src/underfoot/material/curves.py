@@ -42,7 +42,9 @@ def _settle(curve: Any, axis: str, **quantities: str) -> None:
     """Store the checked columns of a curve; refuse a temperature that is not one in kelvin."""
     given = getattr(curve, axis)
     for name, quantity in quantities.items():
-        x, values = checked_curve(given, getattr(curve, name), quantity=quantity)
+        # a multi-frequency ramp has three frequencies at a temperature: enough beside others
+        fewest = 4 if axis == "time" else 3
+        x, values = checked_curve(given, getattr(curve, name), quantity=quantity, fewest=fewest)
         object.__setattr__(curve, axis, x)
         object.__setattr__(curve, name, values)
     kelvin = curve.temperature
@@ -53,7 +55,11 @@ def _settle(curve: Any, axis: str, **quantities: str) -> None:
 
 
 def checked_curve(
-    abscissa: ArrayLike, values: ArrayLike, *, quantity: str = "relaxation modulus"
+    abscissa: ArrayLike,
+    values: ArrayLike,
+    *,
+    quantity: str = "relaxation modulus",
+    fewest: int = 4,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return time or frequency ascending with the values; refuse what can't be a measurement.
 
@@ -67,8 +73,9 @@ def checked_curve(
             where=quantity,
             allowed="two one-dimensional arrays of the same length",
         )
-    if x.size < 4:
-        raise DataError(f"{x.size} points", where=quantity, allowed="four points or more")
+    if x.size < fewest:
+        words = {3: "three", 4: "four"}[fewest]
+        raise DataError(f"{x.size} points", where=quantity, allowed=f"{words} points or more")
     for name, array in ((axis, x), (quantity, y)):
         missing = np.flatnonzero(~np.isfinite(array))
         if missing.size:

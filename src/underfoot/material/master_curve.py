@@ -17,6 +17,8 @@ from .spectrum_fit import SpectrumFit, fit_dynamic, fit_relaxation
 DEGREE = 3
 LEAST_SCATTER = 4e-4
 """0.1 % in log10: no reading is trusted further."""
+FLAT = 5 * LEAST_SCATTER
+"""Change of a storage modulus over two sweeps below which it says nothing of their shift."""
 
 
 def common_polynomial_cost(
@@ -289,7 +291,8 @@ def dynamic_master_curve(
         reference_temperature: K, within the temperatures tested (by default the middle one);
             between two of them the shift is interpolated.
         shift_by: "storage": E' decides, E'' then shows whether superposition holds; "both": each
-            counts by its own scatter. Where the two disagree (resonance of the instrument, a
+            counts by its own scatter. Where E' of two neighbours is flat within 0.5 % (a glass),
+            both decide anyhow. Where the two disagree (resonance of the instrument, a
             material that is not thermorheologically simple), E' is the safer one.
 
     Raises:
@@ -302,9 +305,9 @@ def dynamic_master_curve(
         raise InputError(f'"{shift_by}"', where="shift_by", allowed='"storage" or "both"')
     ordered, temperatures = _by_temperature(sweeps)
     x = [np.log10(s.angular_frequency) for s in ordered]
-    used = slice(0, 1 if shift_by == "storage" else 2)
-    y = [np.log10(np.array([s.storage_modulus, s.loss_modulus])[used]) for s in ordered]
-    shifts = _shift_table(x, y, temperatures, reference_temperature)
+    y = [np.log10(np.array([s.storage_modulus, s.loss_modulus])) for s in ordered]
+    used = 1 if shift_by == "storage" else 2
+    shifts = _shift_table(x, y, temperatures, reference_temperature, used)
     w = _reduced(x, shifts)
     order = np.argsort(w, kind="stable")
     return DynamicMasterCurve(
@@ -367,6 +370,7 @@ def _shift_table(
     y: Sequence[np.ndarray],
     temperatures: np.ndarray,
     reference: float | None,
+    used: int = 1,
 ) -> ShiftTable:
     if reference is None:
         reference = float(temperatures[temperatures.size // 2])
@@ -381,7 +385,9 @@ def _shift_table(
     for i in range(len(x) - 1):
         # A modulus that rises with frequency overlaps in frequency only where it does in size.
         apart = y[i + 1][0].max() < y[i][0].min()
-        step, error, rms = best_shift(x[i], y[i], x[i + 1], y[i + 1])
+        flat = np.ptp(np.concatenate([y[i][0], y[i + 1][0]])) < FLAT
+        rows = slice(0, None if flat else used)
+        step, error, rms = best_shift(x[i], y[i][rows], x[i + 1], y[i + 1][rows])
         gap = max(x[i].min(), x[i + 1].min() + step) - min(x[i].max(), x[i + 1].max() + step)
         if apart or gap > 0.0:
             raise DataError(

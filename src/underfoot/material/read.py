@@ -1,6 +1,5 @@
 """Readers of relaxation tests, dynamic sweeps and Prony series."""
 
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,205 +8,206 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, InputError, nearest_match, text, to_si
+from underfoot.core import DataError, InputError, text, to_si
 
 from .curves import DynamicSweep, RelaxationCurve
+from .decks import is_deck, read_deck
 from .elastomer import young_from_shear
 from .spectrum import RelaxationSpectrum
+from .tables import Column, Table, read_tables
 
-TIME = ("t", "time", "Zeit")
-FREQUENCY = ("f", "freq", "frequency", "omega", "w", "angular frequency")
-STORAGE = ("E_stor", "E'", "E1", "storage modulus", "G_stor", "G'", "E_storage")
-LOSS = ("E_loss", "E''", 'E"', "E2", "loss modulus", "G_loss", "G''", 'G"')
-RELAX = ("E_relax", "E", "E(t)", "relaxation modulus", "modulus", "G_relax", "G", "G(t)")
-TEMPERATURE = ("T", "temp", "temperature")
-SET = ("Set", "sweep", "run", "segment")
-TAU = ("tau", "tau_i", "relaxation time", "relaxation_time", "time")
-TERM = ("E_i", "G_i", "E", "G", "modulus", "term modulus")
-FRACTION = ("e_i", "g_i", "alpha_i", "alpha", "fraction", "normalised modulus")
-_NUMBER = re.compile(r"^[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?$")
-_HEAD = re.compile(r"^\s*(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*$")
+MODULI = ("modulus at once", "modulus at rest")
+_TERMS = ("term", "relaxation modulus", "storage modulus")
+FEWEST = 3
+"""Frequencies of a sweep."""
+SAME = 0.5
+"""K: tests within it, and far closer than others, are at one temperature."""
+_LEVELS = 'the modulus at once (--at-once "8 MPa") or at rest (--at-rest "0.8 MPa")'
 
 
 @dataclass(frozen=True, slots=True)
-class _Table:
-    """Columns by name as printed, their units ("" where not given) and where they came from.
+class RubberTest:
+    """What a file of a rubber holds: one of sweeps, curves and a Prony series, as in the file.
 
-    ``stated`` gives units by column name or quantity where the file has none, or other ones.
+    ``shear`` says whether its moduli are those of shear, None where nothing tells; ``notes`` what
+    was taken of it.
     """
 
-    columns: dict[str, np.ndarray]
-    units: dict[str, str]
-    stated: Mapping[str, str]
-    where: str
-    first_row: int
-
-    def named(self, aliases: Sequence[str]) -> str | None:
-        """Return the heading that is one of ``aliases``; case counts only for short symbols.
-
-        t is a time and T a temperature, but "Time" and "TIME" are the same.
-        """
-        for alias in aliases:
-            for name in self.columns:
-                if name == alias or (len(alias) > 2 and name.casefold() == alias.casefold()):
-                    return name
-        return None
-
-    def column(self, aliases: Sequence[str], unit: str, what: str) -> np.ndarray:
-        """Return the column that has one of the ``aliases``, in SI ``unit``."""
-        name = self.named(aliases)
-        if name is None:
-            near = (nearest_match(column, aliases) for column in self.columns)
-            raise DataError(
-                f"no column for {what} among {', '.join(self.columns)}",
-                where=self.where,
-                allowed=f"one named {', '.join(aliases[:6])}",
-                nearest=next(filter(None, near), None),
-            )
-        values, where = self.complete(name), f"{self.where}, column {name}"
-        written = (self.stated.get(name) or self.stated.get(what) or self.units[name]).strip()
-        if written in ("", "-"):
-            raise DataError(
-                "no unit is given",
-                where=where,
-                allowed=f"a unit of {unit} in the heading, in a row below it, or as an argument",
-            )
-        if unit == "rad/s" and written.casefold() in ("hz", "khz", "1/s"):
-            return values * (2.0 * np.pi * (1e3 if written.casefold() == "khz" else 1.0))
-        try:
-            zero, one = (to_si(f"{n} {written}", unit, where=where) for n in (0, 1))
-        except InputError as error:
-            raise DataError(
-                error.what, where=where, allowed=error.allowed, nearest=error.nearest
-            ) from error
-        return values * (one - zero) + zero
-
-    def complete(self, name: str) -> np.ndarray:
-        """Return the numbers below a heading as written; refuse them where one is missing."""
-        values = self.columns[name]
-        missing = np.flatnonzero(~np.isfinite(values))
-        if missing.size:
-            raise DataError(
-                f"{missing.size} of {values.size} values are missing in the column {name}, the "
-                f"first in line {self.first_row + missing[0]}",
-                where=self.where,
-                remedy="Remove the rows, or repair them at their source",
-            )
-        return values
+    sweeps: tuple[DynamicSweep, ...] = ()
+    curves: tuple[RelaxationCurve, ...] = ()
+    series: RelaxationSpectrum | None = None
+    shear: bool | None = None
+    notes: tuple[str, ...] = ()
 
 
-def _read_table(path: Path | str, units: Mapping[str, str] | None) -> _Table:
-    """Return the first table of a text file with one row of headings.
+def read_rubber(
+    path: Path | str,
+    *,
+    units: Mapping[str, str] | None = None,
+    modulus_unit: str | None = None,
+    instantaneous_modulus: float | None = None,
+    equilibrium_modulus: float | None = None,
+) -> RubberTest | None:
+    """Return the test of a rubber in a file, told by its columns; None where there is none.
 
-    Separators may be comma, semicolon, tab or blanks; decimal commas are read where commas do
-    not separate; a row of units may follow the headings, or units stand in brackets there.
+    Frequencies with moduli are sweeps, relaxation times with terms a series (so are TOML files
+    and decks of LS-DYNA, Abaqus, CalculiX and FEBio), times with a modulus a relaxation.
+
+    Parameters:
+        units: By column name or quantity, where the file has none.
+        modulus_unit: Of every modulus, where the file has none.
+        instantaneous_modulus, equilibrium_modulus: Pa, one of them for a series that fixes no
+            level by itself.
+
+    Raises:
+        DataError: The file is one of these and can't be used.
+        InputError: Negative terms or times.
     """
-    where = str(path)
-    lines = text.with_content(text.numbered_lines(path, "Export it as text"))
-    if len(lines) < 2:
-        raise DataError("the file holds no table", where=where, allowed="headings and rows")
-    separator = next((s for s in (";", "\t", ",") if s in lines[0][1]), None)
-    rows = [(i, text.cells_of(line, separator)) for i, line in lines]
-    names, own_units, body = _headings(rows, where)
-    comma = separator != "," and any("," in cell for _, row in body for cell in row)
-    columns = np.empty((len(body), len(names)))
-    for place, (i, row) in enumerate(body):
-        if len(row) != len(names):
-            hint = None
-            if separator == "," and len(row) in (2 * len(names), 2 * len(names) - 1):
-                hint = "Commas seem to be both separator and decimal sign: export with semicolons"
-            raise DataError(
-                f"line {i} has {len(row)} values for {len(names)} headings",
-                where=where,
-                remedy=hint,
-            )
-        columns[place] = text.row_of_numbers(row, comma, i, where)
-    return _Table(
-        dict(zip(names, columns.T, strict=True)),
-        dict(zip(names, own_units, strict=True)),
-        units or {},
-        where,
-        body[0][0],
-    )
-
-
-def _headings(
-    rows: list[tuple[int, list[str]]], where: str
-) -> tuple[list[str], list[str], list[tuple[int, list[str]]]]:
-    heads = rows[0][1]
-    if all(_NUMBER.match(cell) for cell in heads if cell):
-        raise DataError(
-            "the first line holds numbers and no headings",
-            where=where,
-            remedy="Name the columns with their units, for example: f (Hz), E_stor (MPa)",
-        )
-    body = rows[1:]
-    while len(heads) > 1 and heads[-1] == "" and all(row[-1] == "" for _, row in body):
-        heads = heads[:-1]
-        body = [(i, row[:-1]) for i, row in body]
-    matched = [_HEAD.match(head) for head in heads]
-    names = [m.group(1) if m else head for m, head in zip(matched, heads, strict=True)]
-    units = [m.group(2) if m else "" for m in matched]
-    if len(set(names)) < len(names):
-        raise DataError(f"a heading occurs twice: {', '.join(names)}", where=where)
-    second = body[0][1]
-    if not any(_NUMBER.match(cell) for cell in second):
-        if len(second) == len(names):
-            units = [u or cell for u, cell in zip(units, second, strict=True)]
-        body = body[1:]
-    if not body:
-        raise DataError("there are headings but no numbers", where=where)
-    return names, units, body
-
-
-def is_shear(path: Path | str) -> bool:
-    """Return whether the headings of a table name moduli of shear (G', G_stor, G(t))."""
-    columns = _read_table(path, None).columns
-    return any(name.partition("_")[0].strip("'\"(t)") in ("G", "shear") for name in columns)
+    path = Path(path)
+    levels = (instantaneous_modulus, equilibrium_modulus)
+    if path.suffix.casefold() == ".toml":
+        series, shear = _prony_toml(path)
+        given = _given_ratio(path)
+        if shear and given is not None:  # the file's own ratio goes before that of a command
+            series, shear = young_from_shear(series, given), False
+        return RubberTest(series=series, shear=shear)
+    if is_deck(path):
+        deck = read_deck(path, modulus_unit)
+        return RubberTest(series=deck.series, shear=deck.shear, notes=deck.notes)
+    stated = dict(units or {})
+    if modulus_unit:
+        for quantity in ("relaxation modulus", "storage modulus", "loss modulus", *MODULI,
+                         "modulus magnitude", "term"):  # fmt: skip
+            stated.setdefault(quantity, modulus_unit)
+    tables = read_tables(path, stated)
+    for has, made in (
+        (_is_sweep, lambda t: RubberTest(sweeps=tuple(_sweeps(t)))),
+        (_is_series, lambda t: RubberTest(series=_series(t[0], *levels))),
+        (_is_relaxation, lambda t: RubberTest(curves=tuple(_curves(t)))),
+    ):
+        fitting = [table for table in tables if has(table)]
+        if fitting:
+            found = made(fitting)
+            notes = ("moduli of a rheometer: taken as those of shear",)
+            headed = any(one.headed_shear is not None for one in fitting)
+            said = notes if fitting[0].rheometer and not headed else ()
+            return RubberTest(found.sweeps, found.curves, found.series, fitting[0].shear, said)
+    return None
 
 
 def read_dynamic(path: Path | str, *, units: Mapping[str, str] | None = None) -> list[DynamicSweep]:
-    """Return the frequency sweeps of a text table, one for each temperature, coldest first.
+    """Return the frequency sweeps of a text file, one for each temperature, coldest first.
 
-    Columns: frequency (Hz or rad/s), storage and loss modulus, and for more than one sweep the
-    temperature, with a column ``Set`` that numbers them (without it, rows within 2 K of each
-    other make a sweep). Units stand in the headings, in the row below, or in ``units`` by column
-    name. The temperature of a sweep is the mean of its rows.
+    Columns: frequency (Hz or rad/s), storage and loss modulus (or one of them and the loss
+    factor; magnitude and phase; complex viscosity and phase; storage and loss compliance), and
+    for more than one sweep the temperature. A column ``Set`` numbers the sweeps; without it they
+    are found by their order, where frequencies start again, else as many as the machine held. Units
+    stand in the headings, in the row below, or in ``units`` by column name. The temperature of a
+    sweep is the mean of its rows.
 
     Raises:
         DataError: Columns, units or values missing; values at or below zero; the file unreadable.
     """
-    table = _read_table(path, units)
-    w = table.column(FREQUENCY, "rad/s", "frequency")
-    storage = table.column(STORAGE, "Pa", "storage modulus")
-    loss = table.column(LOSS, "Pa", "loss modulus")
-    return [
-        DynamicSweep(w[rows], storage[rows], loss[rows], temperature, source=table.where)
-        for rows, temperature in _sets(table, w.size)
-    ]
+    tables = read_tables(path, units)
+    return _sweeps([table for table in tables if _is_sweep(table)] or tables[:1])
 
 
 def read_relaxation(
     path: Path | str, *, units: Mapping[str, str] | None = None
 ) -> list[RelaxationCurve]:
-    """Return the relaxation curves of a text table, one for each temperature, coldest first.
+    """Return the relaxation curves of a text file, one for each temperature, coldest first.
 
     Columns: time, relaxation modulus, and temperature and ``Set`` as in ``read_dynamic``. Rows
-    of a set may run from late to early as a whole; otherwise times have to ascend.
+    of a set may run from late to early as a whole; a time that starts again starts a curve.
 
     Raises:
         DataError: Columns, units or values missing; times neither ascending nor descending.
     """
-    table = _read_table(path, units)
-    time = table.column(TIME, "s", "time")
-    modulus = table.column(RELAX, "Pa", "relaxation modulus")
+    tables = read_tables(path, units)
+    return _curves([table for table in tables if _is_relaxation(table)] or tables[:1])
+
+
+def _is_sweep(table: Table) -> bool:
+    return table.named("angular frequency", "frequency") is not None and any(
+        table.named(name) is not None
+        for name in ("storage modulus", "loss modulus", "modulus magnitude", "complex viscosity",
+                     "storage compliance", "loss factor")
+    )  # fmt: skip
+
+
+def _is_series(table: Table) -> bool:
+    timed = table.named("relaxation time", "decay rate") is not None
+    if table.named("fraction", "term") is not None:
+        return timed or table.named("time") is not None
+    return timed
+
+
+def _is_relaxation(table: Table) -> bool:
+    return table.named("time") is not None and table.named("relaxation modulus") is not None
+
+
+def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
+    found = []
+    for table in tables:
+        w = table.angular_frequency()
+        storage, loss = _moduli(table, w)
+        if w.size > FEWEST and np.ptp(w) < 1e-3 * w.max():
+            raise DataError(
+                f"one frequency, {w[0] / (2 * np.pi):.3g} Hz, in all {w.size} rows: no spectrum",
+                where=table.where,
+                allowed=f"{FEWEST} frequencies or more at each temperature",
+                remedy="Test several frequencies at each temperature of a ramp (multi-frequency)",
+            )
+        found += [
+            DynamicSweep(w[rows], storage[rows], loss[rows], temperature, source=table.where)
+            for rows, temperature in _sets(table, w)
+        ]
+    return sorted(found, key=lambda sweep: sweep.temperature or 0.0)
+
+
+def _moduli(table: Table, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return storage and loss modulus (Pa) from whatever pair of columns gives them."""
+
+    def si(name: str) -> np.ndarray | None:
+        column = table.named(name)
+        return None if column is None else table.si(column)
+
+    storage, loss, tangent = (si(n) for n in ("storage modulus", "loss modulus", "loss factor"))
+    angle = si("phase angle")
+    if tangent is None and angle is not None:
+        tangent = np.tan(angle)
+    if storage is not None and (loss is not None or tangent is not None):
+        return storage, storage * tangent if loss is None else loss
+    if loss is not None and tangent is not None:
+        return loss / tangent, loss
+    size = si("modulus magnitude")
+    if size is None and (viscosity := si("complex viscosity")) is not None:
+        size = viscosity * w
+    if size is not None and tangent is not None:
+        storage = size / np.sqrt(1.0 + tangent**2)
+        return storage, storage * tangent
+    compliance, lost = si("storage compliance"), si("loss compliance")
+    if compliance is not None and lost is not None:
+        square = compliance**2 + lost**2
+        return compliance / square, lost / square
+    missing = ("loss modulus", "loss factor") if storage is not None else ("storage modulus",)
+    if size is not None:
+        missing = ("phase angle", "loss factor")
+    table.needed(*missing)
+    raise AssertionError  # one of them would have been used
+
+
+def _curves(tables: Sequence[Table]) -> list[RelaxationCurve]:
     curves = []
-    for rows, temperature in _sets(table, time.size):
-        t, e = time[rows], modulus[rows]
-        if t.size > 1 and np.all(np.diff(t) < 0.0):
-            t, e = t[::-1], e[::-1]
-        curves.append(RelaxationCurve(t, e, temperature, source=table.where))
-    return curves
+    for table in tables:
+        time = table.si(table.needed("time"))
+        modulus = table.si(table.needed("relaxation modulus"))
+        for rows, temperature in _sets(table, time):
+            t, e = time[rows], modulus[rows]
+            if t.size > 1 and np.all(np.diff(t) < 0.0):
+                t, e = t[::-1], e[::-1]
+            curves.append(RelaxationCurve(t, e, temperature, source=table.where))
+    return sorted(curves, key=lambda curve: curve.temperature or 0.0)
 
 
 def read_prony(
@@ -219,16 +219,21 @@ def read_prony(
     poisson_ratio: float = 0.499,
     units: Mapping[str, str] | None = None,
 ) -> RelaxationSpectrum:
-    """Return the spectrum of Young's modulus from a Prony series in CSV or TOML.
+    """Return the spectrum of Young's modulus from a Prony series in CSV, TOML or a solver's deck.
 
-    CSV columns: ``tau`` and either absolute terms (``E_i`` or ``G_i``, with unit) or fractions of
-    the instantaneous modulus (``e_i`` or ``g_i``). Absolute terms need the equilibrium or the
-    instantaneous modulus (Pa), fractions need one of them. Columns ``G_i`` and ``g_i``, or
-    ``shear=True``, mean shear moduli, turned into Young's with ``poisson_ratio``.
+    CSV columns: ``tau`` (or decay rates ``beta`` = 1 / tau) and either absolute terms (``E_i`` or
+    ``G_i``, with unit) or fractions of the instantaneous modulus (``e_i``, ``g_i``, ``alpha_i``).
+    A row with tau = inf or beta = 0 is the modulus at rest; a column ``E_0`` (as pyvisco writes
+    it) the instantaneous, ``E_inf`` that at rest. A series that names neither needs one of
+    ``instantaneous_modulus`` and ``equilibrium_modulus`` (Pa). Columns of shear, or
+    ``shear=True``, are turned into Young's with ``poisson_ratio``.
 
     TOML: ``modulus = "young"`` or ``"shear"``, ``equilibrium_modulus`` or
     ``instantaneous_modulus`` as text with unit, optional ``poisson_ratio`` and ``source``, and
     ``[[term]]`` tables with ``relaxation_time`` and ``modulus`` (text with unit) or ``fraction``.
+
+    A series that leaves (next to) nothing at rest flows under load: ``RelaxationSpectrum.cautions``
+    says so.
 
     Raises:
         DataError: Nothing to fix the level by, fractions that sum to more than one, columns
@@ -237,31 +242,94 @@ def read_prony(
     """
     path = Path(path)
     if path.suffix.casefold() == ".toml":
-        return _prony_toml(path, poisson_ratio)
-    table = _read_table(path, units)
-    tau = table.column(TAU, "s", "relaxation time")
-    absolute = [name for name in TERM if name in table.columns]
-    fractions = [name for name in FRACTION if name in table.columns]
-    if not fractions and not absolute:
+        spectrum, of_shear = _prony_toml(path)
+        given = _given_ratio(path)
+        poisson_ratio = poisson_ratio if given is None else given
+    elif is_deck(path):
+        deck = read_deck(path, (units or {}).get("modulus"))
+        spectrum, of_shear = deck.series, deck.shear
+    else:
+        tables = read_tables(path, units)
+        table = next((table for table in tables if _is_series(table)), tables[0])
+        spectrum = _series(table, instantaneous_modulus, equilibrium_modulus)
+        of_shear = bool(table.shear)
+    return young_from_shear(spectrum, poisson_ratio) if (
+        of_shear if shear is None else shear
+    ) else spectrum  # fmt: skip
+
+
+def _series(
+    table: Table, instantaneous: float | None, equilibrium: float | None
+) -> RelaxationSpectrum:
+    """Return the series of a table, moduli as headed."""
+    where, tau = table.where, _times(table)
+    fraction, term = table.named("fraction"), table.named(*_TERMS)
+    if fraction is None and term is None:
         raise DataError(
-            f"no column of terms among {', '.join(table.columns)}",
-            where=str(path),
+            "no column of terms among "
+            + ", ".join(text.excerpt(column.name) for column in table.columns),
+            where=where,
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )
-    spectrum = _prony(
-        tau,
-        table.columns[fractions[0]]
-        if fractions
-        else table.column(absolute[:1], "Pa", "term modulus"),
-        bool(fractions),
-        instantaneous_modulus,
-        equilibrium_modulus,
-        str(path),
-        str(path),
+    values = table.si(fraction or term)  # type: ignore[arg-type]
+    wrong = np.flatnonzero(values < 0.0)
+    if wrong.size and fraction is None:
+        raise InputError(
+            f"term {wrong[0] + 1} (line {table.lines[wrong[0]]}) is negative",
+            where=where,
+            allowed="terms of 0 or more",
+            remedy="Fit the series again with terms of 0 or more: a negative one stores energy",
+        )
+    resting = np.isinf(tau)
+    stands = {name: _constant(table, table.named(name)) for name in MODULI}
+    at_once, at_rest = stands["modulus at once"], stands["modulus at rest"]
+    if at_once is not None and at_rest is not None:
+        at_once = None  # they say the same; the one at rest needs no sum
+    if resting.any():
+        if fraction is None:
+            at_once, at_rest = None, float(values[resting].sum())
+        tau, values = tau[~resting], values[~resting]
+    if instantaneous is not None or equilibrium is not None:
+        at_once, at_rest = instantaneous, equilibrium
+    return _prony(tau, values, fraction is not None, at_once, at_rest, where, where)
+
+
+def _constant(table: Table, column: Column | None) -> float | None:
+    """Return the modulus (Pa) that a column holds, in every row or in the first alone."""
+    if column is None:
+        return None
+    cells = [cell for cell in column.cells if cell.casefold() not in text.MISSING]
+    whole = Table(
+        (Column(column.name, column.quantity, column.unit, tuple(cells), column.form),),
+        table.lines,
+        table.where,
+        stated=table.stated,
     )
-    if shear is None:
-        shear = any(name in table.columns for name in ("G_i", "g_i", "G"))
-    return young_from_shear(spectrum, poisson_ratio) if shear else spectrum
+    values = whole.si(whole.columns[0])
+    if values.size == 0 or np.ptp(values) > 1e-9 * abs(values[0]):
+        raise DataError(f"the column {column.name} holds more than one modulus", where=table.where)
+    return float(values[0])
+
+
+def _times(table: Table) -> np.ndarray:
+    """Return relaxation times (s), infinite for the modulus at rest."""
+    column = table.named("relaxation time", "decay rate") or table.named("time")
+    if column is None:
+        column = table.needed("relaxation time", "decay rate")
+    if column.quantity == "decay rate":
+        rate = table.si(column)
+        with np.errstate(divide="ignore"):
+            tau = np.where(rate == 0.0, np.inf, 1.0 / rate)
+    else:
+        tau = table.si(column, infinite=True)
+    wrong = np.flatnonzero(~(tau > 0.0))
+    if wrong.size:
+        raise InputError(
+            f"{column.name} {column.cells[wrong[0]]} in line {table.lines[wrong[0]]}",
+            where=table.where,
+            allowed="relaxation times above 0, inf for the modulus at rest",
+        )
+    return tau
 
 
 def _prony(
@@ -279,7 +347,9 @@ def _prony(
         raise DataError(
             "a Prony series needs either the instantaneous or the equilibrium modulus",
             where=where,
-            allowed="one of instantaneous_modulus and equilibrium_modulus",
+            allowed="one of instantaneous_modulus and equilibrium_modulus, a row tau = inf, or a "
+            "column E_0 or E_inf",
+            remedy=f"Give {_LEVELS}",
         )
     total = float(np.sum(terms))
     if fractions:
@@ -308,11 +378,22 @@ def _prony(
     return RelaxationSpectrum(level, terms, tau, source=source)
 
 
-def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
+def _toml(path: Path) -> dict[str, Any]:
     try:
-        data = tomllib.loads(text.decoded(text.existing(path).read_bytes(), str(path)))
+        return tomllib.loads(text.decoded(text.existing(path).read_bytes(), str(path)))
     except tomllib.TOMLDecodeError as error:
         raise DataError(f"not valid TOML: {error}", where=str(path)) from error
+
+
+def _given_ratio(path: Path) -> float | None:
+    """Return Poisson's ratio that a series in TOML names."""
+    given = _toml(path).get("poisson_ratio")
+    return None if given is None else float(given)
+
+
+def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
+    """Return the series of a TOML file as it is, and whether it is of shear."""
+    data = _toml(path)
     kind = data.get("modulus", "young")
     if kind not in ("young", "shear"):
         raise InputError(
@@ -349,23 +430,69 @@ def _prony_toml(path: Path, poisson_ratio: float) -> RelaxationSpectrum:
         str(path),
         str(data.get("source", path)),
     )
-    if kind == "shear":
-        return young_from_shear(spectrum, float(data.get("poisson_ratio", poisson_ratio)))
-    return spectrum
+    return spectrum, kind == "shear"
 
 
-def _sets(table: _Table, count: int) -> list[tuple[np.ndarray, float | None]]:
-    tested = table.named(TEMPERATURE) is not None
-    kelvin = table.column(TEMPERATURE, "K", "temperature") if tested else None
-    label = table.named(SET)
+def _sets(table: Table, axis: np.ndarray) -> list[tuple[np.ndarray, float | None]]:
+    """Return the rows of each test of a table and its temperature (K), coldest first.
+
+    ``axis`` is what runs within a test: frequency or time.
+    """
+    column, label = table.named("temperature"), table.named("set")
+    kelvin = None if column is None else table.si(column)
     if label is not None:
-        numbers = table.complete(label)
+        numbers = table.numbers(label)
         groups = [np.flatnonzero(numbers == n) for n in np.unique(numbers)]
-    elif kelvin is not None:
-        order = np.argsort(kelvin, kind="stable")
-        cuts = np.flatnonzero(np.diff(kelvin[order]) > 2.0) + 1
-        groups = [np.sort(group) for group in np.split(order, cuts)]
     else:
-        groups = [np.arange(count)]
-    sets = [(rows, None if kelvin is None else float(kelvin[rows].mean())) for rows in groups]
+        groups = _held(axis, kelvin)
+    sets = [(rows, table.kelvin if kelvin is None else float(kelvin[rows].mean()))
+            for rows in groups]  # fmt: skip
     return sorted(sets, key=lambda pair: pair[1] if pair[1] is not None else 0.0)
+
+
+def _held(axis: np.ndarray, kelvin: np.ndarray | None) -> list[np.ndarray]:
+    """Return the rows of each test by what the machine did: runs of the axis that start again.
+
+    Runs at the temperature of the run before (a sweep up and down, a repeated one) are one test.
+    Where the axis does not run (each frequency over all temperatures), the rows are parted at the
+    widest steps between their temperatures, into as many tests as the commonest frequency has rows.
+    """
+    whole = [np.arange(axis.size)]
+    runs = _runs(axis)
+    if kelvin is None:
+        up = all(axis[run[-1]] > axis[run[0]] for run in runs)
+        return runs if len(runs) > 1 and up and min(map(len, runs)) > FEWEST else whole
+    if np.ptp(kelvin) < SAME:
+        return whole
+    if sum(len(run) for run in runs if len(run) >= FEWEST) < 0.8 * axis.size:
+        order = np.argsort(kelvin, kind="stable")
+        _, count = np.unique(np.round(np.log(axis), 3), return_counts=True)
+        steps = np.diff(kelvin[order])
+        cuts = np.sort(np.argsort(steps)[steps.size - (count.max() - 1) :]) + 1
+        return [np.sort(group) for group in np.split(order, cuts)]
+    means = [float(kelvin[run].mean()) for run in runs]
+    steps = np.abs(np.diff(means))
+    wide = steps[steps > SAME]
+    same = min(SAME, 0.3 * float(np.median(wide))) if wide.size else SAME
+    if not wide.size and np.ptp(means) > 2 * SAME:
+        same = 0.0  # a slow ramp: every run is a test of its own
+    order = np.argsort(means, kind="stable")
+    groups: list[list[int]] = []
+    for k in order:
+        if groups and means[k] - means[groups[-1][0]] <= same:
+            groups[-1].append(int(k))
+        else:
+            groups.append([int(k)])
+    return [np.sort(np.concatenate([runs[k] for k in group])) for group in groups]
+
+
+def _runs(axis: np.ndarray) -> list[np.ndarray]:
+    """Return the rows of each run of values that only rise or only fall."""
+    starts, sign = [0], 0.0
+    for k, step in enumerate(np.sign(np.diff(axis)), 1):
+        if step == 0.0 or (sign and step != sign):
+            starts.append(k)
+            sign = 0.0
+        else:
+            sign = step
+    return np.split(np.arange(axis.size), starts[1:])

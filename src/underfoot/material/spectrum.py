@@ -10,6 +10,9 @@ from underfoot.core import InputError, display
 from underfoot.core.arrays import scalar_or_array
 from underfoot.core.presentation import Presentable, Table
 
+LEAST_AT_REST = 1e-6
+"""Part of the modulus at once below which nothing is left at rest."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RelaxationSpectrum(Presentable):
@@ -74,6 +77,18 @@ class RelaxationSpectrum(Presentable):
         rows += [(number, time, modulus) for number, (time, modulus) in enumerate(terms, start=1)]
         columns = ("term", "relaxation time s", "modulus Pa")
         return Table(f"Relaxation spectrum ({self.source or 'no source'})", columns, rows)
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return that nothing is left at rest, which no cross-linked rubber does."""
+        rest, once = self.equilibrium_modulus, self.instantaneous_modulus
+        if rest > LEAST_AT_REST * once:
+            return ()
+        return (
+            f"At rest {display(rest, 'Pa')} of {display(once, 'Pa')} is left: it flows under a "
+            f"load held longer than {display(float(self.relaxation_times.max()), 's')}, which no "
+            "cross-linked rubber does. Its fractions sum to 1: fit the series with a modulus at "
+            "rest, or add it as a row tau = inf.",
+        )
 
     @property
     def instantaneous_modulus(self) -> float:

@@ -210,6 +210,8 @@ def measured_table(
         )
     scans = [read_scan(path, strict=True) for path in (floor, shoe) if path is not None]
     name = " on ".join(scan.name for scan in reversed(scans)) + f", {rubber[1]}"
+    if any(scan.directions is not None for scan in scans):
+        name += ", a lay left out (C(q) as its mean over directions)"
     return table_over_scales(
         scans[0].density,
         (longest, SHORTEST_WAVE),
@@ -270,6 +272,7 @@ def surface_from(
     measured = surface.read_surface(file)
     if isinstance(measured, Profile):
         return _from_profile(measured, points, seed, first, last)
+    measured = surface.squared(measured)
     return measured if measured.periodic else mirrored(measured)
 
 

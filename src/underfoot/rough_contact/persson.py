@@ -26,6 +26,7 @@ GAP_GAMMA = 0.45
 FRICTION_GAMMA = 0.5
 """Reduced deformation in partial contact (source: about 0.5, from simulations)."""
 _DIRECTIONS = 48
+Directions = tuple[np.ndarray, np.ndarray]
 
 
 def persson(
@@ -35,6 +36,7 @@ def persson(
     modulus: Modulus,
     speed: float = 0.0,
     poisson_ratio: float = 0.5,
+    directions: Directions | None = None,
 ) -> TheoryContact:
     """Return area, mean gap (elastic case) and hysteresis COF at nominal pressures (Pa, > 0).
 
@@ -43,7 +45,9 @@ def persson(
     """
     q, c = checked_spectrum(wavenumber, spectrum)
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
-    fractions, friction = persson_growth(p, q, c, modulus, speed, poisson_ratio)
+    fractions, friction = persson_growth(
+        p, q, c, modulus, speed, poisson_ratio, directions=directions
+    )
     area = fractions[:, -1]
     gap, reason = None, "mean gap: the theory derives it from stored energy, which sliding loses"
     source = FRICTION_SOURCE
@@ -71,6 +75,7 @@ def persson_growth(
     speed: float = 0.0,
     poisson_ratio: float = 0.5,
     gamma: float = FRICTION_GAMMA,
+    directions: Directions | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return real contact fraction P and hysteresis COF from roughness up to each wave number.
 
@@ -86,6 +91,9 @@ def persson_growth(
             pi int q C dq.
         modulus: Young's modulus as in ``steady_sliding``: Pa, a material, or E*(rad/s).
         speed: m/s; 0 takes the modulus at rest; mu(-v) = -mu(v).
+        directions: Of a surface with a lay, |cos| of the angles from sliding and the share of C in
+            each, (wave numbers, angles); None: all directions alike. The integrals over phi are
+            then sums, 2 pi times the shares: waves whose crests lie along sliding lose nothing.
 
     Exact at full contact (P = S = 1), where friction is a sum over independent waves. At light load
     the area is p/(E* h') times 1.60, where half-space solutions of broad spectra give 2.0 to 2.3:
@@ -99,11 +107,14 @@ def persson_growth(
     if bad.size:
         raise InputError(f"the pressure is {bad[0]}", where="Persson", allowed="above zero")
     nodes, weights = np.polynomial.legendre.leggauss(_DIRECTIONS)
-    cosine, quadrant = np.cos(0.25 * np.pi * (nodes + 1.0)), 0.25 * np.pi * weights
-    frequency = np.abs(speed) * q[:, None] * cosine[None, :]
+    cosine = np.broadcast_to(np.cos(0.25 * np.pi * (nodes + 1.0)), (q.size, nodes.size))
+    quadrant = np.broadcast_to(0.25 * np.pi * weights, cosine.shape)
+    if directions is not None:
+        cosine, quadrant = directions[0], 0.5 * np.pi * directions[1]
+    frequency = np.abs(speed) * q[:, None] * cosine
     e = modulus_function(modulus, frequency.ravel())(frequency) / (1.0 - poisson_ratio**2)
-    stiffness_squared = 4.0 * (np.abs(e) ** 2 @ quadrant)
-    loss = 4.0 * ((np.imag(e) * cosine) @ quadrant) * np.sign(speed)
+    stiffness_squared = 4.0 * np.sum(np.abs(e) ** 2 * quadrant, axis=1)
+    loss = 4.0 * np.sum(np.imag(e) * cosine * quadrant, axis=1) * np.sign(speed)
     spread = cumulative(q**3 * c * stiffness_squared, q) / (8.0 * p[:, None] ** 2)
     with np.errstate(divide="ignore"):
         fraction = erf(0.5 / np.sqrt(spread))

@@ -49,8 +49,8 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
         "",
         "Written by `underfoot studies run all`. Counted are independent statements: each reading "
         "once, nothing that a parameter was chosen on, no comparison of the report's numbers "
-        "with each other. What an agreement needs is fixed in `wings/` before anything is "
-        "computed.",
+        "with each other. What an agreement needs is fixed in `src/underfoot/studies` before "
+        "anything is computed.",
         "",
         "| study | " + " | ".join(str(verdict) for verdict in Verdict) + " |",
         "|---" * (len(Verdict) + 1) + "|",

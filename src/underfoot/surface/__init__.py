@@ -12,12 +12,13 @@ from .heights import Profile as Profile
 from .heights import Resolution as Resolution
 from .heights import profile_from_positions as profile_from_positions
 from .heights import shortest_reliable_wavelength as shortest_reliable_wavelength
+from .instruments import read_instrument as read_instrument
 from .prepare import filled as filled
 from .prepare import levelled as levelled
 from .prepare import periodised as periodised
+from .prepare import squared as squared
 from .read import InstrumentResult as InstrumentResult
 from .read import read_dektak as read_dektak
-from .read import read_instrument as read_instrument
 from .read import read_map as read_map
 from .read import read_profile as read_profile
 from .read import read_surface as read_surface

@@ -47,27 +47,28 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
         raise InputError(f'"{ends}"', where="ends", allowed=", ".join(ENDS))
     if ends == "periodic" and not surface.periodic:
         raise InputError("the surface is not periodic", where="ends", allowed="drop or regression")
-    if cutoff < 2.0 * surface.spacing * (1.0 - 1e-9):
+    coarsest = max(surface.spacings)
+    if cutoff < 2.0 * coarsest * (1.0 - 1e-9):
         raise InputError(
-            f"cut-off {metres(cutoff)} on a spacing of {metres(surface.spacing)}",
+            f"cut-off {metres(cutoff)} on a spacing of {metres(coarsest)}",
             where="cutoff",
-            allowed=f"at least two spacings, {metres(2.0 * surface.spacing)}",
+            allowed=f"at least two spacings, {metres(2.0 * coarsest)}",
         )
-    lost = weights(surface.spacing, cutoff, 0.5).size // 2 if ends == "drop" else 0
-    for n in surface.heights.shape:
-        if n - 2 * lost < 2 or n * surface.spacing < cutoff * (1.0 - 1e-9):
+    drop = ends == "drop"
+    lost = [weights(h, cutoff, 0.5).size // 2 if drop else 0 for h in surface.spacings]
+    for n, h, rim in zip(surface.heights.shape, surface.spacings, lost, strict=True):
+        if n - 2 * rim < 2 or n * h < cutoff * (1.0 - 1e-9):
             raise DataError(
-                f"a length of {metres(n * surface.spacing)} is too short for the cut-off "
-                f"{metres(cutoff)}",
+                f"a length of {metres(n * h)} is too short for the cut-off {metres(cutoff)}",
                 where="cutoff",
                 allowed=f"more than {(2.0 if ends == 'drop' else 1.0) * cutoff:g} m",
                 remedy='Take a shorter cut-off, a longer measurement, or ends="regression"',
             )
     long = surface.heights
-    for axis in range(long.ndim):
+    for axis, h in enumerate(surface.spacings):
         moved = np.moveaxis(long, axis, 0)
-        long = np.moveaxis(mean_line(moved, surface.spacing, cutoff, ends), 0, axis)
-    inner = tuple(slice(lost, n - lost) for n in surface.heights.shape)
+        long = np.moveaxis(mean_line(moved, h, cutoff, ends), 0, axis)
+    inner = tuple(slice(rim, n - rim) for n, rim in zip(surface.heights.shape, lost, strict=True))
     short = surface.heights[inner] - long
     periodic = ends == "periodic"
     name = f"ISO 16610-{21 if surface.axes == 1 else 61}"

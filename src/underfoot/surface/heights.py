@@ -30,13 +30,18 @@ class Heights:
                 allowed=f"{'(n,)' if self.axes == 1 else '(nx, ny)'}, 2 or more",
             )
         check_heights(heights)
-        for name in ("spacing", "tip_radius", "resolution"):
+        for name in ("spacing", "spacing_y", "tip_radius", "resolution"):
             if (value := getattr(self, name, None)) is not None:
                 check_length(name, value)
         heights.setflags(write=False)
         object.__setattr__(self, "heights", heights)
         object.__setattr__(self, "spacing", float(self.spacing))
         object.__setattr__(self, "processing", tuple(self.processing))
+
+    @property
+    def spacings(self) -> tuple[float, ...]:
+        """Distance between points along each axis, m."""
+        return (self.spacing,)
 
     def changed(self, heights: np.ndarray, done: str, **changes: Any) -> Self:
         """Return the surface with new heights and one more line in ``processing``."""
@@ -46,18 +51,20 @@ class Heights:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeightMap(Heights):
-    """Heights of a surface on a square grid.
+    """Heights of a surface on a grid of square or oblong cells.
 
     Parameters:
         heights: m, (nx, ny); axis 0 along sliding (x), axis 1 across (y), positive away from the
             solid.
-        spacing: m, the same along both axes.
+        spacing: m, along x, and along y too where ``spacing_y`` is not given.
         periodic: True when the right edge continues at the left one and the far edge at the near
             one.
         resolution: m, shortest wavelength the instrument resolves; None when not known (then the
             grid decides).
         source: Instrument, file or generator.
         processing: What was done to the heights, in order.
+        spacing_y: m, along y, of oblong cells; contact solvers need square ones
+            (``underfoot.surface.squared``).
 
     Raises:
         InputError: Missing heights, not two-dimensional, fewer than 2 points a side, spacing not
@@ -71,6 +78,12 @@ class HeightMap(Heights):
     resolution: float | None = None
     source: str = ""
     processing: tuple[str, ...] = ()
+    spacing_y: float | None = None
+
+    @property
+    def spacings(self) -> tuple[float, float]:
+        """Distance between points along x and y, m."""
+        return self.spacing, self.spacing if self.spacing_y is None else self.spacing_y
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -80,7 +93,7 @@ class HeightMap(Heights):
     @property
     def size(self) -> tuple[float, float]:
         """Lengths covered along x and y, m: n times the spacing."""
-        return self.shape[0] * self.spacing, self.shape[1] * self.spacing
+        return self.shape[0] * self.spacings[0], self.shape[1] * self.spacings[1]
 
     @property
     def rms_height(self) -> float:
@@ -211,7 +224,8 @@ def profile_from_positions(
             raise DataError(
                 f"positions are uneven: up to {metres(off)} off a grid of {metres(spacing)}",
                 where=where,
-                remedy="Ask for resampling (resample=True); the result then says so",
+                remedy="Export evenly spaced positions, or ask for resampling in Python "
+                "(resample=True); the result then says so",
             )
         check_heights(z)
         even = np.linspace(x[0], x[-1], x.size)
@@ -272,8 +286,9 @@ def shortest_derivable_wavelength(surface: Heights) -> Resolution:
 
 
 def _sampling(surface: Heights, points: int) -> Resolution:
-    reason = f"{points} points to a wave at a spacing of {metres(surface.spacing)}"
-    return Resolution(points * surface.spacing, reason)
+    spacing = max(surface.spacings)  # the coarser axis decides for waves in every direction
+    reason = f"{points} points to a wave at a spacing of {metres(spacing)}"
+    return Resolution(points * spacing, reason)
 
 
 def _tip_limit(heights: np.ndarray, spacing: float, radius: float) -> float:

@@ -85,6 +85,39 @@ def levelled(surface: Surface, degree: int = 1) -> Surface:
     return surface.changed(rest, f"least squares {form} removed")
 
 
+def squared(surface: HeightMap) -> HeightMap:
+    """Return a map of square cells; oblong ones are divided along their longer side by splines.
+
+    Nothing shorter than the coarser spacing resolves is added; ``resolution`` says so.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    fine, coarse = min(surface.spacings), max(surface.spacings)
+    if fine == coarse:
+        return surface
+    axis = surface.spacings.index(coarse)
+    n = surface.shape[axis]
+    z = np.moveaxis(surface.heights, axis, 0)
+    if surface.periodic:
+        count = round(
+            n * coarse / fine
+        )  # a whole number of cells: stretched by half of one at most
+        z, at, between = np.concatenate([z, z[:1]]), np.arange(n + 1), np.arange(count) * n / count
+    else:
+        at, between = np.arange(n), np.arange(0.0, (n - 1) * (1 + 1e-12), fine / coarse)
+    spline = make_interp_spline(
+        at, z, k=min(3, n - 1), bc_type="periodic" if surface.periodic else None
+    )
+    return surface.changed(
+        np.moveaxis(spline(between), 0, axis),
+        f"oblong cells of {metres(surface.spacings[0])} by {metres(surface.spacings[1])} made "
+        "square",
+        spacing=fine,
+        spacing_y=None,
+        resolution=max(surface.resolution or 0.0, 2.0 * coarse),
+    )
+
+
 METHODS = ("taper", "mirror")
 
 

@@ -1,23 +1,31 @@
 """Profiles and maps from text, Dektak files and the formats of instruments."""
 
 import re
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError, InputError, text, to_si
-from underfoot.core.optional import optional_module
+from underfoot.core import DataError, InputError, UnderfootError, text
+from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Profile, profile_from_positions
-from .prepare import filled
+from .instruments import (
+    complete,
+    is_instrument,
+    is_text,
+    length_factor,
+    read_instrument,
+    spacings_of,
+)
 
-_QUANTITY = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*([A-Za-zµμ]+)?")
-SPACING = "Give the spacing in metres"
-TEXT = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
+_QUANTITY = re.compile(r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ]+)?")
+_FORMS = (NumberForm(), NumberForm(",", True), NumberForm(".", True))
+_NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
+"""Files of text that no instrument's format has."""
+SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
     r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|mm|m)(?![A-Za-z])", re.I
 )
@@ -63,58 +71,77 @@ def read_numbers(path: Path | str) -> TextNumbers:
     header = tuple(line.lstrip("#").strip() for _, line in lines[:start] if line.strip())
     body = text.with_content(lines[start:])
     separator = _separator([line for _, line in body[:50]])
-    comma = separator != "," and any("," in line for _, line in body[:50])
     rows = [text.cells_of(line, separator) for _, line in body]
     while len(rows[0]) > 1 and all(len(row) > 1 and row[-1] == "" for row in rows):
         rows = [row[:-1] for row in rows]  # instruments close their lines with separators
+    count = len(rows)
+    while len(rows) > 2 and not any(_holds(rows[-1][0], form) for form in _FORMS):
+        rows, body = rows[:-1], body[:-1]  # words below the numbers
     width = len(rows[0])
-    values = np.empty((len(rows), width))
-    for k, ((i, _), row) in enumerate(zip(body, rows, strict=True)):
+    for (i, _), row in zip(body, rows, strict=True):
         if len(row) != width:
             raise DataError(
                 f"line {i} has {len(row)} values, the first row has {width}",
                 where=where,
                 remedy="Values are missing or a decimal comma is taken for a separator",
             )
-        values[k] = text.row_of_numbers(row, comma, i, where)
+    values, forms = _plain_numbers([line for _, line in body], separator), [NumberForm()] * width
+    if values is None or values.shape[1] != width:
+        columns = list(zip(*rows, strict=True))
+        forms = number_forms(columns, where)
+        values = np.empty((len(rows), width))
+        for c, (cells, form) in enumerate(zip(columns, forms, strict=True)):
+            try:
+                values[:, c] = column_numbers(cells, form)
+            except ValueError:
+                k, cell = next((k, cell) for k, cell in enumerate(cells) if not _holds(cell, form))
+                raise DataError(
+                    f'"{text.excerpt(cell)}" in line {body[k][0]} is not a number',
+                    where=where,
+                    allowed="numbers",
+                ) from None
     decimals = tuple(
-        max(len(row[c].replace(",", ".").partition(".")[2]) for row in rows[:200])
-        if not any("e" in row[c].lower() for row in rows[:200])
+        max(len(form.plain(cell).partition(".")[2]) for cell in cells)
+        if not any("e" in cell.lower() for cell in cells)
         else 17
-        for c in range(width)
+        for cells, form in zip(zip(*rows[:200], strict=True), forms, strict=True)
     )
-    notes = ("decimal commas read as decimal points",) if comma else ()
+    said = {
+        "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
+        "signs between thousands left out": any(form.thousands for form in forms),
+        f"lines of words below the numbers left out: {count - len(rows)}": len(rows) < count,
+    }
+    notes = tuple(note for note, holds in said.items() if holds)
     return TextNumbers(values, header, decimals, start + 1, notes, where)
 
 
-def length_factor(unit: str, where: str) -> float:
-    """Return metres per ``unit``."""
-    name = unit.strip().replace("µ", "u").replace("μ", "u")
-    if re.fullmatch(r"micro(n|meter|metre)s?", name, re.I):
-        name = "um"
-    if name.casefold() in ("um", "nm", "mm"):
-        name = name.casefold()
+def _plain_numbers(lines: list[str], separator: str | None) -> np.ndarray | None:
+    """Return the numbers of a table that holds nothing but plain ones; None of another."""
+    if any('"' in line or (separator != "," and "," in line) for line in lines):
+        return None
     try:
-        return to_si(f"1 {name}", "m", where=where)
-    except InputError as error:
-        raise DataError(
-            error.what,
-            where=where,
-            allowed="a unit of length: nm, um, mm, m",
-            nearest=error.nearest,
-        ) from error
+        return np.loadtxt(lines, delimiter=separator, ndmin=2, comments=None)
+    except (ValueError, OverflowError):
+        return None
+
+
+def _holds(cell: str, form: NumberForm) -> bool:
+    try:
+        column_numbers([cell], form)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_row(line: str) -> bool:
+    """Return whether a line holds numbers, in any form, and nothing else but missing ones."""
     cells = text.cells_of(line, _separator([line]))
-    try:
-        return not np.isnan(text.row_of_numbers(cells, True, 0, "")).all()
-    except DataError:
-        return False
+    holds = [any(_holds(cell, form) for form in _FORMS) for cell in cells]
+    return all(holds) and any(cell.casefold() not in text.MISSING for cell in cells)
 
 
 def _separator(lines: list[str]) -> str | None:
-    joined = "\n".join(lines)
+    joined = re.sub(r'"[^"]*"', "0", "\n".join(lines))  # what stands between quotes is one cell
     for candidate in (";", "\t"):
         if candidate in joined:
             return candidate
@@ -123,10 +150,10 @@ def _separator(lines: list[str]) -> str | None:
     # Blanks between and commas within numbers: "0,10 1,25" is two numbers with decimal commas.
     between = all(
         re.fullmatch(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?", cell)
-        for line in lines
+        for line in joined.splitlines()
         for cell in line.split()
     )
-    if between and any(len(line.split()) > 1 for line in lines):
+    if between and any(len(line.split()) > 1 for line in joined.splitlines()):
         return None
     return ","
 
@@ -163,7 +190,7 @@ def read_profile(
     units = data.units()
     _refuse_one_for_all(units, columns, length_unit, height_unit, data)
     to_height = _factor(height_unit, units[-1:], data, "height_unit")
-    heights, notes = _complete(
+    heights, notes = complete(
         data.rows[:, -1] * to_height, fill_missing, data.where, data.first_line
     )
     if columns == 1:
@@ -197,34 +224,59 @@ def read_map(
 ) -> HeightMap:
     """Return a map from a text file: x, y, z in three columns, or a matrix of heights.
 
-    A matrix needs ``spacing`` (m); its rows run along x. Three columns have to form a full grid
-    with square cells. Units come from the heading unless given: the first for x and y, the last
-    for z.
+    A matrix needs ``spacing`` (m), or the size that Gwyddion writes above it; its lines run along
+    x. Three columns have to form a full grid, whose cells may be oblong. Units come from the
+    heading unless given: the first for x and y, the last for z.
 
     Raises:
-        DataError: Unreadable, units missing, no full grid, cells not square, heights missing.
+        DataError: Unreadable, units missing, no full grid, heights missing.
     """
     data = read_numbers(path)
-    units = data.units()
-    if data.rows.shape[1] == 3:
+    units, size = data.units(), _gwyddion_size(data)
+    if data.rows.shape[1] == 3 and size is None:
         _refuse_one_for_all(units, 3, length_unit, height_unit, data)
-    to_height = _factor(height_unit, units[-1:], data, "height_unit")
-    if data.rows.shape[1] == 3 and data.rows.shape[0] > 3:
+    to_height = _factor(height_unit, units[-1:] if size is None else [size[2]], data, "height_unit")
+    spacing_y = None
+    if data.rows.shape[1] == 3 and data.rows.shape[0] > 3 and size is None:
         to_length = _factor(length_unit, units[:1], data, "length unit")
-        heights, spacing = _grid(data, to_length)
+        heights, (spacing, spacing_y) = _grid(data, to_length)
     elif data.rows.shape[1] < 2:
         raise DataError(
             "one column only", where=data.where, remedy="A profile is read with read_profile"
         )
-    elif spacing is None:
-        raise DataError("a matrix of heights and no spacing", where=data.where, remedy=SPACING)
     else:
-        heights = data.rows
-    heights, notes = _complete(heights * to_height, fill_missing, data.where)
-    return HeightMap(heights, spacing, source=data.where, processing=(*data.notes, *notes))
+        heights = data.rows.T  # a line of the file runs along x
+        if spacing is None and size is not None:
+            sides = [side / n for side, n in zip(size[:2], heights.shape, strict=True)]
+            spacing, spacing_y = spacings_of(sides)
+        if spacing is None:
+            raise DataError("a matrix of heights and no spacing", where=data.where, remedy=SPACING)
+    heights, notes = complete(heights * to_height, fill_missing, data.where)
+    return HeightMap(
+        heights,
+        spacing,
+        spacing_y=spacing_y,
+        source=data.where,
+        processing=(*data.notes, *notes),
+    )
 
 
-def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
+def _gwyddion_size(data: TextNumbers) -> tuple[float, float, str] | None:
+    """Return width and height (m) and the unit of heights that Gwyddion writes above a matrix.
+
+    Its words are those of the user's language, so their order tells: a line "name: number unit"
+    for the width, one for the height, then "name: unit".
+    """
+    said = [line.partition(":")[2].strip() for line in data.header]
+    for first, second, unit in zip(said, said[1:], said[2:], strict=False):
+        sides = [_QUANTITY.fullmatch(side) for side in (first, second)]
+        if all(side and side.group(2) for side in sides) and _LENGTH.fullmatch(unit):
+            width, height = (_length(side, data.where) for side in (first, second))
+            return width, height, unit
+    return None
+
+
+def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, tuple[float, float | None]]:
     x, y, z = data.rows.T
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(y))):
         raise DataError("positions are missing", where=data.where)
@@ -248,7 +300,6 @@ def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
             )
         places.append(place)
         spacings.append(step * to_length)
-    spacing = _square(spacings, data.where)
     shape = (int(places[0].max()) + 1, int(places[1].max()) + 1)
     filled_in = np.zeros(shape, dtype=int)
     np.add.at(filled_in, (places[0], places[1]), 1)
@@ -256,40 +307,7 @@ def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, float]:
         raise DataError("a point is given more than once", where=data.where)
     heights = np.full(shape, np.nan)
     heights[places[0], places[1]] = z
-    return heights, spacing
-
-
-def _square(sides: list[float], where: str) -> float:
-    """Return the side of a cell; refuse one that is not square."""
-    along, across = sides
-    if abs(along / across - 1.0) > 0.005:
-        raise DataError(
-            f"cells of {metres(along)} by {metres(across)}",
-            where=where,
-            allowed="square cells",
-            remedy="Export with the same spacing along x and y",
-        )
-    return float(np.sqrt(along * across))
-
-
-def _complete(
-    heights: np.ndarray, fill_missing: bool, where: str, first_line: int | None = None
-) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the heights without gaps and what was done, if anything."""
-    missing = ~np.isfinite(heights)
-    if not missing.any():
-        return heights, ()
-    if not fill_missing:
-        line = ""
-        if heights.ndim == 1 and first_line is not None:
-            line = f", the first in line {first_line + int(np.flatnonzero(missing)[0])}"
-        raise DataError(
-            f"{int(missing.sum())} of {heights.size} heights are missing{line}",
-            where=where,
-            remedy="Ask for interpolation (fill_missing=True); the result then says so",
-        )
-    complete, note = filled(heights)
-    return complete, (note,)
+    return heights, spacings_of(spacings)
 
 
 def _refuse_one_for_all(
@@ -403,78 +421,30 @@ def _length(text: str, where: str) -> float:
     match = _QUANTITY.match(text)
     if match is None or not match.group(2):
         raise DataError(f'"{text}" is not a length', where=where)
-    return float(match.group(1)) * length_factor(match.group(2), where)
-
-
-def read_instrument(
-    path: Path | str,
-    *,
-    length_unit: str | None = None,
-    resample: bool = False,
-    fill_missing: bool = False,
-) -> Profile | HeightMap:
-    """Return the first topography of an instrument's file as a profile or a map.
-
-    Formats: those of SurfaceTopography (SDF, X3P, SUR, PLUX, OPD, OPDx, AL3D, VK4, DATX, Nanoscope,
-    Gwyddion and others). ``length_unit`` is needed where the file has none.
-
-    Raises:
-        MissingExtraError: SurfaceTopography is not installed.
-        DataError: Not a format it reads, no unit, heights missing without ``fill_missing``, cells
-            not square, uneven positions without ``resample``.
-    """
-    path = text.existing(path)
-    package = optional_module("SurfaceTopography", "instruments", "Reading this format")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            topography: Any = package.read_topography(str(path))
-            heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
-            positions = topography.positions() if topography.dim == 1 else None
-    except Exception as error:  # its readers raise many kinds
-        raise DataError(
-            f"this file can't be read as an instrument's format ({error})",
-            where=str(path),
-            remedy="Export it as x, y, z text, SDF or X3P",
-        ) from error
-    unit = length_unit or topography.unit
-    if not unit:
-        raise DataError(
-            "the file names no unit of length", where=str(path), remedy="Give the length unit"
-        )
-    where = str(path)
-    factor = length_factor(str(unit), where)
-    heights, notes = _complete(heights * factor, fill_missing, where)
-    notes = ("read through SurfaceTopography", *notes)
-    if topography.dim == 1:
-        x = np.asarray(positions, dtype=float) * factor
-        profile = profile_from_positions(x, heights, resample=resample, source=where)
-        return profile.changed(profile.heights, "; ".join(notes))
-    sizes = zip(topography.physical_sizes, heights.shape, strict=True)
-    spacings = [size * factor / n for size, n in sizes]
-    return HeightMap(
-        heights,
-        _square(spacings, where),
-        periodic=bool(topography.is_periodic),
-        source=str(path),
-        processing=notes,
-    )
+    return float(match.group(1).replace(",", ".")) * length_factor(match.group(2), where)
 
 
 def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     """Return a profile or map from any file that can be read.
 
-    Dektak CSV, text with one or two columns (``read_profile``), three columns or a matrix
+    What a file is, its content says and not its name: Dektak CSV; GSF, X3P and SDF
+    (``instruments``); text with one or two columns (``read_profile``), three columns or a matrix
     (``read_map``); every other file goes to ``read_instrument``. ``settings`` are passed on.
     """
     path = text.existing(path)
     if is_dektak(path):
         return read_dektak(path)[0]
-    if path.suffix.casefold() in TEXT:
-        columns = read_numbers(path).rows.shape[1]
+    if is_text(path) and not is_instrument(path):
+        try:
+            columns = read_numbers(path).rows.shape[1]
+        except DataError as error:
+            if path.suffix.casefold() in _NAMES:
+                raise
+            try:
+                return read_instrument(path)  # a format that is text
+            except UnderfootError:
+                raise error from None
         return read_profile(path, **settings) if columns <= 2 else read_map(path, **settings)
-    if unused := settings.keys() & {"spacing", "height_unit"}:
-        raise InputError(
-            f"{' and '.join(sorted(unused))} given, which the file says itself", where=str(path)
-        )
+    if "spacing" in settings:
+        raise InputError("spacing given, which the file says itself", where=str(path))
     return read_instrument(path, **settings)

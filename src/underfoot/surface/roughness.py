@@ -338,12 +338,12 @@ def rms_slope(surface: HeightMap) -> float:
     """
     z = surface.heights
     if surface.periodic:
-        qx = 2.0 * np.pi * np.fft.fftfreq(z.shape[0], surface.spacing)[:, None]
-        qy = 2.0 * np.pi * np.fft.fftfreq(z.shape[1], surface.spacing)[None, :]
+        qx = 2.0 * np.pi * np.fft.fftfreq(z.shape[0], surface.spacings[0])[:, None]
+        qy = 2.0 * np.pi * np.fft.fftfreq(z.shape[1], surface.spacings[1])[None, :]
         power = np.abs(np.fft.fft2(z)) ** 2
         return float(np.sqrt(np.sum(power * (qx**2 + qy**2)))) / z.size
-    along = slope(z, surface.spacing)[:, 3:-3]
-    across = slope(z.T, surface.spacing).T[3:-3]
+    along = slope(z, surface.spacings[0])[:, 3:-3]
+    across = slope(z.T, surface.spacings[1]).T[3:-3]
     return float(np.sqrt(np.mean(along**2 + across**2)))
 
 

@@ -16,8 +16,9 @@ from underfoot.core import DataError, SourcedValue, display
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 
-from .filter import short_waves
+from .filter import long_waves, short_waves
 from .heights import HeightMap, Profile, shortest_derivable_wavelength
+from .lay import Directions, Texture, directions, lines_across, texture
 from .prepare import filled, levelled
 from .read import read_surface
 from .roughness import STANDARDS, profile_roughness
@@ -40,6 +41,8 @@ NO_FLOOR = 50e-9
 NO_ROUGHNESS = 300e-6
 SPIKE = 10.0
 """Robust standard deviations by which a dead point stands out of its neighbours."""
+ROUNDING = 1e-6
+"""Relative spread between sections that is rounding of what a file prints, not of a surface."""
 QUANTITIES = {
     "ra": ("Ra", "m", "mean deviation"),
     "rq": ("Rq", "m", "root mean square"),
@@ -54,7 +57,8 @@ QUANTITIES = {
 class Scan(Presentable):
     """Roughness numbers of a scan with their standard errors, and its isotropic spectrum.
 
-    ``values`` by the names of ``QUANTITIES`` (m and 1), over lines along both axes of a map.
+    ``values`` by the names of ``QUANTITIES`` (m and 1), over lines along both axes of a map; of a
+    map with a lay over lines across it, and Rq over the whole map (Sq).
     ``hurst`` with its standard error and ``roll_off`` (m, None where the spectrum keeps rising) are
     the power law C ~ q^(-2 (1 + H)) through ``spectrum``; ``ends`` (m^4) are its values at the
     longest and the shortest measured wave, from which ``density`` goes on by it.
@@ -73,6 +77,10 @@ class Scan(Presentable):
     notes: tuple[str, ...]
     short: str = ""
     """What a scan shorter than the usual cut-off lacks."""
+    texture: Texture | None = None
+    """Texture of a map behind the cut-off; None of a profile."""
+    directions: Directions | None = None
+    """Of a map with a lay: how the power of its waves is shared between directions."""
 
     def __repr__(self) -> str:
         return f"<Scan {self.name}: Rq {self.values['rq']}>"[:199]
@@ -96,13 +104,26 @@ class Scan(Presentable):
         shorter = self.ends[1] * (q / high) ** falling
         return np.where(q < low, longer, np.where(q > high, shorter, inside))
 
+    def directions_at(self, wavenumber: ArrayLike) -> tuple[Array, Array] | None:
+        """Return |cos| of directions from x and the share of C(q) in each, (n, bins); None: alike.
+
+        Of a map with a lay, at wave numbers (rad/m); its x is the direction of sliding.
+        """
+        return None if self.directions is None else self.directions.at(np.asarray(wavenumber))
+
     def headline(self) -> tuple[str, ...]:
         """Return Rq, Ra and the waves behind them."""
         rq, waves = self.values["rq"], [display(wave, "m") for wave in self.waves]
-        return (
+        numbers = (
             f"Rq {display(rq.value or 0.0, 'm')}, Ra {display(self.values['ra'].value or 0.0, 'm')}"
             f" after a cut-off of {display(self.cutoff, 'm')}; waves from {waves[1]} to {waves[0]} "
             "were measured.",
+        )
+        if self.texture is None or not self.texture.has_lay:
+            return numbers
+        return (
+            *numbers,
+            f"The surface has a lay ({self.texture}): Ra, Rz, Rt are across it, Rq is of the map.",
         )
 
     def cautions(self) -> tuple[str, ...]:
@@ -121,7 +142,11 @@ class Scan(Presentable):
             return display(value.value, value.unit) + spread
 
         rows = [
-            (QUANTITIES[name][0], shown(value), value.reason or QUANTITIES[name][2])
+            (
+                QUANTITIES[name][0],
+                shown(value),
+                value.reason if value.value is None else QUANTITIES[name][2],
+            )
             for name, value in self.values.items()
         ]
         roll = "none" if self.roll_off is None else display(self.roll_off, "m")
@@ -131,6 +156,14 @@ class Scan(Presentable):
             ("Longest wave", display(self.waves[0], "m"), "half the scan"),
             ("Shortest wave", display(self.waves[1], "m"), "what instrument and spacing resolve"),
         ]
+        if self.texture is not None:
+            least = "at most " if self.texture.bounded else ""
+            rows.append(
+                ("Str", f"{least}{self.texture.ratio:.2g}", "texture aspect ratio: 1 without a lay")
+            )
+            if self.texture.has_lay:
+                lay = f"{math.degrees(self.texture.direction):.0f}°"
+                rows.append(("Lay", lay, "of the grooves from x, the direction of sliding (Std)"))
         return Table("Roughness", ("Quantity", "Value", "Remark"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
@@ -149,6 +182,10 @@ class Scan(Presentable):
             "hurst": self.hurst.value,
             "hurst_error": self.hurst.uncertainty,
             "roll_off_m": self.roll_off,
+            "texture_aspect_ratio": None if self.texture is None else self.texture.ratio,
+            "lay_deg": math.degrees(self.texture.direction)
+            if self.texture is not None and self.texture.has_lay
+            else None,
             "cutoff_m": self.cutoff,
             "longest_wave_m": self.waves[0],
             "shortest_wave_m": self.waves[1],
@@ -201,36 +238,27 @@ def read_scan(
     units = {"length_unit": length_unit, "height_unit": height_unit, "spacing": spacing}
     given = {name: value for name, value in units.items() if value is not None}
     surface = _without_spikes(read_surface(path, fill_missing=True, **given))
-    notes, short = [], ""
-    lines = _lines(surface)
-    length = max(line.length for line in lines)
-    resolved = shortest_derivable_wavelength(lines[0])
-    if cutoff is None:
-        fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved.wavelength]
-        if not fitting:
-            raise DataError(
-                f"a scan of {display(length, 'm')} that resolves waves of "
-                f"{display(resolved.wavelength, 'm')} holds no cut-off",
-                where=str(path),
-                allowed=f"{', '.join(display(one, 'm') for one in CUTOFFS)}: at most the length, "
-                "at least four of the shortest waves",
-                remedy="Measure a longer part, or with a smaller spacing",
-            )
-        cutoff = fitting[0]
-        if cutoff < CUTOFFS[0]:
-            short = (
-                f"shorter than the usual cut-off of {display(CUTOFFS[0], 'm')}: waves beyond "
-                f"{display(cutoff, 'm')} are not in Ra and Rq, which are too low. Measure 4.8 mm "
-                "or more"
-            )
-    elif cutoff > length:
-        raise DataError(
-            f"a scan of {display(length, 'm')} for a cut-off of {display(cutoff, 'm')}",
-            where=str(path),
-            allowed=f"at most {display(length, 'm')}; a standard takes six cut-offs",
-            remedy="Measure a longer part, or leave the cut-off out to take the longest that fits",
-        )
-    values, sections = _numbers(lines, cutoff, max(SHORT_CUTOFF, resolved.wavelength))
+    notes: list[str] = []
+    lines, found, lay, areal = _lines(surface), None, None, None
+    chosen, short = _cutoff(lines, cutoff, str(path))
+    if isinstance(surface, HeightMap):
+        rough = _behind(surface, chosen)
+        found = texture(rough)
+        lay = found if found is not None and found.has_lay else None
+        if lay is not None:
+            lines = lines_across(surface, lay.direction + 0.5 * math.pi, LINES)
+            chosen, short = _cutoff(lines, cutoff, str(path))
+            if min(surface.size) >= chosen:
+                areal = _behind(surface, chosen).rms_height
+        elif len(set(surface.spacings)) > 1:
+            finer = "xy"[int(np.argmin(surface.spacings))]
+            sides = " by ".join(display(side, "m") for side in surface.spacings)
+            notes.append(f"cells of {sides}: numbers are of lines along {finer}, which shows more")
+    cutoff, resolved = chosen, shortest_derivable_wavelength(lines[0])
+    values, sections = _numbers(lines, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface)
+    if areal is not None:
+        source = f"ISO 25178-2 (Sq), cut-off {display(cutoff, 'm')}"
+        values["rq"] = replace(values["rq"], value=areal, source=source)
     if sections < SECTIONS:
         notes.append(f"{sections} sections of {display(cutoff, 'm')} where a standard takes five")
     if resolved.wavelength > SHORT_CUTOFF:
@@ -255,13 +283,73 @@ def read_scan(
         measured = isotropic_spectrum(surface)
         spectrum = _by_decades(measured)
     hurst, roll_off, ends = _power_law(measured, spectrum)
+    if lay is not None:
+        notes.append(
+            "the spectrum is the mean over directions; hysteresis counts sliding along x of the map"
+        )
     if isinstance(surface, Profile):
         notes.append("one direction measured: the spectrum counts as that of every direction")
     notes += [note for note in spectrum.notes if "levelled" in note]
     return Scan(
         *(Path(path).name, surface, cutoff, values, spectrum, hurst, roll_off, ends),
-        *(tuple(notes), short),
+        *(tuple(notes), short, found),
+        directions(surface, spectrum.wavenumber)
+        if lay is not None and isinstance(surface, HeightMap)
+        else None,
     )
+
+
+def _cutoff(lines: Sequence[Profile], given: float | None, where: str) -> tuple[float, str]:
+    """Return the cut-off (m) that the lines hold, and what a short scan lacks."""
+    length = max(line.length for line in lines)
+    resolved = shortest_derivable_wavelength(lines[0])
+    if given is not None:
+        if given > length:
+            raise DataError(
+                f"a scan of {display(length, 'm')} for a cut-off of {display(given, 'm')}",
+                where=where,
+                allowed=f"at most {display(length, 'm')}; a standard takes six cut-offs",
+                remedy="Measure a longer part, or leave the cut-off out to take the longest that "
+                "fits",
+            )
+        return given, ""
+    fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved.wavelength]
+    if not fitting:
+        raise DataError(
+            f"a scan of {display(length, 'm')} that resolves waves of "
+            f"{display(resolved.wavelength, 'm')} holds no cut-off",
+            where=where,
+            allowed=f"{', '.join(display(one, 'm') for one in CUTOFFS)}: at most the length, "
+            "at least four of the shortest waves",
+            remedy="Measure a longer part, or with a smaller spacing",
+        )
+    if fitting[0] == CUTOFFS[0]:
+        return fitting[0], ""
+    return fitting[0], (
+        f"shorter than the usual cut-off of {display(CUTOFFS[0], 'm')}: waves beyond "
+        f"{display(fitting[0], 'm')} are not in Ra and Rq, which are too low. Measure 4.8 mm "
+        "or more"
+    )
+
+
+def _behind(surface: HeightMap, cutoff: float) -> HeightMap:
+    """Return a map without its plane and the waves outside both cut-offs, where it holds them.
+
+    Half a cut-off is left out at each end of a side that keeps as much.
+    """
+    flat, short = levelled(surface), shortest_derivable_wavelength(surface).wavelength
+    short = max(short, SHORT_CUTOFF)
+    if min(surface.size) < cutoff:
+        return flat
+    if short < cutoff / 4:
+        flat = long_waves(flat, short, "regression")
+    rough = short_waves(flat, cutoff, "regression")
+    rims = [
+        round(0.5 * cutoff / h) if n * h >= 1.5 * cutoff else 0
+        for n, h in zip(rough.shape, rough.spacings, strict=True)
+    ]
+    inner = tuple(slice(rim, n - rim) for n, rim in zip(rough.shape, rims, strict=True))
+    return rough.changed(rough.heights[inner], "cut to what the filter covers")
 
 
 def _without_spikes(surface: Profile | HeightMap) -> Profile | HeightMap:
@@ -281,31 +369,34 @@ def _without_spikes(surface: Profile | HeightMap) -> Profile | HeightMap:
 
 
 def _lines(surface: Profile | HeightMap) -> list[Profile]:
-    """Return the profile, or up to 32 evenly spaced lines along each axis of a map."""
+    """Return the profile, or up to 32 evenly spaced lines along each axis of a map.
+
+    Of a map with oblong cells along the axis with the finer spacing.
+    """
     if isinstance(surface, Profile):
         return [surface]
-    lines = []
-    for heights in (surface.heights.T, surface.heights):
-        chosen = np.unique(np.linspace(0, len(heights) - 1, LINES).astype(int))
-        lines += [
-            Profile(line, surface.spacing, resolution=surface.resolution, periodic=surface.periodic)
-            for line in heights[chosen]
-        ]
-    return lines
+    x, y = surface.spacings
+    angles = (0.0, 0.5 * math.pi) if x == y else (0.0,) if x < y else (0.5 * math.pi,)
+    return [line for angle in angles for line in lines_across(surface, angle, LINES)]
 
 
 def _numbers(
-    lines: Sequence[Profile], cutoff: float, short: float
+    lines: Sequence[Profile],
+    cutoff: float,
+    short: float,
+    lay: Texture | None,
+    surface: Profile | HeightMap,
 ) -> tuple[dict[str, SourcedValue], int]:
     """Return the numbers over all lines that hold the cut-off, and the sections of a line.
 
     Means of the lines, of Rq and Rdq root mean squares. The standard error is the spread of Rq
     between sections over the root of those that do not overlap: lines within a cut-off of each
-    other see the same surface.
+    other, or within twice the length of a lay, see the same surface. A spread that is no more than
+    rounding is none.
     """
     lines = [line for line in lines if line.length >= cutoff]
     shortest = min(line.length for line in lines)
-    count = int((shortest - 2 * lines[0].spacing) / cutoff) - 1
+    count = int((shortest - 2 * max(line.spacing for line in lines)) / cutoff) - 1
     ends, count = ("drop", min(count, SECTIONS)) if count >= 1 else ("regression", 1)
     short_cutoff = short if short < cutoff / 4 else None
     read = [
@@ -316,9 +407,16 @@ def _numbers(
         rough = short_waves(levelled(line), cutoff, ends).heights
         size = round(cutoff / line.spacing)
         pieces += [np.std(rough[n * size : (n + 1) * size]) for n in range(count)]
-    apart = max(1, round(shortest / cutoff)) if len(lines) > 1 else 1
+    beside, alike = shortest, cutoff
+    if lay is not None and isinstance(surface, HeightMap):
+        beside = min(s / max(abs(c), 1e-9) for s, c in zip(surface.size, lay.along, strict=True))
+        alike = max(cutoff, 2 * lay.length) if not lay.bounded else math.inf
+    apart = max(1, round(beside / alike)) if len(lines) > 1 else 1
     independent = min(len(pieces), count * apart)
-    spread = float(np.std(pieces, ddof=1) / np.mean(pieces)) if len(pieces) > 1 else None
+    mean = float(np.mean(pieces))
+    spread = float(np.std(pieces, ddof=1)) / mean if len(pieces) > 1 and mean > 0 else None
+    if spread is not None and spread < ROUNDING:
+        spread = None
     source = f"{STANDARDS[0]}, cut-off {display(cutoff, 'm')}, {count} sections"
     values = {}
     for name, (_, unit, _) in QUANTITIES.items():

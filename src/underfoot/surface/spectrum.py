@@ -125,11 +125,11 @@ def profile_spectrum(
     ``shortest_reliable_wavelength``.
     """
     lines, shape, notes = _windowed(_lines(surface.heights, axis), window, surface.periodic, (0,))
-    n = lines.shape[0]
-    length = n * surface.spacing
+    n, spacing = lines.shape[0], surface.spacings[axis]
+    length = n * spacing
     power = np.mean(np.abs(np.fft.rfft(lines * shape, axis=0)) ** 2, axis=1)
     density = power * length / (2.0 * np.pi * n**2) / np.mean(shape**2)
-    q = 2.0 * np.pi * np.fft.rfftfreq(n, surface.spacing)
+    q = 2.0 * np.pi * np.fft.rfftfreq(n, spacing)
     if n % 2 == 0:
         density[-1] *= 0.5  # the highest wave of an even grid stands for both signs
     return ProfileSpectrum(
@@ -150,8 +150,8 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
     lx, ly = surface.size
     transform = np.abs(np.fft.fft2(z * shape)) ** 2
     density = transform * (lx * ly) / ((2.0 * np.pi) ** 2 * (nx * ny) ** 2) / np.mean(shape**2)
-    qx = 2.0 * np.pi * np.fft.fftfreq(nx, surface.spacing)[:, None]
-    qy = 2.0 * np.pi * np.fft.fftfreq(ny, surface.spacing)[None, :]
+    qx = 2.0 * np.pi * np.fft.fftfreq(nx, surface.spacings[0])[:, None]
+    qy = 2.0 * np.pi * np.fft.fftfreq(ny, surface.spacings[1])[None, :]
     q = np.hypot(qx, qy)
     step = 2.0 * np.pi / min(lx, ly)
     ring = np.rint(q / step).astype(int).ravel()
@@ -299,7 +299,7 @@ def autocorrelation(surface: Heights, *, axis: int = 0) -> tuple[np.ndarray, np.
     covariance = np.fft.irfft(power, size)[:half] / pairs
     if covariance[0] <= 0.0:
         raise InputError("the surface is flat", where="autocorrelation")
-    return surface.spacing * np.arange(half), covariance / covariance[0]
+    return surface.spacings[axis] * np.arange(half), covariance / covariance[0]
 
 
 def correlation_length(

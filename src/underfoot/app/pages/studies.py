@@ -19,6 +19,7 @@ from underfoot.core.files import whole_file
 from underfoot.core.units import display
 
 from ..components import SoleView, sentences, task_line, title
+from ..inputs import read_count
 from ..jobs import Task
 from ..project import NAME
 from ..session import Session, address, problem_parts
@@ -128,8 +129,8 @@ class _Study:
                 self.progress = ui.element("div")
                 with ui.element("div").classes("study-row") as self.steps:
                     self.stop_button = ui.button(self.text("studies.stop"), on_click=self.stop)
-                    self.more = ui.number(self.text("studies.more"), min=1, step=1)
-                    self.more.props("dense outlined")
+                    self.more = ui.input(self.text("studies.more"))
+                    self.more.props("dense outlined inputmode=numeric")
                     self.widen_button = ui.button(self.text("studies.widen"), on_click=self.widen)
                     for each in (self.stop_button, self.widen_button):
                         each.props("flat no-caps")
@@ -216,11 +217,15 @@ class _Study:
             field = ui.select(words, value=value if value in options else options[0], label=label)
             field.props("options-dense")
         else:
-            field = ui.number(label, value=value or None, min=1, step=1)
+            field = ui.input(label, value=str(value or ""))
+            field.props("inputmode=numeric")
         field.props("dense outlined")
 
         async def changed() -> None:
-            new = int(field.value) if field.value and not options else field.value or None
+            try:
+                new = (field.value or None) if options else read_count(self.session, field)
+            except InputError:
+                return  # the field says what is wrong
             await self.keep("method", {key: new}, part=True)
 
         field.on_value_change(changed) if options else field.on("blur", changed)
@@ -283,7 +288,7 @@ class _Study:
         self.stop_button.set_visibility(self._working > 0)
         for each in (self.more, self.widen_button):
             each.set_visibility(budget is not None)
-        self.more.value = self.more.value or (budget and max(1, budget // 2))
+        self.more.value = self.more.value or (str(max(1, budget // 2)) if budget else "")
         return sheet
 
     # the run
@@ -299,13 +304,16 @@ class _Study:
 
     async def widen(self) -> None:
         """Give the study more runs, and go on."""
+        try:
+            more = read_count(self.session, self.more)
+        except InputError:
+            return  # the field says what is wrong
         task = self.session.jobs.latest(self.name, COMPUTED)
         if task is not None and task.open:
             self.session.jobs.cancel(task)
             await self.session.jobs.finished(task)
-        if self.sheet and self.sheet["budget"] and self.more.value:
-            budget = self.sheet["budget"] + int(self.more.value)
-            await self.keep("method", {"budget": budget}, part=True)
+        if self.sheet and self.sheet["budget"] and more:
+            await self.keep("method", {"budget": self.sheet["budget"] + more}, part=True)
             await self._fill()
         await self.run()
 

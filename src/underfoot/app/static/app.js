@@ -92,6 +92,13 @@ addEventListener("keydown", (e) => {
 
 // A lug that is chosen on the sole: its lengths are those of the sliders. They are typed here, or its
 // edge is dragged; every change goes the way of a slider.
+// A number as a field of the page writes it, and what a person typed there, read as in a case file.
+const numberText = (value) => String(Number(value.toPrecision(3))).replace(".", spoken.decimal);
+async function readQuantity(text, unit) {
+  const body = JSON.stringify({ text, unit, comma: spoken.decimal === "," });
+  const answer = await fetch("/api/quantity", { method: "POST", body, headers: { "content-type": "application/json" } });
+  return answer.json();
+}
 const LENGTHS = ["lug_width", "lug_length", "channel_width", "depth", "edge_chamfer"].map((name) => `shoe.tread.${name}`);
 const lengthSlider = (name) => document.querySelector(`.sliders input[name="${name}"]`);
 function setSlider(slider, shown, done) {
@@ -107,11 +114,18 @@ addEventListener("lug", ({ target: viewer }) => {
   const note = Object.assign(document.createElement("p"), { textContent: sliders.length ? place.dataset.lugs : place.dataset.fileLugs });
   card.append(note);
   for (const slider of sliders) {
-    const label = document.createElement("label"), field = Object.assign(document.createElement("input"), { type: "number", step: "any", min: 0 });
-    const size = Number(slider.dataset.size);
+    const label = document.createElement("label"), field = Object.assign(document.createElement("input"), { inputMode: "decimal" });
+    const size = Number(slider.dataset.size), unit = slider.dataset.unit;
     field.name = `lug ${slider.name}`;
-    field.value = String(Number(((slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given)) / size).toPrecision(3)));
-    field.addEventListener("change", () => { if (field.value) setSlider(slider, Number(field.value) * size, true); });
+    field.value = numberText((slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given)) / size);
+    field.addEventListener("change", async () => {
+      const { value, problem } = await readQuantity(field.value, unit), low = Number(slider.min) / size, high = Number(slider.max) / size;
+      const outside = value < low || value > high ? `${numberText(low)} - ${numberText(high)} ${unit}` : "";
+      field.setAttribute("aria-invalid", String(Boolean(problem || outside)));
+      note.textContent = problem || outside || place.dataset.lugs;
+      note.role = problem || outside ? "alert" : "";
+      if (!problem && !outside) setSlider(slider, value * size, true);
+    });
     label.append(document.querySelector(`label[for="${slider.id}"]`).textContent, field, slider.dataset.unit);
     card.append(label);
   }
@@ -125,7 +139,7 @@ addEventListener("edge", ({ target: viewer, detail: { out, normal, done } }) => 
   dragged ??= slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given);
   setSlider(slider, dragged + 2e3 * out, done); // mm; it grows to both sides
   const field = viewer.querySelector(`[name="lug ${slider.name}"]`);
-  if (field) field.value = String(Number((Number(slider.value) / Number(slider.dataset.size)).toPrecision(3)));
+  if (field) field.value = numberText(Number(slider.value) / Number(slider.dataset.size));
   if (done) dragged = null;
 });
 
@@ -150,8 +164,7 @@ function askLive(id, address, soleId, keep) {
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
     .map((i) => [i.name, value(i)])));
   const show = (input) => {
-    const shown = Number((value(input) / Number(input.dataset.size)).toPrecision(3));
-    const words = `${shown} ${input.dataset.unit}`.trim();
+    const words = `${numberText(value(input) / Number(input.dataset.size))} ${input.dataset.unit}`.trim();
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };

@@ -50,6 +50,15 @@ class Text:
         spoken = as_json(words)
         return f'document.documentElement.lang = "{self.language}"; const spoken = {spoken};'
 
+    @property
+    def comma(self) -> bool:
+        """True where the decimal sign is a comma."""
+        return self("frame.decimal") == ","
+
+    def number(self, value: float | None, digits: int = 4) -> str:
+        """Return a number as a field shows it, "" for none."""
+        return "" if value is None else f"{value:.{digits}g}".replace(".", self("frame.decimal"))
+
     def unit_systems(self) -> dict[str, str]:
         """Return the name of each system of units."""
         return {system: self(f"frame.{system}") for system in SYSTEMS}

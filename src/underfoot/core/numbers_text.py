@@ -1,0 +1,168 @@
+"""Numbers as people write them: which sign marks decimals and which thousands, column by column."""
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from .errors import DataError
+from .text import MISSING
+
+BLANKS = " \u00a0\u2007\u2009\u202f"
+"""Blanks that stand between thousands; so do apostrophes."""
+_GAP = re.compile(rf"(?<=\d)['’{BLANKS}](?=\d{{3}}(?!\d))")
+_NUMBER = re.compile(r"([+\-−]?)([\d.,]*\d[\d.,]*)([eEdD][+\-−]?\d+)?")
+_PLAIN = re.compile(r"\d+|\d*[.,]\d+|\d+[.,]")
+_GROUPED = {mark: re.compile(rf"[1-9]\d{{0,2}}([{mark}]\d{{3}})+") for mark in ".,"}
+_OTHER = {",": ".", ".": ","}
+FEWEST = 3
+"""Numbers with three digits behind a point that make it one of thousands beside whole numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberForm:
+    """How the numbers of a column are written: decimal sign ("." or ","), and thousands or not."""
+
+    decimal: str = "."
+    thousands: bool = False
+
+    def plain(self, cell: str) -> str:
+        """Return the text of a number as ``float`` takes it; other text comes back as it is.
+
+        >>> NumberForm(",", True).plain("1.075,5")
+        '1075.5'
+        """
+        cell = cell.strip()
+        found = _NUMBER.fullmatch(_GAP.sub("", cell))
+        if found is None:
+            return cell
+        sign, body, exponent = found.group(1), found.group(2), found.group(3) or ""
+        whole, _, rest = body.partition(self.decimal)
+        mark = _OTHER[self.decimal]
+        if mark in whole and self.thousands and _GROUPED[mark].fullmatch(whole):
+            whole = whole.replace(mark, "")
+        if mark in whole or not (rest.isdigit() or not rest):
+            return cell
+        text = f"{sign}{whole}{'.' if self.decimal in body else ''}{rest}{exponent}"
+        return text.replace("−", "-").replace("d", "e").replace("D", "e")
+
+    def number(self, cell: str) -> float:
+        """Return the number in a cell; a ValueError where it holds none."""
+        return float(self.plain(cell))
+
+
+@dataclass(slots=True)
+class _Evidence:
+    """What the numbers of a column say: marks that can only be one thing, and those that can't."""
+
+    decimals: set[str]
+    groups: set[str]
+    open: dict[str, str]
+    """By mark, the first number that can be read either way."""
+    opened: int = 0
+    long_whole: bool = False
+    short_whole: bool = False
+    gaps: bool = False
+
+    @classmethod
+    def of(cls, cells: Iterable[str]) -> "_Evidence":
+        found = cls(set(), set(), {})
+        for cell in cells:
+            found._add(cell.strip())
+        return found
+
+    def _add(self, cell: str) -> None:
+        closed = _GAP.sub("", cell)
+        match = _NUMBER.fullmatch(closed)
+        if match is None:
+            return
+        body = match.group(2)
+        marks = [mark for mark in ".," if mark in body]
+        self.gaps |= closed != cell
+        if not marks:
+            self.long_whole |= len(body) > 3 and closed == cell and body[0] != "0"
+            self.short_whole |= len(body) == 3 and body[0] != "0"
+        elif len(marks) == 2:
+            last = max(marks, key=body.rfind)
+            self.decimals.add(last)
+            self.groups.add(_OTHER[last])
+        elif body.count(marks[0]) > 1:
+            self.groups.add(marks[0])
+        elif closed == cell and not match.group(3) and _GROUPED[marks[0]].fullmatch(body):
+            self.open.setdefault(marks[0], cell)
+            self.opened += 1
+        elif _PLAIN.fullmatch(body):
+            self.decimals.add(marks[0])
+
+
+def number_forms(columns: Sequence[Sequence[str]], where: str) -> list[NumberForm]:
+    """Return how the numbers of each column are written.
+
+    A number that can only be read one way decides: "0,5", "1.075,5", "1,075,200". "1,075" alone
+    can be 1.075 or 1075: the rest of its column decides (1234 without a mark: no thousands are
+    marked; 998 beside 1,002: they are), then the other columns. Text that is no number is left
+    out of it.
+
+    Parameters:
+        columns: Cells of each column, quotes removed.
+        where: File, for errors.
+
+    Raises:
+        DataError: A sign that marks decimals and thousands in one column; numbers that nothing
+            decides.
+    """
+    found = [_Evidence.of(cells) for cells in columns]
+    decimals = set[str]().union(*(one.decimals for one in found))
+    groups = set[str]().union(*(one.groups for one in found))
+    return [_form(one, decimals, groups, where) for one in found]
+
+
+def _form(seen: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:
+    if seen.decimals & seen.groups or len(seen.decimals) > 1 or len(seen.groups) > 1:
+        raise DataError(
+            "one column writes decimals in two ways, or marks decimals and thousands with one sign",
+            where=where,
+            allowed="one decimal sign, and another sign or none between thousands",
+            remedy="Export the numbers with a decimal point and without thousands separators",
+        )
+    if seen.decimals:
+        (decimal,) = seen.decimals
+        return NumberForm(decimal, bool(seen.groups or seen.open.keys() - {decimal} or seen.gaps))
+    if seen.groups:
+        (mark,) = seen.groups
+        return NumberForm(_OTHER[mark], True)
+    if not seen.open:
+        return NumberForm(thousands=seen.gaps)
+    if len(seen.open) == 1:
+        ((mark, example),) = seen.open.items()
+        if _marks_decimals(seen, mark, decimals, groups, example, where):
+            return NumberForm(mark, seen.gaps)
+        return NumberForm(_OTHER[mark], True)
+    raise _undecided(", ".join(f'"{cell}"' for cell in seen.open.values()), where)
+
+
+def _marks_decimals(
+    seen: _Evidence, mark: str, decimals: set[str], groups: set[str], example: str, where: str
+) -> bool:
+    """Return whether the one mark of a column, always before three digits, marks decimals."""
+    if len(decimals) == 1 and not (seen.long_whole and mark not in decimals):
+        return mark in decimals
+    if mark in groups or (seen.short_whole and (mark == "," or seen.opened >= FEWEST)):
+        return False
+    if not decimals and (mark == "." or seen.long_whole):
+        return True
+    raise _undecided(f'"{example}"', where)
+
+
+def _undecided(examples: str, where: str) -> DataError:
+    return DataError(
+        f"{examples} can be a decimal number or one with its thousands marked, a thousand times "
+        "as much; nothing in the file decides",
+        where=where,
+        remedy="Export with a decimal point and without thousands separators",
+    )
+
+
+def column_numbers(cells: Sequence[str], form: NumberForm) -> list[float]:
+    """Return the numbers of a column, NaN where one is missing; a ValueError names other text."""
+    return [math.nan if cell.casefold() in MISSING else form.number(cell) for cell in cells]

@@ -1,0 +1,90 @@
+"""One way to read a number that a person typed: comma or point, thousands, fractions, signs.
+
+What is ambiguous is refused with both readings, never decided.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from .errors import InputError
+
+_SPACES = dict.fromkeys(map(ord, "\u00a0\u2007\u2009\u202f\t"), " ")
+_MINUS = dict.fromkeys(map(ord, "\u2212\u2012\u2013\ufe63\uff0d"), "-")
+_FRACTION = re.compile(
+    r"([+-]?)\s*(?:(\d+)[ -])?(\d+)\s*[/\u2044]\s*(\d+)(?![\d.,/])(.*)", re.DOTALL
+)
+_DIGITS = re.compile(
+    r"([+-]?)\s*(\d+(?:[.,'\u2019]\d+| \d{3}(?![\d/]))*[.,]?|[.,]\d+)"  # sign, digits
+    r"(?:[eE]([+-]?\d+))?(?![\d.,])(.*)",  # exponent, unit
+    re.DOTALL,
+)
+
+
+def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | None:
+    """Return number and unit of a text such as "41,5 cP" or "3/8 in"; None where it has no number.
+
+    Parameters:
+        text: What was typed.
+        comma: The writer's decimal sign is the comma: "1,234" is then 1.234, and "1.234" is asked.
+
+    Raises:
+        InputError: It can be read as two numbers, with both.
+
+    >>> split_quantity("1.234,5 N"), split_quantity("1 1/2 in"), split_quantity("\u22123 mm")
+    ((1234.5, 'N'), (1.5, 'in'), (-3.0, 'mm'))
+    """
+    text = _vulgar(text.translate(_SPACES).translate(_MINUS)).strip()
+    if (match := _FRACTION.fullmatch(text)) and int(match[4]):
+        sign, whole, above, below, unit = match.groups()
+        size = int(whole or 0) + int(above) / int(below)
+        return (-size if sign == "-" else size), unit.strip()
+    match = _DIGITS.fullmatch(text)
+    if match is None:
+        return None
+    sign, digits, exponent, unit = match.groups()
+    plain = _decimal(digits, text, "," if comma else ".")
+    if plain is None:
+        return None
+    return float(f"{sign}{plain}e{exponent or 0}"), unit.strip()
+
+
+def _vulgar(text: str) -> str:
+    """Write a fraction of one letter with a stroke: 1\u00bd as 1 1/2."""
+    written = ""
+    for letter in text:
+        if unicodedata.decomposition(letter).startswith("<fraction>"):
+            written = (written.rstrip() + " ").lstrip() + unicodedata.normalize("NFKC", letter)
+        else:
+            written += letter
+    return written
+
+
+def _decimal(digits: str, text: str, usual: str) -> str | None:
+    """Return digits with a decimal point and no thousands, None for what is no number."""
+    signs = [each for each in digits if not each.isdigit()]
+    if not signs:
+        return digits
+    last = signs[-1]
+    if last in ".," and signs.count(last) == 1:
+        whole, _, part = digits.rpartition(last)
+        if not signs[:-1]:
+            if last != usual and re.fullmatch(r"[1-9]\d{0,2}", whole) and len(part) == 3:
+                raise InputError(
+                    f'"{text}" can be {whole}.{part} or {whole}{part}',
+                    allowed=f"{whole}{usual}{part} or {whole}{part}",
+                    remedy="Write it without thousands, with the decimal sign of the page",
+                )
+            return f"{whole or 0}.{part or 0}"
+        if len(set(signs[:-1])) == 1 and _grouped(whole, signs[0]):
+            return f"{whole.replace(signs[0], '')}.{part or 0}"
+        return None
+    if len(set(signs)) == 1 and _grouped(digits, last):
+        return digits.replace(last, "")
+    return None
+
+
+def _grouped(digits: str, sign: str) -> bool:
+    """Return whether digits stand in thousands."""
+    return re.fullmatch(rf"\d{{1,3}}(?:{re.escape(sign)}\d{{3}})+", digits) is not None

@@ -1,0 +1,54 @@
+"""Fields of the app read what people type, in every language: right, asked, or refused."""
+
+import pytest
+from test_web_pages import until
+from web_app import page_of, project_of, served
+
+from underfoot.case import load
+
+pytest.importorskip("nicegui")
+pytest.importorskip("playwright.sync_api")
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+VISCOSITY = {
+    "en": (("41,5", 0.0415), ("0.12 Pa s", 0.12), ("0,12 Pa·s", 0.12), ("1 234,5", 1.2345),
+           ("55,0", 0.055)),
+    "de": (("41,5", 0.0415), ("41.5", 0.0415), ("1.234,5", 1.2345), ("0,12 Pa s", 0.12)),
+}  # fmt: skip
+REFUSED = {"en": ("abc", "12 34", "1,234", "3 mm", "NaN", "1e400"), "de": ("1.234", "3 mm", "-")}
+TAB = {"en": "Spill", "de": "Flüssigkeit"}
+LABEL = {"en": "Viscosity", "de": "Viskosität"}
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_viscosity_is_read_as_it_is_typed(tmp_path, language):
+    project = project_of(tmp_path / "project", "heel")
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.context.add_cookies([{"name": "language", "value": language, "url": app.base}])
+        page.goto(app.base + "design?variant=heel")
+        page.get_by_role("tab", name=TAB[language]).click()
+        file = project.path("heel")
+
+        def typed(text):
+            field = page.get_by_label(LABEL[language], exact=True)
+            field.fill(text)
+            field.press("Enter")
+            field.blur()
+
+        def accepted(text, value):
+            """The file has the value, and the form is drawn anew with it."""
+            typed(text)
+            until(lambda: load(file).value("contaminant.viscosity") == pytest.approx(value))
+            shown = f"{1e3 * value:.4g}".replace(".", "," if language == "de" else ".")
+            field = page.get_by_label(LABEL[language], exact=True)
+            until(lambda: field.input_value() == shown)
+
+        for text, value in VISCOSITY[language]:
+            accepted(text, value)
+        for text in REFUSED[language]:
+            typed(text)
+            page.locator(".q-field--error").wait_for()
+            assert load(file).value("contaminant.viscosity") == pytest.approx(value), text
+            value = 0.0777 if value == 0.0666 else 0.0666
+            accepted(f"{value} Pa s", value)
+        assert page.locator("input[type=number]").count() == 0
+        assert not page.complaints
