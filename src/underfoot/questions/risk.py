@@ -245,6 +245,7 @@ class RiskAssessment(Presentable):
                     "extrapolated": each.computed and bool(_note(each)),
                     "cof_error": each.error,
                     "higher_cof": each.higher,
+                    "does_something": each.computed and self._moves(each),
                     "reason": each.reason,
                 }
                 for each in self.changes
