@@ -26,7 +26,6 @@ from underfoot.trials.statistics import (
 )
 from underfoot.trials.statistics.curves import _tail
 from underfoot.trials.statistics.ranks import _exact_p
-
 from underfoot.trials.study.tables import mean_and_interval
 
 # Shrout and Fleiss 1979, Table 2: six targets, four judges.

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from benchmarks.type_one_errors import DESIGNS, Design, shares
+
 from underfoot.core import DataError
 from underfoot.trials.statistics import (
     analysis_of_variance,

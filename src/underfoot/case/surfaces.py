@@ -35,8 +35,8 @@ BEYOND_DEVIATION = math.log(2) / 1.96
 beyond the stylus' cut-off) and 4 (Hurst 0.8, waves up to 4.5 mm) in 95 %."""
 STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
-
-
+STEEPEST_RAMP = math.radians(15.0)
+"""Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
 STYLUS_WAVES = (2.5e-6, 0.8e-3)
 """Shortest and longest wave (m) of a stylus as standards filter it."""
 _AS_READ = ("cutoff", "length_unit", "height_unit", "spacing")
@@ -153,10 +153,13 @@ def _read(path: Path, content: str, *settings: Any) -> Scan:
 
 
 class Floor(Section):
-    """Hard floor."""
+    """Hard floor; people walk down its slope."""
 
     roughness: SurfaceRoughness
     shore_a: Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)] | None = None
+    slope: Annotated[float, Quantity("rad", 0.0, STEEPEST_RAMP)] | None = optional(
+        "of a ramp, as it is walked down: a step needs that much more friction; level if not given"
+    )
 
 
 class Interface(Option):

@@ -153,6 +153,25 @@ def with_film_spread(
     return result
 
 
+def required_friction(case: Case) -> RcofPopulation:
+    """Return what the people of a case need on its floor, down its slope if it has one."""
+    source = case.sourced("risk.rcof_mean").source
+    # the case itself lists an assumed required friction, so the population need not do so again
+    level = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, source)
+    return level.on_slope(case.floor.slope or 0.0)
+
+
+def slope_words(case: Case) -> str:
+    """Return what a slope asks of people; "" on the level."""
+    if not case.floor.slope:
+        return ""
+    needed = required_friction(case).mean
+    return (
+        f"{display(case.floor.slope, 'rad')} down: people who need {case.risk.rcof_mean:.2f} on "
+        f"the level need {needed:.2f} here"
+    )
+
+
 def slip_probability(
     case: Case, acof: SourcedValue, draws: ArrayLike | None = None, model: SlipModel | None = None
 ) -> tuple[SourcedValue, SlipRisk]:
@@ -161,12 +180,8 @@ def slip_probability(
     ``draws`` (n,) of the friction stand for its spread; ``model`` takes the place of the case's.
     """
     mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
-    # the case itself lists an assumed required friction, so the risk need not do so again
     risk = slip_risk(
-        acof,
-        rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
-        model=model or case.risk.build(),
-        samples=draws,
+        acof, rcof=required_friction(case), model=model or case.risk.build(), samples=draws
     )
     probability = replace(
         risk.probability,

@@ -7,7 +7,8 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.case.motion import SLOWEST
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
-from underfoot.friction import SampledCof
+from underfoot.friction import FrictionLaw, PairContactLaw, SampledCof
+from underfoot.friction.pair_contact import UnexpectedReading
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -90,6 +91,7 @@ def readings(
     remarks = {
         "drainage": drainage.advice() if drainage else "",
         "overload": numbers.overload_words(overload),
+        "slope": numbers.slope_words(case),
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
@@ -134,8 +136,14 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
         else "Square cells do not resolve where the film enters: COF and film load of a flat heel "
         'may be off by half; numerics.cells_along = "auto" resolves it.',
         "sensor": blind_sensor(case, sensor, contact),
+        "floor_reading": " ".join(map(str, _unexpected_readings(parts.law))),
     }
     return {name: remark for name, remark in (remarks | more).items() if remark}
+
+
+def _unexpected_readings(law: FrictionLaw) -> tuple[UnexpectedReading, ...]:
+    """Return what was read of the floor and not foretold."""
+    return law.draws.outside if isinstance(law, PairContactLaw) else ()
 
 
 def _last_instant(case: Case) -> str:

@@ -59,6 +59,7 @@ LUGS_SHOWN = 6
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "film_spread": "Spread of the film",
+    "slope": "Slope",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
     "grid_error": "Numerical error",
@@ -69,6 +70,8 @@ LABELS = {
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
+CAUTIONS = ("floor_reading", "positions_left_out", "angle_as_exact")
+"""Labels that are cautions, the most serious first."""
 PARTS: Mapping[str, str] = {
     "exponential": "how closely rough surfaces come together under this pressure",
     "persson": "how closely rough surfaces come together under this pressure",
@@ -225,7 +228,7 @@ def cautions(
     """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
     if not status.usable:
         return ()
-    reasons = [labels[name] for name in ("positions_left_out", "angle_as_exact") if name in labels]
+    reasons = [labels[name] for name in CAUTIONS if name in labels]
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
         reasons.append(f"Slip probability {slip.note}.")

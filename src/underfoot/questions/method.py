@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
 from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
@@ -260,7 +262,8 @@ def method_prediction(
         quick: The coarse grid for the prediction itself.
 
     An averaging window counts as steady sliding, unless the method sets the duration. The
-    probability of passing takes ln COF as normally distributed.
+    probability of passing takes ln COF as two halves of normal distributions, as wide as the
+    interval is on either side.
 
     Raises:
         InputError: An unknown method, a case without what the method leaves open.
@@ -417,28 +420,35 @@ def _condition(
         cof = SourcedValue(None, "1", reason=str(outcome.status))
     else:
         mean = outcome.number("cof")
-        law, interval = outcome.spread("cof"), outcome.scalars["cof"].interval
-        known = 0.0 if math.isnan(law) else law
-        deviation = math.hypot(known, band.inputs if band else 0.0)
-        # of ln COF: half the interval of the draws where there is one, and the open inputs
-        spread = known / max(mean, 1e-9)
-        if interval is not None and interval[0] > 0:
-            spread = math.log(interval[1] / interval[0]) / (2 * _Z95)
-        spread = math.hypot(spread, band.inputs / max(mean, 1e-9) if band else 0.0)
+        known = float(np.nan_to_num(outcome.spread("cof")))
+        inputs = band.inputs if band else 0.0
         cof = SourcedValue(
             mean,
             "1",
             source=outcome.scalars["cof"].source,
-            uncertainty=deviation,
+            uncertainty=math.hypot(known, inputs),
             note="friction law and open inputs" if band else "friction law alone",
         )
-        low, high = mean * math.exp(-_Z95 * spread), mean * math.exp(_Z95 * spread)
+        # of ln COF, each side as wide as the interval of the run, and the open inputs
+        below, above = (
+            math.hypot(side, inputs / max(mean, 1e-9)) for side in _sides(outcome.scalars["cof"])
+        )
+        low, high = mean * math.exp(-_Z95 * below), mean * math.exp(_Z95 * above)
         if limit is not None and limit.value:
-            least = math.log(limit.value)
-            probability = probability_at_least(math.log(max(mean, 1e-9)), spread, least)
+            least = math.log(limit.value) - math.log(max(mean, 1e-9))
+            probability = probability_at_least(0.0, below if least < 0 else above, least)
     floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
     return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
                      outcome)  # fmt: skip
+
+
+def _sides(cof: SourcedValue) -> tuple[float, float]:
+    """Return the standard deviation of ln COF below and above its value, by its interval."""
+    value = max(cof.value or 0.0, 1e-9)
+    if cof.interval is None or cof.interval[0] <= 0:
+        return (cof.uncertainty or 0.0) / value, (cof.uncertainty or 0.0) / value
+    low, high = cof.interval
+    return max(math.log(value / low), 0.0) / _Z95, max(math.log(high / value), 0.0) / _Z95
 
 
 def probability_at_least(mean: float, deviation: float, limit: float) -> float:
