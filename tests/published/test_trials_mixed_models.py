@@ -139,7 +139,7 @@ def test_conditions_that_say_the_same_are_named():
     ],
 )
 def test_what_can_not_be_told_is_refused_with_the_reason(y, who):
-    with pytest.raises(DataError, match="scatter|constant|estimate"):
+    with pytest.raises(DataError, match=r"scatter|constant|estimate"):
         mixed_model(y, {"shoe": ["a", "b", "c"] * (len(y) // 3)}, who)
 
 

@@ -82,8 +82,8 @@ class Effects(Presentable):
         rows = [
             (
                 self.paths[k],
-                _shown(self.total[k], self.total_half[k]),
-                _shown(self.main[k], self.main_half[k]),
+                _shown(float(self.total[k]), float(self.total_half[k])),
+                _shown(float(self.main[k]), float(self.main_half[k])),
             )
             for k in order
         ]

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 import scipy.sparse as sp
@@ -137,7 +137,7 @@ class ConvolutionCompliance:
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.arange(loaded.size).reshape(shape)[box]
         near: Any = hats[cells.ravel()]
-        fields: Any = sp.csc_matrix(near)
+        fields = cast("Any", sp.csc_matrix(near))
         part = self.within(box, np.float32)
         risen = np.empty((cells.size, hats.shape[1]))
         for k in range(hats.shape[1]):
