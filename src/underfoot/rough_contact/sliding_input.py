@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -9,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, Range, breaches, display
 from underfoot.core.arrays import AnyArray
+from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
-from underfoot.core.checks import positive
 from underfoot.core.threads import namespace
 
 
@@ -33,6 +34,9 @@ _RANGES = {
 FEWEST_NODES = 30
 """Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
+_SMALL = 128 * 128
+"""Points below which a contact takes a few hundredths of a second on a grid of any size."""
+_HALVED = 16
 
 
 def checked_contact_input(
@@ -45,6 +49,7 @@ def checked_contact_input(
 ) -> tuple[AnyArray, tuple[float, float]]:
     """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
     h = _as_floats(height)
+    shape = tuple(h.shape)
     if h.ndim != 2:
         raise InputError(
             f"height has {h.ndim} dimension(s)",
@@ -52,16 +57,17 @@ def checked_contact_input(
             allowed="a map (nx, ny)",
             remedy="Give a profile as (n, 4) equal columns: np.repeat(profile[:, None], 4, axis=1)",
         )
-    if min(h.shape) < 4 or max(h.shape) < 8:
+    if min(shape) < 4 or max(shape) < 8:
         raise InputError(
-            f"height has shape {h.shape}", where="height", allowed="at least 8 x 4 nodes"
+            f"height has shape {shape}", where="height", allowed="at least 8 x 4 nodes"
         )
     xp = namespace(h)
-    if not bool(xp.all(xp.isfinite(h))):
-        bad = np.argwhere(~np.isfinite(np.asarray(h)))
-        first = tuple(int(i) for i in bad[0])
+    finite = xp.isfinite(h)
+    if not bool(xp.all(finite)):
+        rows, columns = xp.nonzero(~finite)
+        first = int(rows[0]), int(columns[0])
         raise InputError(
-            f"{len(bad)} of {h.shape[0] * h.shape[1]} heights are missing or infinite, "
+            f"{rows.shape[0]} of {shape[0] * shape[1]} heights are missing or infinite, "
             f"the first at {first}",
             where="height",
             allowed="a finite height at every node",
@@ -96,7 +102,8 @@ def modulus_function(modulus: Modulus, frequencies: AnyArray) -> Callable[[AnyAr
         )
 
     def young(w: AnyArray) -> AnyArray:
-        values = np.asarray(call(np.asarray(w, dtype=float)), dtype=complex)
+        answer = call(np.asarray(w, dtype=float))
+        values = host_array(answer, "modulus", "E* as an array of NumPy").astype(complex)
         return np.broadcast_to(values, np.shape(w))
 
     values = young(frequencies)
@@ -140,6 +147,39 @@ def loss_reason(moduli: AnyArray, frequencies: AnyArray) -> str:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class SlowTransform:
+    """A grid whose Fourier transform is slow: a side has a prime factor of 13 or more.
+
+    ``better`` is the next grid whose sides have none and halve four times, for the coarser grids
+    on which a contact starts.
+    """
+
+    shape: tuple[int, int]
+    better: tuple[int, int]
+
+    def __str__(self) -> str:
+        given, better = ("{} x {}".format(*sides) for sides in (self.shape, self.better))
+        return (
+            f"the Fourier transform of {given} points is slow (a prime factor of 13 or more): the "
+            f"next good size is {better}"
+        )
+
+
+def slow_transform(shape: tuple[int, int]) -> SlowTransform | None:
+    """Return that the transform of a grid is slow, None where it isn't or the grid is small."""
+    from scipy.fft import next_fast_len
+
+    slow = [next_fast_len(n) > n for n in shape]
+    if not any(slow) or shape[0] * shape[1] < _SMALL:
+        return None
+    nx, ny = (
+        _HALVED * next_fast_len(-(-n // _HALVED)) if bad else n
+        for n, bad in zip(shape, slow, strict=True)
+    )
+    return SlowTransform(shape, (nx, ny))
+
+
 def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> list[Breach]:
     """Return whether slopes are too steep for the theory or too short for the grid, and whether
     the contact (``nodes`` in contact) is too small for it.
@@ -154,17 +194,23 @@ def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> lis
 
 def _as_floats(height: Any) -> Any:
     """Return heights in double precision, left on their device if not NumPy's."""
-    if type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict"):
-        xp = namespace(height)
-        return xp.astype(height, xp.float64)
+    allowed = "an array of heights, m"
+    remedy = "Give the heights of a map: map.heights"
+    foreign = type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict")
+    if not foreign:
+        height = host_array(height, "height", allowed, remedy)
+    xp = namespace(height)
     try:
-        return np.asarray(height, dtype=float)
-    except (TypeError, ValueError) as error:
+        if xp.isdtype(height.dtype, "complex floating"):
+            raise TypeError("the heights are complex")
+        return xp.astype(height, xp.float64, copy=False)
+    except (TypeError, ValueError, RuntimeError) as error:
         raise InputError(
-            f"height is a {type(height).__name__}",
+            f"height is a {type(height).__name__} of {height.dtype} without a value in double "
+            f"precision ({error})",
             where="height",
-            allowed="an array of heights, m",
-            remedy="Give the heights of a map: map.heights",
+            allowed=allowed,
+            remedy=remedy,
         ) from error
 
 
@@ -173,7 +219,9 @@ def _single_number(name: str, value: Any) -> None:
         return
     several = np.ndim(value) > 0
     raise InputError(
-        f"{np.size(value)} values" if several else f"{value!r} is a {type(value).__name__}",
+        f"{math.prod(np.shape(value))} values"
+        if several
+        else f"{value!r} is a {type(value).__name__}",
         where=name,
         allowed="one number",
         remedy="Call it once for each; ContactTable.from_surfaces makes a table over pressures "
