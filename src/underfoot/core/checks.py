@@ -44,7 +44,7 @@ def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Arra
     return array
 
 
-def host_array(values: ArrayLike, where: str, allowed: str, remedy: str = "") -> Any:
+def host_array(values: Any, where: str, allowed: str, remedy: str = "") -> Any:
     """Return ``values`` as an array of NumPy; refuse what it can't read, such as a device's."""
     try:
         return np.asarray(values)

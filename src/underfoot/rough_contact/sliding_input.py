@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,7 +48,7 @@ def checked_contact_input(
     layer_thickness: float | None,
 ) -> tuple[AnyArray, tuple[float, float]]:
     """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
-    h = _as_floats(height)
+    h, finite = _as_floats(height)
     shape = tuple(h.shape)
     if h.ndim != 2:
         raise InputError(
@@ -62,9 +62,8 @@ def checked_contact_input(
             f"height has shape {shape}", where="height", allowed="at least 8 x 4 nodes"
         )
     xp = namespace(h)
-    finite = xp.isfinite(h)
-    if not bool(xp.all(finite)):
-        rows, columns = xp.nonzero(~finite)
+    if not finite:
+        rows, columns = xp.nonzero(~xp.isfinite(h))
         first = int(rows[0]), int(columns[0])
         raise InputError(
             f"{rows.shape[0]} of {shape[0] * shape[1]} heights are missing or infinite, "
@@ -73,10 +72,11 @@ def checked_contact_input(
             allowed="a finite height at every node",
             remedy="Fill or cut them away first (underfoot.surface.filled)",
         )
-    steps: Any = (spacing, spacing) if np.ndim(spacing) == 0 else spacing
-    if len(steps) != 2:
+    pair = isinstance(spacing, tuple | list) or np.ndim(spacing) > 0
+    steps: Any = spacing if pair else (spacing, spacing)
+    if (steps.shape[0] if hasattr(steps, "shape") else len(steps)) != 2:
         raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
-    dx, dy = (_positive("spacing", value, "m") for value in steps)
+    dx, dy = (_positive("spacing", steps[axis], "m") for axis in (0, 1))
     _positive("pressure", pressure, "Pa")
     _single_number("speed", speed)
     _single_number("poisson_ratio", poisson_ratio)
@@ -170,14 +170,14 @@ def slow_transform(shape: tuple[int, int]) -> SlowTransform | None:
     """Return that the transform of a grid is slow, None where it isn't or the grid is small."""
     from scipy.fft import next_fast_len
 
-    slow = [next_fast_len(n) > n for n in shape]
-    if not any(slow) or shape[0] * shape[1] < _SMALL:
-        return None
-    nx, ny = (
-        _HALVED * next_fast_len(-(-n // _HALVED)) if bad else n
-        for n, bad in zip(shape, slow, strict=True)
-    )
-    return SlowTransform(shape, (nx, ny))
+    def good(n: int) -> int:
+        if next_fast_len(n) == n:
+            return n
+        return _HALVED * cast(int, next_fast_len(-(-n // _HALVED)))
+
+    better = good(shape[0]), good(shape[1])
+    small = shape[0] * shape[1] < _SMALL
+    return None if small or better == shape else SlowTransform(shape, better)
 
 
 def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> list[Breach]:
@@ -192,26 +192,27 @@ def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> lis
     ]
 
 
-def _as_floats(height: Any) -> Any:
-    """Return heights in double precision, left on their device if not NumPy's."""
-    allowed = "an array of heights, m"
-    remedy = "Give the heights of a map: map.heights"
-    foreign = type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict")
-    if not foreign:
-        height = host_array(height, "height", allowed, remedy)
+def _as_floats(height: Any) -> tuple[Any, bool]:
+    """Return heights in double precision, left on their device if not NumPy's; are all finite?"""
+    refused = {
+        "where": "height",
+        "allowed": "an array of heights, m",
+        "remedy": "Give the heights of a map: map.heights",
+    }
+    if type(height).__module__.partition(".")[0] not in ("torch", "cupy", "array_api_strict"):
+        height = host_array(height, **refused)
     xp = namespace(height)
+    if xp.isdtype(height.dtype, "complex floating"):
+        raise InputError(f"the heights are complex ({height.dtype})", **refused)
+    if getattr(height, "requires_grad", False):
+        refused["remedy"] = "Give height.detach(): a contact has no derivative by its heights"
+        raise InputError("the heights ask for their gradient", **refused)
     try:
-        if xp.isdtype(height.dtype, "complex floating"):
-            raise TypeError("the heights are complex")
-        return xp.astype(height, xp.float64, copy=False)
+        floats = xp.astype(height, xp.float64, copy=False)
+        return floats, bool(xp.all(xp.isfinite(floats)))
     except (TypeError, ValueError, RuntimeError) as error:
-        raise InputError(
-            f"height is a {type(height).__name__} of {height.dtype} without a value in double "
-            f"precision ({error})",
-            where="height",
-            allowed=allowed,
-            remedy=remedy,
-        ) from error
+        what = f"the heights ({type(height).__name__} of {height.dtype}) can't be read as doubles"
+        raise InputError(f"{what} ({error})", **refused) from error
 
 
 def _single_number(name: str, value: Any) -> None:

@@ -71,7 +71,7 @@ class Restriction:
 
     def shift(self, vector: AnyArray, value: float) -> None:
         """Add ``value`` to the vector on its nodes, in place."""
-        vector += value if self.gathered else self._mask * _scalar(self.xp, value)
+        vector += value if self.gathered else self._mask * value
 
 
 class Workspace:
@@ -132,7 +132,7 @@ def residual_correction(
     step = 0
     while left > goal and step < steps:
         z = part.take(operators.pressure(part.spread(r)))
-        z -= response * _scalar(xp, float(xp.sum(z)) / total)
+        z -= response * (float(xp.sum(z)) / total)
         w = part.take(operators.displacement(part.spread(z)))
         part.shift(w, -float(xp.sum(w)) / part.nodes)
         raw = _norm(w)
@@ -145,10 +145,10 @@ def residual_correction(
             break
         triangle[step, step] = length
         weight = float(w @ r) / length
-        images[step, :] = w * _scalar(xp, 1.0 / length)
+        images[step, :] = w * (1.0 / length)
         directions[step, :] = z
         weights[step] = weight
-        w *= _scalar(xp, weight / length)
+        w *= weight / length
         r -= w
         left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
@@ -160,7 +160,3 @@ def residual_correction(
 
 def _norm(vector: AnyArray) -> float:
     return float(vector @ vector) ** 0.5
-
-
-def _scalar(xp: Any, value: float) -> AnyArray:
-    return xp.asarray(value, dtype=xp.float32)
