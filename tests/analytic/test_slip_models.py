@@ -1,5 +1,6 @@
 """Slip models: limits, monotony, population mean against other ways to compute it."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -18,6 +19,7 @@ from underfoot.slip import (
     RcofPopulation,
     ReportG6,
     SlipModel,
+    needed_acof,
     slip_model,
     slip_risk,
 )
@@ -100,15 +102,12 @@ def test_more_friction_never_adds_risk(a, more, mean, sd, name):
 
 
 def test_risk_carries_its_band():
-    found = slip_risk(acof(0.15, 0.02))
-    model, people = ReportG6(), ADULTS_LEVEL_WALKING
+    model, people = ReportG6(log_slope_sd=0.0, fifty_percent_sd=0.0), ADULTS_LEVEL_WALKING
+    found = slip_risk(acof(0.15, 0.02), model=model)
     assert found.at_best_estimate == pytest.approx(model.population(0.15, people.mean, people.sd))
-    assert found.low == pytest.approx(
-        model.population(0.15 + 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
-    )
-    assert found.high == pytest.approx(
-        model.population(0.15 - 1.95996 * 0.02, people.mean, people.sd), rel=1e-5
-    )
+    for end, sign in ((found.low, 1), (found.high, -1)):
+        at = model.population(0.15 + sign * 1.95996 * 0.02, people.mean, people.sd)
+        assert end == pytest.approx(at, rel=3e-3)  # half a stratum of 4000 draws
     assert found.low < found.probability.value < found.high
     rng = np.random.default_rng(11)
     sampled = model.population(np.maximum(rng.normal(0.15, 0.02, 5000), 0), people.mean, people.sd)
@@ -116,6 +115,41 @@ def test_risk_carries_its_band():
     assert found.probability.uncertainty == pytest.approx(sampled.std(), abs=0.006)
     assert found.probability.assumed
     assert any("Required friction 0.2" in text for text in found.assumptions)
+
+
+@pytest.mark.parametrize("model", LOGISTIC, ids=lambda m: m.name)
+def test_what_publications_differ_by_is_in_the_band(model):
+    """The mean over a normal x50 is that over a population wider by its spread, in one integral."""
+    exact = dataclasses.replace(model, log_slope_sd=0.0, fifty_percent_sd=0.0)
+    level = dataclasses.replace(model, log_slope_sd=0.0)
+    people, friction = RcofPopulation(0.2, 0.03), acof(0.22, 0.01)
+    found = slip_risk(friction, rcof=people, model=level)
+    spread = math.hypot(people.sd, level.fifty_percent_sd, friction.uncertainty)
+    assert found.probability.value == pytest.approx(exact.population(0.22, 0.2, spread), abs=3e-3)
+    known = slip_risk(friction, rcof=people, model=exact)
+    assert found.high - found.low > 3 * (known.high - known.low)
+
+
+@given(risk=st.floats(0.01, 0.6), name=st.sampled_from(sorted(MODELS)), sd=st.floats(0.01, 0.08))
+@settings(deadline=None, max_examples=25)
+def test_friction_that_is_enough_is_one_whose_risk_meets_the_target(risk, name, sd):
+    """At the friction that is needed, with the spread it has, the risk is the target."""
+    model, people, present = slip_model(name), RcofPopulation(0.2, 0.03), acof(0.2, sd)
+    needed = needed_acof(risk, rcof=people, model=model, acof=present)
+    there = acof(needed, needed * sd / 0.2)
+    assert slip_risk(there, rcof=people, model=model).probability.value == pytest.approx(
+        risk, abs=1e-4
+    )
+
+
+@pytest.mark.parametrize("degrees", [-5.0, 0.0, 3.0, 10.0])
+def test_a_slope_asks_as_if_every_person_were_turned_with_it(degrees):
+    slope, people = math.radians(degrees), RcofPopulation(0.2, 0.03)
+    persons = np.random.default_rng(3).normal(0.2, 0.03, 200_000)
+    turned = np.tan(slope + np.arctan(persons))
+    there = people.on_slope(slope)
+    assert there.mean == pytest.approx(turned.mean(), abs=5e-4)
+    assert there.sd == pytest.approx(turned.std(), abs=5e-4)
 
 
 def test_risk_without_uncertainty_has_no_band():

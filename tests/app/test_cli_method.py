@@ -12,6 +12,7 @@ import pytest
 from scipy.stats import norm
 
 from commands import called, process
+from underfoot import run
 from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.questions.method import Basis, method_name, method_prediction, probability_at_least
@@ -54,9 +55,10 @@ def test_the_method_sets_motion_floor_and_fluid() -> None:
     own = {row.name: row for row in found.requirements}
     assert own["shoe angle"].required == "7 deg"
     assert own["floor"].basis is Basis.ASSUMED
-    values = [one.number("cof") for one in condition.window]
-    mean = (values[0] + 4 * values[1] + values[2]) / 6
-    assert condition.cof.value == pytest.approx(mean)
+    assert own["averaging window"].used == "steady sliding"
+    alone = case.replace({"motion": "whole_shoe_g6", "contaminant": "glycerol_50pct"})
+    expected = run(alone.replace("motion.steady", True), quick=True)["cof"].value
+    assert condition.cof.value == pytest.approx(expected, rel=1e-9)
     assert condition.probability is None
     assert condition.limit is None
 

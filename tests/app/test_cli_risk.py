@@ -20,7 +20,7 @@ from underfoot.core.presentation import percent
 from underfoot.questions.changes import Change, possible_changes
 from underfoot.questions.effects import STAGE
 from underfoot.questions.risk import odds, risk_assessment
-from underfoot.slip import MODELS, Chang2004, RcofPopulation, needed_acof, slip_model
+from underfoot.slip import MODELS, Chang2004, RcofPopulation, needed_acof, slip_model, slip_risk
 
 TEXT = """
 name = "Worn work shoe"
@@ -120,14 +120,16 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
     solid = found.outcome.number("cof") - found.outcome.number("cof_viscous")
     assert found.limit.cof_without_film * (1 - share) == pytest.approx(solid)
     assert found.missing_friction is not None
-    needed = needed_acof(0.05, rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd))
-    assert found.missing_friction + found.outcome.number("cof") == pytest.approx(needed)
+    own = next(one for one in found.models if one.name == case.risk.name)
+    assert own.probability == found.outcome.number("slip_probability")
+    needed = found.missing_friction + found.outcome.number("cof")
+    assert needed == pytest.approx(own.needed_acof)
+    draws = run(case, quick=True).data["cof_draws"].values
+    enough = draws * needed / found.outcome.number("cof")
+    assert slip_risk(needed, samples=enough).probability.value == pytest.approx(0.05, abs=1e-4)
     assert f"{100 * share:.0f} % of the load" in " ".join(found.headline())
     assert len(found.change_sentences()) == len(found.best[:3])
-    assert [row[0] for row in found.table().rows] == [
-        *(f"{place}." for place in range(1, len(found.best) + 1)),
-        *["-"] * (len(found.changes) - len(found.best)),
-    ]
+    assert [row[0] for row in found.table().rows] == ["1.", "2.", "-"]
 
 
 def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -> None:
@@ -141,8 +143,9 @@ def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -
     kept, walked = risk_assessment(fine, result=result, changes=[same, slower]).changes
     for name in ("cof", "fluid_load"):
         assert kept.number(name) == pytest.approx(result.value(name), rel=1e-6)
+    # by draws about the preview of the coarse grid
     assert kept.number("slip_probability") == pytest.approx(
-        result.value("slip_probability"), abs=0.01
+        result.value("slip_probability"), abs=0.02
     )
     assert walked.scalars["cof"] == result.scalars["cof"]
     assert (

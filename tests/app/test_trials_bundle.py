@@ -86,6 +86,37 @@ def test_a_bundle_is_as_written_until_it_is_changed(bundle):
     (bundle / "audit.html").write_text(page)
 
 
+@pytest.mark.slow
+def test_a_page_changed_after_signing_is_named(bundle):
+    sums, page = bundle / "SHA256SUMS", bundle / "audit.html"
+    before = {path: path.read_bytes() for path in (sums, page, bundle / "report" / "report.html")}
+
+    def found(*changes):
+        try:
+            for path, old, new in changes:
+                assert old in path.read_bytes()
+                path.write_bytes(path.read_bytes().replace(old, new, 1))
+            return bundle_faults(bundle)
+        finally:
+            for path, content in before.items():
+                path.write_bytes(content)
+
+    assert found((page, b"<table", b"<table ")) == ["audit.html: changed"]
+    signed = hashlib.sha256(before[sums]).hexdigest().encode()
+    assert found((page, b"</body>", signed + b"</body>")) == ["audit.html: changed"]
+    # the checksums made again, as somebody would who knows of them
+    report = bundle / "report" / "report.html"
+    other = report.read_bytes().replace(b"COF", b"C0F", 1)
+    old = hashlib.sha256(before[report]).hexdigest().encode()
+    listed = before[sums].replace(old, hashlib.sha256(other).hexdigest().encode())
+    faults = found(
+        (report, b"COF", b"C0F"),
+        (sums, before[sums], listed),
+        (page, signed, hashlib.sha256(listed).hexdigest().encode()),
+    )
+    assert faults == ["report/report.html: not what the recordings give again"]
+
+
 def test_no_bundle_is_said(tmp_path):
     with pytest.raises(InputError, match="is no bundle"):
         bundle_faults(tmp_path)

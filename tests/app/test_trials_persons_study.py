@@ -37,7 +37,7 @@ def test_persons_are_the_units(tmp_path):
         2 * 2.776445 * spread / 5**0.5, rel=0.1
     )
     found = findings(analysis)
-    assert list(found)[:3] == ["mixed_rcof", "repeated_rcof", "tukey_rcof_shoe"]
+    assert list(found)[:3] == ["repeated_rcof", "mixed_rcof", "tukey_rcof_shoe"]
     assert found["mixed_rcof"].table.rows[0][1:3] == (2, 8)
     assert any("5 persons" in text for text in found["anova_rcof_type_3"].cautions)
     assert "n" not in {row[0] for f in found.values() for row in f.table.rows}

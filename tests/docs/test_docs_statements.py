@@ -375,9 +375,8 @@ def assumed_rcof():
     return (float(default("risk.rcof_mean")), float(default("risk.rcof_sd"))) == (0.20, 0.03)
 
 
-def sliding_under_full_load():
-    whole, rise = float(default("motion.duration")[:-2]), default("motion.force_rise_time")
-    return round(1e3 * whole) - float(rise.removesuffix(" ms")) == 90
+def steady_by_default():
+    return default("motion.duration") == "None"
 
 
 def abrasive_sheet():
@@ -434,7 +433,7 @@ DEFAULTS = {
         "underfoot.trials.statistics.t_test", "kind") == "welch",
     "It is the default where both surfaces are scans": measured_contact,
     "the default of measured surfaces and compound": measured_contact,
-    "(default: 90 ms of sliding under full load)": sliding_under_full_load,
+    "steady sliding, the default": steady_by_default,
     "take the coarse one by default": coarse_grid_of_questions,
     "# default 1 %, assumed": plate_accuracy,
     "the friction of a case by default": lambda: usual("friction") == "pair",

@@ -56,7 +56,7 @@ CHANGES = st.fixed_dictionaries(
         "risk.model": st.sampled_from(["report_g6", "chang_2004"]),
         "shoe.wear": st.sampled_from([{"mode": "plane", "depth": 2e-4}, {"depth": "0.1 mm"}]),
         "sensor.scans": st.integers(1, 20),
-        "motion.steady": st.booleans(),
+        "motion.duration": quantities(0.25, 1, "s"),
     },
 )
 

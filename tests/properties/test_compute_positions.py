@@ -14,9 +14,13 @@ from underfoot.compute import numerical_error, solve
 from underfoot.compute.positions import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
+    COF_PARTS,
+    YAW,
     Place,
+    ShoeAngles,
     TreadPositions,
     carried,
+    case_places,
     places,
     position_count,
     run_cost,
@@ -28,7 +32,7 @@ from underfoot.compute.solve import solved_at
 from underfoot.compute.summary import cautions
 from underfoot.core import ConvergenceError, SourcedValue, Status
 from underfoot.friction.coefficient import FrictionCoefficients
-from underfoot.friction.sampled_cof import SampledCof
+from underfoot.friction.sampled_cof import LawDraws, SampledCof
 from underfoot.shoe import Sipes, Tread
 from underfoot.shoe.tread import PATTERNS
 
@@ -87,11 +91,25 @@ def test_even_positions_are_the_same_from_any_of_them(count, step):
 def test_positions_cover_both_directions_evenly_at_the_angle_of_the_case(count):
     found = places(np.eye(2), count)
     assert found[0] == Place()
-    assert len({place.shift for place in found}) == count
+    assert len({place.shift[0] for place in found}) == count
     assert not any(place.turn for place in found)
-    # any half of the second direction holds half of the positions, give or take a little
-    across = sum(place.shift[1] < 0.5 for place in found)
-    assert abs(across - count / 2) <= 1
+    for wave in ((1, 0), (0, 1)) if count > 1 else ():
+        phase = np.array([place.shift for place in found]) @ wave
+        assert abs(np.exp(2j * math.pi * phase).mean()) < 1e-9
+
+
+@pytest.mark.parametrize("count", [4, 6, 8, 12])
+def test_rows_of_a_triangular_lattice_meet_a_line_at_places_of_their_own(count):
+    """Every other row lies half a pitch on: the places must not fall on each other across."""
+    pitch, row = 9.5, 9.5 * math.sqrt(3) / 2
+    found = places(np.array([[pitch, 0.0], [pitch / 2, row]]), count)
+    lines = np.mod([place.shift[0] for place in found], pitch / 2)
+    assert len(np.unique(lines.round(6) % (pitch / 2))) >= count / 2
+    for wave in ((1, 0), (0, 1), (1, 1), (2, 1)):  # those that run along the shoe
+        shares = np.array([place.shift for place in found]) @ np.linalg.inv(
+            np.array([[pitch, 0.0], [pitch / 2, row]])
+        )
+        assert abs(np.exp(2j * math.pi * shares @ wave).mean()) < 1e-9, wave
 
 
 @given(st.integers(3, 16), st.floats(0, 6.28), st.sampled_from([1, 2]))
@@ -122,15 +140,64 @@ def test_numbers_of_two_grids_are_carried_on_by_the_first_order_of_the_cells(
     """A number a + b h on cells h, or 1 / (a + b h) where it shrinks, is found on any cells."""
     coarse = np.array(values)
     fine = coarse / grows if shrinks else coarse * grows
-    free = carried(coarse, coarse, fine, onward, math.inf)
-    even = grows + onward * (grows - 1)
-    assert free == pytest.approx(coarse / even if shrinks else coarse * even)
-    load = 300.0
-    bound = carried(coarse, coarse, fine, onward, load)
-    assert ((bound >= 0) & (bound <= load)).all()
-    assert (np.sign((bound - coarse).round(9)) != (1 if shrinks else -1)).all()
-    assert carried(coarse, coarse, coarse, onward, load) == pytest.approx(coarse)
-    assert carried(coarse, 0 * coarse, fine, onward, load) == pytest.approx(fine.mean())
+    even = 1 / (grows + onward * (grows - 1)) if shrinks else grows + onward * (grows - 1)
+
+    def numbers(film, adhesion, peak):
+        whole, zero = np.full_like(coarse, 300.0), np.zeros_like(coarse)
+        parts = {"cof_adhesion": adhesion, "cof_hysteresis": zero, "cof_viscous": peak}
+        loads = {"fluid_load": film, "contact_load": whole - film}
+        return {"cof": adhesion + peak, **parts, **loads, "peak": peak}
+
+    contact = 0.2 * (300.0 - coarse) / 300.0
+    before = numbers(coarse, contact, coarse)
+    same = carried(before, before, before, onward)
+    for name, each in before.items():
+        assert same[name] == pytest.approx(each), name
+    found = carried(before, before, numbers(coarse, contact, fine), onward)
+    assert found["cof_viscous"] == pytest.approx(coarse * even)
+    assert found["peak"] == pytest.approx(fine)  # not carried on
+    assert found["cof"] == pytest.approx(found["cof_adhesion"] + found["cof_viscous"])
+    film = np.minimum(fine, 299.0)
+    loads = carried(before, before, numbers(film, 0.2 * (1 - film / 300.0), coarse), onward)
+    assert loads["fluid_load"] + loads["contact_load"] == pytest.approx(300.0)
+    assert ((loads["fluid_load"] >= 0) & (loads["fluid_load"] <= 300.0)).all()
+    # the contact has the friction that its newtons have, however many the film takes
+    assert loads["cof_adhesion"] == pytest.approx(0.2 * loads["contact_load"] / 300.0)
+    odds = [(each.mean() / (300 - each.mean())) for each in (coarse, film)]
+    moved = np.sign(np.round(loads["fluid_load"] - coarse, 9))
+    assert (moved == np.sign(np.round(odds[1] - odds[0], 12))).all()
+
+
+def test_a_place_where_all_floats_says_nothing_of_the_friction_of_a_contact():
+    """A factor of COF from there would carry 0.2 of adhesion to 40 where the shoe touches."""
+    floats, touches = np.array([299.9]), np.array([0.0])
+    zero = np.zeros(1)
+
+    def numbers(film):
+        adhesion = 0.2 * (300.0 - film) / 300.0
+        parts = {"cof_adhesion": adhesion, "cof_hysteresis": zero, "cof_viscous": zero}
+        return {"cof": adhesion, **parts, "fluid_load": film, "contact_load": 300.0 - film}
+
+    before = {name: np.append(a, b) for (name, a), b in zip(
+        numbers(floats).items(), numbers(touches).values(), strict=True)}  # fmt: skip
+    fine = numbers(np.array([290.0]))
+    found = carried(before, numbers(floats), fine, 1.0)
+    assert found["cof_adhesion"].max() == pytest.approx(0.2)
+    own = {name: float(each[0]) for name, each in before.items()}
+    law = np.random.default_rng(0).lognormal(0, 0.3, 1000)
+    of_law = LawDraws(law, law, law, odds=np.random.default_rng(1).normal(0, 0.5, 1000))
+    parts = {name.removeprefix("cof_"): own[name] for name in COF_PARTS}
+    sampled = SampledCof(
+        **of_law.at(own["contact_load"] / 300.0, **parts),
+        share={}, left_out=(), confidence=0.95, seed=0, law=of_law,
+    )  # fmt: skip
+    known = SourcedValue(own["cof"], "1", "", 0.02)
+    friction = FrictionCoefficients(known, known, known, known, 50.0, 300.0, 299.9)
+    _, draws = ShoeAngles(shoe_angles()[:2], before, 0, own).friction(friction, sampled)
+    assert draws is not None
+    assert draws.cof[1::2] == pytest.approx(0.2 * law[1::2])
+    assert draws.cof[::2].max() < 0.01
+    assert draws.contact.max() <= 1.0
 
 
 @pytest.mark.slow
@@ -157,15 +224,19 @@ def test_draws_take_every_position_and_its_spread_is_named():
         "cof_viscous": 0.25 * cof,
         "fluid_load": np.array([90.0, 10.0, 50.0, 50.0]),
     }
-    draws = np.random.default_rng(0).normal(0.1, 0.02, 4000)
-    sampled = SampledCof(
-        draws, 0.25 * draws, 0.5 * draws, 0.25 * draws, {"model": 1.0}, (), 0.95, 0
-    )
+    values["contact_load"] = 1e6 - values["fluid_load"]  # a film too small to move it
+    law = np.random.default_rng(0).normal(1, 0.2, 4000)
+    of_law, parts = LawDraws(law, law, law), {"adhesion": 0.025, "hysteresis": 0.05}
+    drawn = of_law.at(1 - 90e-6, **parts, viscous=0.025)
+    sampled = SampledCof(**drawn, share={"model": 1.0}, left_out=(), confidence=0.95, seed=0,
+                         law=of_law)  # fmt: skip
     known, open_part = SourcedValue(0.1, "1", "", 0.02), SourcedValue(0.025, "1", "")
     friction = FrictionCoefficients(known, known, known, open_part, 50.0, 500.0, 90.0)
     by_angle = {"cof": 0.005, "cof_adhesion": 0.0025, "cof_hysteresis": 0.0025, "cof_viscous": 0.0}
     own = {name: float(each[0]) for name, each in values.items()}
-    positions = TreadPositions(places(np.eye(2), 4), values, 0, own, by_angle=by_angle)
+    positions = TreadPositions(
+        places(np.eye(2), 4), values, 0, own, by_angle=by_angle, film_by_angle=0.05
+    )
     averaged, sampled = positions.friction(friction, sampled)
     assert averaged.cof.value == pytest.approx(0.12)
     assert averaged.friction_force == pytest.approx(60.0)
@@ -175,16 +246,17 @@ def test_draws_take_every_position_and_its_spread_is_named():
     assert sampled.cof.mean() == pytest.approx(0.12, rel=0.01)
     parts = sampled.adhesion + sampled.hysteresis + sampled.viscous
     assert sampled.cof == pytest.approx(parts)
-    # law, position and angle are independent: their relative variances add, and their products
-    law, place, angle = 0.2, float(np.std(cof)) / 0.12, 0.05
-    spread = 0.12 * math.sqrt((1 + law**2) * (1 + place**2) * (1 + angle**2) - 1)
+    # law and position are independent: their relative variances add, and their products
+    spread = 0.12 * math.sqrt((1 + 0.2**2) * (1 + (float(np.std(cof)) / 0.12) ** 2) - 1)
     assert averaged.cof.uncertainty == pytest.approx(spread, rel=0.03)
     assert sum(sampled.share.values()) == pytest.approx(1.0)
     whole = 0.0002 + 0.0004 + 0.000025
     assert sampled.share["tread_position"] == pytest.approx(0.0002 / whole, rel=0.1)
     assert sampled.share["shoe_angle"] == pytest.approx(0.000025 / whole, rel=0.1)
-    film = positions.drawn("fluid_load", 4000)  # not moved by the angle: each position in turn
-    assert film[:4].tolist() == values["fluid_load"].tolist()
+    film = positions.drawn("fluid_load", 4000)  # each position in turn, its odds moved
+    moved = np.log(film / (1e6 - film) * (1e6 / np.tile(values["fluid_load"], 1000) - 1))
+    assert np.std(moved) == pytest.approx(0.05, rel=0.01)
+    assert np.mean(moved) == pytest.approx(0.0, abs=1e-4)
 
 
 def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
@@ -204,6 +276,89 @@ def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):
     x, y = POINTS
     back = tread.moved((2 * MM, 3 * MM)).slit_distance(x + 2 * MM, y + 3 * MM)
     assert back == pytest.approx(tread.slit_distance(x, y), abs=1e-12)
+
+
+@given(st.sampled_from(["bars", "grid", "hexagons"]), st.floats(-0.4, 0.4))
+@settings(deadline=None, max_examples=20)
+def test_a_turned_tread_is_the_same_tread_about_its_pivot(pattern, yaw):
+    pivot = (0.03, 0.004)
+    tread = Tread(pattern, 6 * MM, 4 * MM, 3 * MM, offset=(1 * MM, 2 * MM), angle=0.2,
+                  sipes=Sipes(1 * MM, 2 * MM, 5 * MM, 0.3))  # fmt: skip
+    turned = replace(tread, yaw=yaw, pivot=pivot)
+    ahead, aside = (each - at for each, at in zip(POINTS, pivot, strict=True))
+    there = (
+        pivot[0] + math.cos(yaw) * ahead - math.sin(yaw) * aside,
+        pivot[1] + math.sin(yaw) * ahead + math.cos(yaw) * aside,
+    )
+    same = tread.channel_distance(*POINTS)
+    assert turned.channel_distance(*there) == pytest.approx(same, abs=1e-12)
+    assert turned.slit_distance(*there) == pytest.approx(tread.slit_distance(*POINTS), abs=1e-12)
+
+
+@pytest.mark.parametrize("pattern", ["bars", "hexagons", "grid"])
+def test_a_mirrored_tread_lies_at_the_mirrored_places(bars, pattern):
+    tread = {"pattern": pattern, "depth": "3 mm", "lug_width": "6 mm", "channel_width": "4 mm"}
+    one, other = (
+        bars.replace({"shoe.tread": {**tread, "angle": f"{angle} deg"}}) for angle in (25, -25)
+    )
+    both = [
+        sorted(
+            (sole_map(case, 1 * MM, shift=place.shift, yaw=place.yaw).land for place in case_places(
+                case, quick=False)), key=lambda land: (land.sum(), land[: len(land) // 2].sum()),
+        )
+        for case in (one, other)
+    ]  # fmt: skip
+    for land, mirrored in zip(*both, strict=True):
+        assert np.count_nonzero(land != mirrored[:, ::-1]) <= 0.002 * land.size
+    yaws = [place.yaw for place in case_places(one, quick=False)]
+    assert sum(yaws) == pytest.approx(0.0)
+    assert np.abs(yaws) == pytest.approx(YAW)
+
+
+def test_the_tread_of_a_file_turns_as_one_that_was_drawn_so(bars):
+    from underfoot.compute.sole import new_sole
+    from underfoot.shoe import heel_surface
+    from underfoot.shoe.tread_shift import moved_tread
+
+    shape, cell = new_sole(bars), 0.25 * MM
+    periods, pivot, yaw, shift = shape.tread.periods, (20 * MM, 0.0), math.radians(1), (2 * MM, 0)
+    turned = replace(shape.tread.moved(shift), yaw=yaw, pivot=pivot)
+    drawn = heel_surface(replace(shape, tread=turned), spacing=cell)
+    moved = moved_tread(heel_surface(shape, spacing=cell), shift, periods, yaw=yaw, pivot=pivot)
+    assert np.count_nonzero(moved.land != drawn.land) < 0.02 * drawn.land.sum()
+    assert np.count_nonzero(moved.land) == pytest.approx(np.count_nonzero(drawn.land), rel=0.005)
+    still = moved_tread(heel_surface(shape, spacing=cell), shift, periods)
+    assert np.count_nonzero(still.land != drawn.land) > 0.04 * drawn.land.sum()
+
+
+@pytest.mark.slow
+def test_a_lug_that_meets_a_corner_of_the_heel_leaves_no_tooth():
+    """Without a yaw six places of these bars moved by 27 % of film and 7 % of COF by the width."""
+    case = Case.load("examples/work_shoe_full_tread_glycerol.toml").replace(
+        {
+            "shoe.material.shore_a": 60,
+            "shoe.roughness": {"ra": "6 um", "cutoff": "0.8 mm"},
+            "shoe.heel": {
+                "length": "60 mm",
+                "width": "62 mm",
+                "rear_radius": "28 mm",
+                "profile": {"model": "facet", "angle": "8 deg", "length": "28 mm"},
+                "edge_radius": "2 mm",
+            },
+            "shoe.sole.outsole_thickness": "22 mm",
+            "shoe.tread": {"pattern": "transverse", "lug_width": "6 mm", "channel_width": "4 mm",
+                           "depth": "3 mm"},
+            "contaminant.viscosity": "150 cP",
+            "numerics.tread_positions": 8,  # the quick grid takes half
+        }
+    )  # fmt: skip
+    rows = []
+    for width in np.arange(5.9, 6.16, 0.035):
+        found = run(case.replace("shoe.tread.lug_width", f"{width:.4f} mm"), quick=True)
+        rows.append((found.value("fluid_load"), found.value("cof")))
+    second = np.abs(np.diff(rows, 2, axis=0)) / np.array(rows)[1:-1]
+    assert second[:, 0].max() < 0.03
+    assert second[:, 1].max() < 0.005
 
 
 def test_grooves_are_in_case_and_hash_and_stay_in_their_lugs(bars):
@@ -340,6 +495,8 @@ def test_one_position_is_the_case_s_own(bars):
     assert "position of the tread" in more.labels["cof_spread_from"]
     assert "spread over tread positions" in more.summary()
     assert any("shoe_angle: ±1 deg" in line for line in more.assumptions)
+    assert any("tread: turned ±1 deg" in line for line in more.assumptions)
+    assert sorted(more.fields["position_yaw"].values) == pytest.approx([-YAW] * 3 + [YAW] * 3)
 
 
 @pytest.mark.slow

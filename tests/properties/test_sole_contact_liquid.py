@@ -139,7 +139,7 @@ def test_a_rigid_sole_has_the_film_of_given_walls(suction):
         speed=0.5,
         normal_force=2.0,
         settings=SolverSettings(
-            pool_depth=1.0, start_film=2e-5, steady=True, cavity_pressure=-suction
+            pool_depth=1.0, start_film=2e-5, end_time=None, cavity_pressure=-suction
         ),
     )
     assert solved.status is Status.CONVERGED

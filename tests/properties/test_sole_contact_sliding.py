@@ -182,14 +182,14 @@ def test_steady_state_forgets_the_start():
     # on 2 mm cells the rim of the film is not resolved and two steady states exist
     shape = sole(1e-3)
     found = [
-        solve(shape, viscosity=0.2, steady=True, start_film=film).fluid_load
+        solve(shape, viscosity=0.2, end_time=None, start_film=film).fluid_load
         for film in (20e-6, 80e-6)
     ]
     assert found[1] == pytest.approx(found[0], rel=0.005)
 
 
 def test_steady_state_with_cells_at_the_brink_of_the_pool():
-    solved = solve(sole(1e-3), viscosity=0.219, speed=0.7, force=500.0, rq=5.6e-6, steady=True)
+    solved = solve(sole(1e-3), viscosity=0.219, speed=0.7, force=500.0, rq=5.6e-6, end_time=None)
     assert solved.status is Status.CONVERGED
     assert solved.history.fluid_load[-1] == pytest.approx(solved.history.fluid_load[-2], rel=1e-3)
 

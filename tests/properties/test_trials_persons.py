@@ -43,9 +43,9 @@ def test_mixed_model_of_complete_data_is_repeated_measures():
     (test,), (row,) = mixed.tests, repeated.rows
     assert (test.df, test.error_df) == (row.df, row.error_df) == (2, 22)
     assert test.f == pytest.approx(row.f, rel=1e-6)
-    assert repeated.epsilon is not None
-    assert 0.5 <= repeated.epsilon <= 1.0
-    assert repeated.p_corrected > row.p
+    (epsilon,), (corrected,) = repeated.epsilon, repeated.p_corrected
+    assert 0.5 <= epsilon <= 1.0
+    assert corrected > row.p
     # The plain analysis of variance gives another F: trials are not persons.
     plain = analysis_of_variance(y, {"shoe": shoe})["shoe"]
     assert plain.error_df == 141
@@ -95,7 +95,8 @@ def test_missing_conditions_are_borne():
     rows = [i for i in range(len(y)) if not (who[i] == "S03" and shoe[i] == "B")]
     y, shoe, who = y[rows], [shoe[i] for i in rows], [who[i] for i in rows]
     mixed = mixed_model(y, {"shoe": shoe}, who)
-    assert (mixed.persons, mixed.within_df) == (12, 21)
+    assert mixed.persons == 12
+    assert 20 < mixed.tests[0].error_df < 22
     means = {m.level: m for m in least_squares_means(mixed, "shoe")}
     assert means["B"].n == 11
     assert means["B"].standard_error > means["A"].standard_error

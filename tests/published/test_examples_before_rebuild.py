@@ -33,13 +33,14 @@ def test_both_tables_begin_with_the_same_numbers():
 @pytest.mark.parametrize("name", UNMOVED)
 def test_an_example_gives_what_it_gave(name):
     case = Case.load(ROOT / "examples" / f"{name}.toml")
-    if case.contaminant is not None:  # the law and the lugs that were the default then
-        case = case.replace({"friction": "stribeck", "film.lug_edges": False})
+    if case.contaminant is not None:  # law, lugs and instant that were the default then
+        then = {"friction": "stribeck", "film.lug_edges": False, "motion.duration": "0.12 s"}
+        case = case.replace(then)
     squares = {"numerics.tread_positions": 1, "numerics.cells_along": 1}
     scalars = dict(run(case.replace(squares)).scalars)
     risk = slip_risk(scalars["cof"].value)  # at the best estimate, as it was stored
     scalars["slip_probability"] = risk.probability
-    assert set(scalars) == set(BEFORE[name])
+    assert set(scalars) - {"later_time", "later_cof", "later_fluid_load"} == set(BEFORE[name])
     for key, (_, value) in FILM[name].items():
         wanted = pytest.approx(value, rel=APART.get(key, 1e-5), abs=1e-9)
         assert scalars[key].value == wanted, key

@@ -93,9 +93,10 @@ def test_cases_are_those_of_the_examples():
 def test_all_open_inputs_where_the_film_is_read():
     untreaded, treaded = PLAN[0], PLAN[2]
     assert {one.path for one in inputs_of(treaded)} == {
-        "shoe.heel.facet_angle", "interface.roughness_beyond_cutoff", "motion.start_film",
+        "shoe.heel.facet_angle",
+        "interface.roughness_beyond_cutoff",
         "shoe.tread.lug_width",
-    }  # fmt: skip
+    }
     assert {"shoe.heel.width", "shoe.heel.facet_length", "contaminant.viscosity"} <= {
         one.path for one in inputs_of(untreaded)
     }

@@ -9,6 +9,7 @@ from scipy import stats
 from underfoot.core import DataError, InputError
 from underfoot.trials.statistics import (
     bland_altman,
+    corrected_p,
     detectable_difference,
     effect_size,
     equivalence,
@@ -25,7 +26,6 @@ from underfoot.trials.statistics import (
 )
 from underfoot.trials.statistics.curves import _tail
 from underfoot.trials.statistics.ranks import _exact_p
-from underfoot.trials.study.field_statistics import corrected_p
 from underfoot.trials.study.tables import mean_and_interval
 
 # Shrout and Fleiss 1979, Table 2: six targets, four judges.

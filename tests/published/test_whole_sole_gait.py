@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import underfoot as uf
-from underfoot.case import Case, CaseError
+from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.compute.sole import forefoot_breaches, rolls, sole_map, trimmed
 from underfoot.core import InputError
@@ -97,17 +97,12 @@ def test_the_forepart_stays_level_until_the_toes_are_bent_and_then_rises() -> No
     assert np.gradient(turned[:, 0], x)[-1] == pytest.approx(np.sin(-0.1))
 
 
-def test_a_backward_motion_ramps_up_and_holds() -> None:
-    case = Case.from_text(HEEL).replace({"motion.backward": True, "motion.duration": 0.1})
-    history = case.motion.build()
-    assert history is not None
-    rise, force = case.motion.force_rise_time, case.motion.normal_force
-    np.testing.assert_allclose(history.time, [0, rise, 0.1])
-    np.testing.assert_allclose(history.normal_force, [0, force, force])
-    np.testing.assert_allclose(history.speed, -case.motion.speed)
-    assert not case.motion.forward
-    with pytest.raises(CaseError, match="slides backward"):
-        case.replace("motion.steady", True)
+def test_a_backward_motion_is_steady_with_the_other_sign() -> None:
+    motion = Case.from_text(HEEL).replace({"motion.backward": True}).motion
+    assert motion.build() is None
+    assert motion.end_time is None
+    assert motion.sliding_speed == -motion.speed
+    assert not motion.forward
 
 
 @pytest.mark.parametrize("method", ["iso13287-forepart", "iso13287-flat", "astmf2913-forepart"])

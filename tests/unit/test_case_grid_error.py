@@ -13,7 +13,7 @@ from underfoot.compute.numerical_error import NumericalErrors, with_numerical_er
 from underfoot.compute.run import run
 from underfoot.compute.solve import solved_motion
 from underfoot.core import SourcedValue, Status
-from underfoot.friction import SampledCof
+from underfoot.friction.sampled_cof import LawDraws, SampledCof
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COARSE = {"numerics.grid_spacing": "2 mm", "numerics.quick_grid_spacing": "3 mm"}
@@ -55,7 +55,14 @@ def test_the_error_joins_spread_and_interval_and_is_told():
 def test_draws_of_cof_carry_the_error_and_two_soles_do_not_share_it():
     parts = {name: np.full(4000, 0.04) for name in ("adhesion", "hysteresis", "viscous")}
     sampled = SampledCof(
-        cof=np.full(4000, 0.12), **parts, share={}, left_out=(), confidence=0.95, seed=0
+        cof=np.full(4000, 0.12),
+        **parts,
+        share={},
+        left_out=(),
+        confidence=0.95,
+        seed=0,
+        contact=np.full(4000, 0.5),
+        law=LawDraws(*np.ones((3, 4000))),
     )
     first, again, other = (
         with_numerical_error(sampled, 0.012, cof=0.12, sole=sole) for sole in ("a", "a", "b")
@@ -66,6 +73,26 @@ def test_draws_of_cof_carry_the_error_and_two_soles_do_not_share_it():
     assert (first.cof == again.cof).all()
     assert abs(np.corrcoef(first.cof, other.cof)[0, 1]) < 0.05
     assert with_numerical_error(sampled, 0.0, cof=0.12, sole="a") is sampled
+    wide = with_numerical_error(sampled, 0.5, cof=0.12, sole="a")  # twice the contact is all
+    assert (wide.adhesion + wide.hysteresis).max() == pytest.approx(2 * 0.08)
+    assert wide.contact.max() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("quick_grid", ["3 mm", "3.2 mm"])
+def test_a_grid_is_not_compared_with_itself(quick_grid):
+    """The difference of a grid to its like is 0: an error of a tenth of the truth was printed."""
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(
+        {"numerics.grid_spacing": "3 mm", "numerics.quick_grid_spacing": quick_grid}
+    )
+    cells = {"numerics.cells_along": 2, "numerics.grid_check": True}
+    found = run(case.replace(cells))
+    alone = run(case.replace({**cells, "numerics.quick_grid_spacing": "3 mm"}), quick=True)
+    finer = run(case.replace({**cells, "numerics.grid_spacing": "1.5 mm"}))
+    for name in ("cof", "fluid_load"):
+        assert found[name].numerical == pytest.approx(alone[name].numerical), name
+        off = abs(found.value(name) - finer.value(name))
+        assert off < 1.96 * found[name].numerical, name
+    assert "difference" not in found.labels["grid_error"]
 
 
 @pytest.mark.parametrize("name", ["untreaded_glycerol", "full_tread_dry"])

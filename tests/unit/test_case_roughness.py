@@ -17,14 +17,15 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_half_tread_deterge
         ({"interface.effective_rq": "500 um"}, "interface.effective_rq", "159 um"),
         (
             {"interface.effective_rq": "60 um", "contaminant.pool_depth": "0.1 mm"},
-            "interface.effective_rq",
-            "33.3 um",
+            "contaminant.pool_depth",
+            "180 um",
         ),
         (
             {"shoe.roughness.rq": "100 um", "interface.roughness_beyond_cutoff": 3.0},
-            "interface.roughness_beyond_cutoff",
-            "159 um",
+            "shoe.roughness",
+            "53.1 um",
         ),
+        ({"floor.roughness.rq": "100 um"}, "floor.roughness", "at most 79"),
     ],
 )
 def test_roughness_beyond_what_sole_and_pool_hold_is_refused(settings, where, allowed):

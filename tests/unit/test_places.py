@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+import re
 import tomllib
 from pathlib import Path
 
@@ -19,8 +20,8 @@ from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
 from underfoot.places.choice import chosen, slip_share
-from underfoot.places.evidence import learned, machine_scores, score
-from underfoot.places.joint import JointDraws, Reading
+from underfoot.places.evidence import floor_likeness, learned, machine_scores, score
+from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import (
     FLUIDS,
     SCALES,
@@ -230,6 +231,42 @@ def test_a_machine_knows_what_another_read_of_the_floor():
     assert told[0] < told[1]
 
 
+@pytest.mark.parametrize("floor", ["polished_tile", "quarry_tile", None])
+def test_a_reading_is_foretold_again_and_named_where_it_was_not(floor):
+    """What is foretold of a floor holds what was read of it; a value outside is a caution."""
+    shoes, cautioned = [], []
+    for ptv in (12, 24, 40):
+        case = read_case(ptv_96=ptv)
+        case = case if floor is None else case.replace({"floor": floor})
+        told = method_prediction(case, "pendulum-96")
+        assert told.low <= ptv <= told.high
+        law = case.friction.build(resolved(case))
+        shoes.append(np.median(law.joint_draws(1000, 0)["pair"]))
+        before = method_prediction(case.replace({"friction": {"model": "pair"}}), "pendulum-96")
+        outside = not before.low <= ptv <= before.high
+        if floor is not None:  # else the reading tells which of all floors it is
+            assert bool(law.draws.outside) == outside
+            cautioned.append(outside)
+            assert any(f"read {ptv} PTV where" in text for text in told.cautions()) == outside
+    assert shoes == sorted(shoes)  # more on the pendulum, more under the shoe
+    assert floor is None or shoes[0] < 0.97 < 1.03 < shoes[-1] / shoes[0]
+    assert any(cautioned) == (floor is not None)
+
+
+def test_what_a_reading_says_of_a_shoe_is_what_machines_say_of_each_other():
+    """Nobody's shoe and pendulum read one floor; two machines did, and each laboratory less one
+    says the same.
+    """
+    assert floor_likeness() == pytest.approx(FLOOR_LIKENESS, abs=0.005)
+    for source in ("floor_testing_services", "safety_direct_coatings", "uksrg_verification"):
+        assert floor_likeness(source) == pytest.approx(FLOOR_LIKENESS, abs=0.1)
+    joint = JointDraws(count=20000)
+    one, two = (joint.beyond_roughness("hall", name) for name in "ab")
+    assert np.corrcoef(one, two)[0, 1] == pytest.approx(FLOOR_LIKENESS, abs=0.02)
+    for other in (joint.beyond_roughness("yard", "b"), joint.beyond_roughness("hall", "b2", "oil")):
+        assert np.corrcoef(one, other)[0, 1] == pytest.approx(0, abs=0.02)
+
+
 def test_a_machine_outside_its_standard_is_told_and_nothing_else_is_kept():
     case = read_case(ptv_96=40).replace({"contaminant": "canola_oil"})
     told = method_prediction(case, "pendulum-96", keep=["contaminant"])
@@ -331,11 +368,11 @@ def shoe_cofs(joint):
     }
 
 
-def moved(read):
+def moved(read, count=24000):
     """Return ln of the ratio of median COFs after a high and after a low reading."""
     medians = []
     for high in (False, True):
-        joint = JointDraws(count=24000)
+        joint = JointDraws(count=count)
         read(joint, high)
         medians.append({name: np.log(np.median(cof)) for name, cof in shoe_cofs(joint).items()})
     return {name: medians[1][name] - medians[0][name] for name in medians[0]}
@@ -365,7 +402,7 @@ def test_a_shoe_that_was_read_moves_on_every_floor_more_than_another_shoe():
         )
         joint.learn(joint.log_likelihood(cof, Reading(0.4 if high else 0.08)), "soft")
 
-    change = moved(read)
+    change = moved(read, count=200_000)  # of fewer draws the sampling hides it
     for floor in ("hall", "yard"):
         assert change["soft", floor] > max(0.03, change["hard", floor])
 
@@ -415,8 +452,35 @@ def test_the_treaded_heel_is_the_better_one_in_a_thick_fluid(choice):
     assert best["treaded"] > 0.75 > best["smooth"]
     assert sum(best.values()) == pytest.approx(1)
     assert "treaded is best" in choice.headline()[0]
-    # the fluid is on a tenth of the steps
-    assert all(each.slips[2] <= 0.1 * 100 * choice.place.steps * 1.0001 for each in choice.shoes)
+    for each in choice.shoes:  # of the steps in the fluid, a tenth of all
+        low, high = each.slips.interval
+        assert 0 <= low <= each.slips.value <= high <= 1
+    assert choice.place.wet_steps == pytest.approx(0.1 * choice.place.steps)
+
+
+def test_what_helps_most_is_the_first_row_and_nothing_idle_is_one(choice):
+    """The sentence, the table and the numbers of the shoes tell one thing."""
+    first = choice.levers[0]
+    assert f"Most is gained by {first.name}" in " ".join(choice.headline())
+    assert [each.left[1] for each in choice.levers] == sorted(e.left[1] for e in choice.levers)
+    assert all(each.does_something for each in choice.levers)
+    slips = {each.shoe.name: each.slips.value for each in choice.shoes}
+    instead = next(each for each in choice.levers if "instead of" in each.name)
+    assert instead.left[1] == pytest.approx(slips["treaded"] / slips["smooth"], rel=1e-6)
+    assert sum(share for _, share in choice.sources) == pytest.approx(1)
+    words = " ".join(choice.headline()) + choice.summary()
+    assert not re.search(r"\d,\d{3},\d{3}", words)  # no slips in millions
+
+
+def test_a_floor_that_is_as_rough_is_not_offered_another():
+    floors = [
+        {"name": "kitchen", "from": "quarry_tile"},
+        {"name": "hall", "roughness": {"rq": "2 um"}},
+    ]
+    names = [each.name for each in chosen(place_of(small_place() | {"floor": floors})).levers]
+    assert any("clay quarry tile" in name and "(hall)" in name for name in names)
+    rough = chosen(place_of(small_place() | {"floor": floors[:1]}))
+    assert not any("quarry tile" in each.name for each in rough.levers)
 
 
 @pytest.mark.slow
@@ -431,11 +495,11 @@ def test_a_cell_is_the_whole_run_of_its_case(choice):
 
 
 @pytest.mark.slow
-def test_slips_are_in_proportion_to_how_often_the_fluid_is_there(choice):
+def test_how_often_the_fluid_is_there_changes_no_step_in_it(choice):
     table = small_place() | {"fluids": {"dry": 0.8, "glycerol_90pct": 0.2}}
     twice = chosen(place_of(table))
     for one, two in zip(choice.shoes, twice.shoes, strict=True):
-        assert two.slips == pytest.approx(tuple(2 * x for x in one.slips), rel=1e-9)
+        assert two.slips.value == pytest.approx(one.slips.value, rel=1e-9)
         assert two.best == pytest.approx(one.best)
 
 
@@ -451,7 +515,7 @@ def test_the_order_of_floors_and_shoes_changes_nothing():
     for name, answer in one.items():
         # a contact is continued from another one: the numbers differ by the solver's error
         assert answer.best == pytest.approx(two[name].best, abs=0.02)
-        assert np.log(answer.slips) == pytest.approx(np.log(two[name].slips), abs=0.1)
+        assert answer.slips.value == pytest.approx(two[name].slips.value, abs=0.01)
 
 
 @pytest.mark.slow
@@ -497,13 +561,12 @@ def test_a_larger_worn_region_carries_more_load_on_its_film():
 
 
 @pytest.mark.slow
-def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_none():
+def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_no_row():
     table = small_place()
     table["fluids"] = {"dry": 0.8, "canola_oil": 0.1, "water": 0.1}
     table["shoe"] = table["shoe"][:1]
     left = {one.name: one.left for one in chosen(place_of(table)).levers}
-    rinsed = next(value for name, value in left.items() if "rinsed with water" in name)
-    assert rinsed == (1.0, 1.0, 1.0)
+    assert not any("rinsed" in name for name in left)
     halved = [value for name, value in left.items() if "half the steps" in name]
     assert all(0.5 <= low <= high <= 1 for low, _, high in halved)
     assert np.sum(halved, axis=0)[1] == pytest.approx(1.5, abs=0.02)  # what one spares is there

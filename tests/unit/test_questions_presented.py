@@ -85,7 +85,10 @@ def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
 def assessment(*effects, missing=0.1, present=None):
     present = outcome() if present is None else present
     limit = summary.friction_limit(outcome().scalars)
-    models = (ModelRisk("a", "b", 0.6, None, None, None), ModelRisk("c", "d", 0.5, 0.4, 0.6, 0.31))
+    models = (
+        ModelRisk("a", "b", "As a.", 0.6, None, None, None),
+        ModelRisk("c", "d", "Every c slips.", 0.5, 0.4, 0.6, 0.31),
+    )
     return RiskAssessment("Case", present, models, limit, 0.05, missing, effects)
 
 
@@ -130,6 +133,7 @@ def test_changes_are_ranked_by_the_probability_they_leave_then_by_friction():
     assert [each.change.name for each in found.best] == ["best", "equal", "good"]
     assert found.change_sentences(1) == ["do best: COF 0.10 to 0.30, slip probability 60 % to 10 %"]
     assert [row[0] for row in found.table().rows] == ["1.", "2.", "3.", "-", "-"]
+    assert found.table().rows[0][1] == found.best[0].change.action
     assert found.table().rows[-1][-1].startswith("not computed")
     assert assessment(worse).change_sentences() == [
         "No tested change reduces the slip probability."
@@ -137,12 +141,31 @@ def test_changes_are_ranked_by_the_probability_they_leave_then_by_friction():
     assert math.isnan(failed.number("cof"))
 
 
+def test_a_change_that_does_nothing_is_no_row():
+    idle, small = effect("idle", 0.1003, 0.6003), effect("small", 0.1006, 0.6)
+    found = assessment(idle, small, effect("good", 0.2, 0.3))
+    assert [row[1] for row in found.table().rows] == ["do good", "do small"]
+    assert found.remarks()["Tried without effect"] == ["do idle"]
+
+
+def test_a_model_with_another_answer_is_told_with_its_reason():
+    (other,) = assessment(present=outcome(slip=0.45)).apart
+    assert other.name == "a"
+    told = [text for text in assessment(present=outcome(slip=0.3)).cautions() if "nother" in text]
+    assert told == [
+        "Another model has 60 % for the same friction and people (a): as a.",
+        "Another model has 50 % for the same friction and people (c): every c slips.",
+    ]
+    assert not assessment(present=outcome(slip=0.55)).apart
+
+
 def test_missing_friction_is_named_and_sufficient_friction_too():
     assert "needs a COF higher by 0.10" in assessment().headline()[-1]
-    assert assessment(missing=0.0).headline()[-1] == (
-        "Friction is sufficient for a slip probability below 5.0 %."
-    )
-    assert len(assessment(missing=None).headline()) == 2
+    for slip, enough in ((0.0501, False), (0.05, True), (0.01, True)):
+        for missing in (None, 0.0, 0.1):  # the number that is printed decides
+            found = assessment(missing=missing, present=outcome(slip=slip)).headline()[-1]
+            assert found.startswith("Friction is sufficient for") == enough
+    assert assessment(missing=None).headline()[-1].startswith("No COF gives")
     assert assessment().headline()[0].startswith("Slip probability 60 % ± 10 % at an available COF")
     assert "1 in 10 steps" in assessment(present=outcome(slip=0.1)).headline()[0]
     assert "extrapolated" in assessment(present=outcome(note="extrapolated: x")).headline()[0]

@@ -315,7 +315,7 @@ def test_heels_are_recognised_by_the_labels_met_in_laboratories(label, side):
 
 
 def test_the_vertical_axis_comes_from_what_there_is(walk):
-    bare = replace(walk, plates=(), events=())
+    bare = replace(walk, plates=(), events=(), vertical=None)
     assert axes_of(bare).up @ UP == 1.0
     assert "differ most" in axes_of(bare).up_from
     assert axes_of(Trial("x")).up_from.startswith("assumed")

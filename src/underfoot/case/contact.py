@@ -272,6 +272,10 @@ class ComplianceOption(Option):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         """Return the map from pressure to deflection on the grid of ``sole``."""
 
+    def rebuilt(self, known: Compliance, context: Context, sole: SoleMap) -> Compliance:
+        """Return the same on another map of the shoe; ``known`` is that of one of its maps."""
+        return self.build(context, sole)
+
 
 def _layers(context: Context) -> dict[str, Any]:
     layers, midsole = context.shoe.sole, context.shoe.sole.midsole
@@ -298,6 +302,11 @@ class LayeredCompliance(ComplianceOption):
 
         return layered_compliance(sole, **_layers(context))
 
+    def rebuilt(self, known: Compliance, context: Context, sole: SoleMap) -> Compliance:
+        from underfoot.sole_contact.compliance import layered_compliance
+
+        return layered_compliance(sole, known=getattr(known, "body", None), **_layers(context))
+
 
 class FiniteElementCompliance(ComplianceOption):
     """The real shape of sole, lugs and rim, condensed once and kept in the cache."""
@@ -308,7 +317,7 @@ class FiniteElementCompliance(ComplianceOption):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
-        store = Cache("sole_compliance-1")
+        store = Cache("sole_compliance-2")
         return finite_element_compliance(
             sole, **_layers(context), cache=store, progress=context.progress
         )

@@ -48,15 +48,15 @@ class Motion(Option):
     normal_force: Force
     shoe_angle: ShoeAngle = Field(description="toe up positive")
     force_rise_time: Time = default(0.03, "30 ms", _TESTER)
-    duration: Time = default(0.12, "0.12 s", "90 ms of sliding under full load", assumed=True)
+    duration: Time | None = optional("when the result is taken; default: when sliding is steady")
     start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
         50e-6, "50 um", "lowest point above the floor when loading starts", assumed=True
     )
 
     @property
-    def to_steady_state(self) -> bool:
-        """Whether the result is the steady state."""
-        return False
+    def end_time(self) -> float | None:
+        """When the result is taken, s; None when sliding is steady."""
+        return self.duration
 
     @property
     def forward(self) -> bool:
@@ -64,9 +64,9 @@ class Motion(Option):
         return True
 
     @property
-    def end_time(self) -> float:
-        """When the result is taken, s."""
-        return max(self.duration, self.force_rise_time)
+    def sliding_speed(self) -> float:
+        """Speed along +x when the result is taken, m/s; negative backward."""
+        return self.speed if self.forward else -self.speed
 
     def build(self) -> MotionHistory | None:
         return None
@@ -77,45 +77,34 @@ class HeldMotion(Motion):
 
     name: ClassVar[str] = "held"
 
-    steady: Flag = default(False, False, "the result is taken at the end of the duration")
+    steady: Flag | None = optional(
+        "the result is taken when sliding is steady; default: where no duration is given"
+    )
     backward: Flag = default(False, False, "the shoe slides heel first, as in push-off")
 
     @property
-    def to_steady_state(self) -> bool:
-        return self.steady
+    def end_time(self) -> float | None:
+        return None if self.steady else self.duration
 
     @property
     def forward(self) -> bool:
         return not self.backward
 
-    def build(self) -> MotionHistory | None:
-        if not self.backward:
-            return None
-        from underfoot.sole_contact.motion_history import MotionHistory
-
-        times = sorted({0.0, self.force_rise_time, self.end_time})
-        risen = [min(time / self.force_rise_time, 1.0) for time in times]
-        same = np.ones(len(times))
-        return MotionHistory(
-            np.array(times),
-            self.normal_force * np.array(risen),
-            -self.speed * same,
-            self.shoe_angle * same,
-        )
-
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
-        if self.duration < self.force_rise_time:
+        remedy = "Leave motion.duration out: the march then goes on until sliding is steady"
+        if self.end_time is not None and self.end_time < self.force_rise_time:
             yield RangeError(
-                f"{display(self.duration, 's')} ends before the force has risen",
+                f"{display(self.end_time, 's')} ends before the force has risen",
                 where=f"{where}.duration",
                 allowed=f"at least {display(self.force_rise_time, 's')} (motion.force_rise_time)",
-                remedy=f'Write motion.duration = "{self.force_rise_time * 1e3 + 90:.0f} ms"',
+                remedy=remedy,
             )
-        if self.steady and self.backward:
+        if self.end_time is None and self.steady is False:
             yield InputError(
-                "no steady state is computed of a shoe that slides backward",
+                "is false, but no duration says when the result is taken",
                 where=f"{where}.steady",
-                allowed="false with motion.backward = true",
+                allowed="false with motion.duration",
+                remedy='Write motion.duration = "0.3 s", or leave motion.steady out',
             )
 
 
@@ -142,6 +131,10 @@ class MotionFromHistory(Motion):
     history_points: tuple[MotionPoint, ...] = Field(
         description="the same points written in the case"
     )
+
+    @property
+    def end_time(self) -> float | None:
+        return self.history_points[-1].time
 
     @property
     def forward(self) -> bool:
@@ -197,7 +190,7 @@ class MotionFromHistory(Motion):
         assert history is not None
         last, force = float(history.time[-1]), history.normal_force[-1]
         for name, what, differs in (
-            ("duration", f"lasts {display(last, 's')}", abs(last - self.duration) > 1e-9),
+            ("duration", f"lasts {display(last, 's')}", abs(last - (self.duration or last)) > 1e-9),
             ("normal_force", f"ends with {force:g} N", abs(force - self.normal_force) > 1e-6),
         ):
             if differs:

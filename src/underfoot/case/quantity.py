@@ -23,13 +23,17 @@ def si_of_text(text: str, unit: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """SI unit and physical range of a field; ``open_low``/``open_high`` exclude the bound."""
+    """SI unit and physical range of a field; ``open_low``/``open_high`` exclude the bound.
+
+    ``remedy``: what to do instead of a value outside.
+    """
 
     unit: str
     low: float
     high: float
     open_low: bool = False
     open_high: bool = False
+    remedy: str | None = None
 
     def allowed(self) -> str:
         """Return the range as a person reads it."""
@@ -63,6 +67,7 @@ class Quantity:
                     f"{text} is outside the physical range",
                     allowed=self.allowed(),
                     nearest=self._likely(text) if isinstance(given, str) else None,
+                    remedy=self.remedy,
                 ),
             )
         return value
@@ -134,7 +139,16 @@ Rounding = Annotated[float, Quantity("m", 0.0, 0.1)]
 LargeRadius = Annotated[float, Quantity("m", 1e-3, 10.0)]
 Angle = Annotated[float, Quantity("rad", 0.0, math.radians(60))]
 Force = Annotated[float, Quantity("N", 1.0, 1e4)]
-Speed = Annotated[float, Quantity("m/s", 0.0, 20.0, open_low=True)]
+Speed = Annotated[
+    float,
+    Quantity(
+        "m/s",
+        0.0,
+        20.0,
+        open_low=True,
+        remedy="At rest nothing slides: 1 mm/s is sliding off, motion.backward the other way",
+    ),
+]
 Pressure = Annotated[float, Quantity("Pa", 0.0, 1e8, open_low=True)]
 Viscosity = Annotated[float, Quantity("Pa*s", 1e-5, 1e3)]
 Friction = Annotated[float, Quantity("1", 0.0, 5.0)]

@@ -35,8 +35,8 @@ BEYOND_DEVIATION = math.log(2) / 1.96
 beyond the stylus' cut-off) and 4 (Hurst 0.8, waves up to 4.5 mm) in 95 %."""
 STEEPEST = 0.5
 """Largest rms slope of the interface's longest waves (small-slope theory, assumed)."""
-
-
+STEEPEST_RAMP = math.radians(15.0)
+"""Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
 STYLUS_WAVES = (2.5e-6, 0.8e-3)
 """Shortest and longest wave (m) of a stylus as standards filter it."""
 _AS_READ = ("cutoff", "length_unit", "height_unit", "spacing")
@@ -153,10 +153,13 @@ def _read(path: Path, content: str, *settings: Any) -> Scan:
 
 
 class Floor(Section):
-    """Hard floor."""
+    """Hard floor; people walk down its slope."""
 
     roughness: SurfaceRoughness
     shore_a: Annotated[float, Quantity("1", 0.0, 100.0, open_low=True)] | None = None
+    slope: Annotated[float, Quantity("rad", 0.0, STEEPEST_RAMP)] | None = optional(
+        "of a ramp, as it is walked down: a step needs that much more friction; level if not given"
+    )
 
 
 class Interface(Option):
@@ -198,28 +201,39 @@ class Interface(Option):
 
     def _too_rough(self, case: CaseView, where: str) -> Iterator[InputError]:
         rq = self.rq(case.shoe.roughness, case.floor.roughness).value or 0.0
-        waves = self.longest_wave
-        limits = {
-            f"its waves of up to {display(waves, 'm')} would be steeper than the theory of rough "
-            "contact holds for": STEEPEST * waves / (2 * math.pi)
+        waves, what = self.longest_wave, f"an Rq of {display(rq, 'm')}"
+        steepest = STEEPEST * waves / (2 * math.pi)
+        own = {
+            name: getattr(case, name).roughness.rq_or_estimate or 0.0 for name in self.own_roughness
         }
-        if case.contaminant is not None:
-            pool = case.contaminant.pool_depth
-            limits[f"its summits (3 Rq) would stand out of {display(pool, 'm')} of fluid"] = (
-                pool / 3
+        rougher = max(own, key=own.__getitem__, default="")
+        pool = math.inf if case.contaminant is None else case.contaminant.pool_depth
+        if own and own[rougher] > steepest:
+            rq, what = own[rougher], f"an Rq of {display(own[rougher], 'm')}"
+            where = f"{rougher}.roughness"
+        elif own and rq > steepest:
+            what = (
+                f"an Rq of {display(own[rougher], 'm')}, which makes one of {display(rq, 'm')} "
+                f"between sole and floor ({where}),"
             )
-        why, limit = min(limits.items(), key=lambda item: item[1])
-        for name in self.own_roughness:
-            own = getattr(case, name).roughness.rq_or_estimate or 0.0
-            if own > limit:
-                rq, where = own, f"{name}.roughness"
-        if rq > limit:
+            where = f"{rougher}.roughness"
+        if rq > steepest:
             yield RangeError(
-                f"an Rq of {display(rq, 'm')} is no roughness of a sole on a floor: {why}",
+                f"{what} is no roughness of a sole on a floor: its waves of up to "
+                f"{display(waves, 'm')} would be steeper than the theory of rough contact allows",
                 where=where,
-                allowed=f"at most {display(limit, 'm')}",
+                allowed=f"at most {display(steepest * own.get(rougher, rq) / rq, 'm')}",
                 remedy="Soles and floors have a few to some tens of micrometres; a deeper pattern "
                 "belongs to shoe.tread",
+            )
+        elif rq > pool / 3:
+            yield RangeError(
+                f"{display(pool, 'm')} of fluid do not cover the summits (3 Rq) of a roughness of "
+                f"{display(rq, 'm')} between sole and floor: what holds the film is not known",
+                where="contaminant.pool_depth",
+                allowed=f"at least {display(3 * rq, 'm')}",
+                remedy="Give the depth of the fluid, or leave contaminant out for a floor that is "
+                "only damp",
             )
         if self.shortest_wave >= self.longest_wave:
             yield RangeError(

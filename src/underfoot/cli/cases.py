@@ -150,6 +150,8 @@ def compare(
 ) -> None:
     """Rank two to twelve results or cases by friction, with the probability of the order.
 
+    Where the order is open it is computed under other fluids, angles and worn: what would tell.
+
     With --out: the soles side by side, one colour scale, maps of the differences. --set and
     --quick apply to case files.
     """
@@ -162,7 +164,9 @@ def compare(
     known = catalogue_for(None, shared.catalogue)
     shared.answer(
         " and ".join(item.name for item in items),
-        lambda progress: compared(*items, quick=shared.quick, catalogue=known, progress=progress),
+        lambda progress: compared(
+            *items, quick=shared.quick, catalogue=known, separate=True, progress=progress
+        ),
     )
 
 

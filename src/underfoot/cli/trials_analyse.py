@@ -118,8 +118,12 @@ def analyse(
 
 
 def persons(
-    design: Annotated[str, typer.Argument(help="paired, groups, repeated or slips.")],
-    difference: Annotated[float, typer.Option(help="Difference of means to be found.")] = 0.0,
+    design: Annotated[
+        str, typer.Argument(help="paired, groups, repeated, slips or slips_equivalent.")
+    ],
+    difference: Annotated[
+        float, typer.Option(help="Difference of means to be found; margin (slips_equivalent).")
+    ] = 0.0,
     sd: Annotated[
         float,
         typer.Option(
@@ -143,5 +147,5 @@ def persons(
         return statistics.power(design, count, **settings)  # type: ignore[arg-type]  # each design takes what it needs
 
     count = statistics.persons_needed(chance, power)
-    each = " in each group" if design in ("groups", "slips") else ""
+    each = " in each group" if design in ("groups", "slips", "slips_equivalent") else ""
     print(f"{count} persons{each}: power {chance(count):.3f} at alpha 0.05, two-sided")

@@ -16,7 +16,7 @@ from .positions import TreadPositions
 from .prepare import Prepared, case_hash, object_texts
 from .read import Reading
 from .result import Result
-from .sole import compression_breaches, forefoot_breaches, outsole_notes
+from .sole import compression_breaches, forefoot_breaches, outsole_notes, tread_breaches
 from .solve import Solution
 
 CELL_AREAS = (
@@ -71,6 +71,7 @@ def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Bre
         *parts.sole.breaches,
         *compression_breaches(case, contact.approach),
         *forefoot_breaches(case, parts.sole),
+        *tread_breaches(parts.sole, parts.context.rq_value),
         *parts.asperities.breaches(pressure=numbers.bearing_pressure(contact), speed=speed),
         *parts.law.breaches(
             contact_pressure=contact.contact_pressure,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -27,7 +27,7 @@ from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import ContactFriction, contact_friction
-from .positions import place_numbers, treaded
+from .positions import COF_PARTS, LOADS, place_numbers, treaded
 from .prepare import Prepared, prepared
 from .solve import continued, film_spreads, solved_motion
 
@@ -164,9 +164,12 @@ class Continuation:
         cof, draws = SourcedValue(values["cof"], "1"), None
         if drawn:
             friction = self._friction(parts, second)
-            factor = max(values["cof"] / two["cof"], 0.0) if two["cof"] else 1.0
-            cof = friction.sums.cof.scaled(factor)
-            draws = None if friction.sampled is None else factor * friction.sampled.cof
+            cof = replace(friction.sums.cof, value=values["cof"])
+            if (sampled := friction.sampled) is not None:
+                film, contact = (max(values[load], 0.0) for load in LOADS)
+                each = {name.removeprefix("cof_"): max(values[name], 0.0) for name in COF_PARTS}
+                sampled = replace(sampled, **sampled.law.at(contact / (film + contact), **each))
+                cof, draws = sampled.sourced("cof", cof), sampled.cof
         return Preview(
             dict(changes),
             cof,

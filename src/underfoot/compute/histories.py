@@ -74,7 +74,7 @@ class Recorder:
         self._picture(state)
 
     def _read(self, state: SoleState) -> None:
-        every = self.case.motion.duration / READ_STEPS
+        every = (self.case.motion.end_time or 0.0) / READ_STEPS
         if self.viscosity is None or state.time < self._last_read + every:
             self.sensor_load.append(math.nan)
             self.sensor_peak.append(math.nan)
@@ -92,7 +92,7 @@ class Recorder:
 
     def _picture(self, state: SoleState) -> None:
         follows = self.case.motion.build() is not None
-        every = self.case.motion.duration / (READ_STEPS if follows else STEADY_PICTURES)
+        every = (self.case.motion.end_time or 0.0) / (READ_STEPS if follows else STEADY_PICTURES)
         times = [time for time, _ in self.pictures[-2:]]
         if len(times) == 2 and times[1] < times[0] + every:
             self.pictures.pop()  # the newest is always the last

@@ -121,13 +121,14 @@ def with_film_spread(
     """Return the numbers of the film with the spread of its load, and that over places.
 
     ln F / (W - F), F the load on the film, W the whole, is off by ``film_odds`` (n,); what sensors
-    read and peaks go with F. ``drawn`` gives a number over positions of the tread and shoe angles,
-    in the order of the draws of COF.
+    read and peaks go with F, place by place. ``drawn`` gives a number over positions of the tread
+    and shoe angles, in the order of the draws of COF.
     """
     load, whole = values["fluid_load"].value, values["normal_force"].value
     if not load or not whole:
         return dict(values)
-    share = min(load / whole, 1.0)
+    loads = load if drawn is None else drawn("fluid_load", film_odds.size)
+    share = np.minimum(np.asarray(loads) / whole, 1.0)
     factors = 1 / (share + (1 - share) * np.exp(-film_odds))
     result = dict(values)
     for name in GRID_NAMES[1:]:
@@ -152,6 +153,25 @@ def with_film_spread(
     return result
 
 
+def required_friction(case: Case) -> RcofPopulation:
+    """Return what the people of a case need on its floor, down its slope if it has one."""
+    source = case.sourced("risk.rcof_mean").source
+    # the case itself lists an assumed required friction, so the population need not do so again
+    level = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, source)
+    return level.on_slope(case.floor.slope or 0.0)
+
+
+def slope_words(case: Case) -> str:
+    """Return what a slope asks of people; "" on the level."""
+    if not case.floor.slope:
+        return ""
+    needed = required_friction(case).mean
+    return (
+        f"{display(case.floor.slope, 'rad')} down: people who need {case.risk.rcof_mean:.2f} on "
+        f"the level need {needed:.2f} here"
+    )
+
+
 def slip_probability(
     case: Case, acof: SourcedValue, draws: ArrayLike | None = None, model: SlipModel | None = None
 ) -> tuple[SourcedValue, SlipRisk]:
@@ -160,12 +180,8 @@ def slip_probability(
     ``draws`` (n,) of the friction stand for its spread; ``model`` takes the place of the case's.
     """
     mean, spread = case.sourced("risk.rcof_mean"), case.sourced("risk.rcof_sd")
-    # the case itself lists an assumed required friction, so the risk need not do so again
     risk = slip_risk(
-        acof,
-        rcof=RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, mean.source),
-        model=model or case.risk.build(),
-        samples=draws,
+        acof, rcof=required_friction(case), model=model or case.risk.build(), samples=draws
     )
     probability = replace(
         risk.probability,

@@ -14,7 +14,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import readings
-from .positions import RATES, Place, ShoeAngles, TreadPositions
+from .positions import CLOSEST, RATES, Place, ShoeAngles, TreadPositions
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along, tread_on_sole
@@ -24,10 +24,15 @@ BETWEEN_GRIDS = {
     True: {"fluid_load": (0.05, 0.2), "cof_viscous": (0.01, 0.02), "cof": (0.002, 0.004)},
     False: {"fluid_load": (0.03, 0.2), "cof_viscous": (0.01, 0.05), "cof": (0.002, 0.04)},
 }
-"""Standard deviations with lugs and without, of the grid of a run and of the quick one: of
-ln F / (W - F), of the relative viscous friction, of what else moves COF."""
+"""Standard deviations with lugs and without, of the grid of a run that a coarser one was compared
+with, and of one alone with cells of ``ALONE``, in proportion to its cells: of ln F / (W - F), of
+the relative viscous friction, of what else moves COF."""
+ALONE = 1e-3
+"""m"""
 PEAKS = {True: 0.3, False: 0.05}
 """Relative standard deviation of peaks and of what a sensor reads."""
+GRID_OF_CONTACT = 1.1
+"""Factor by which cells alone raise the friction of the contact at most."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
@@ -86,7 +91,7 @@ def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole:
     """Return the draws of COF with its numerical error, a log-normal factor on all parts.
 
     ``error`` is the standard deviation of ``cof``; ``sole`` names the sole: two runs of one name
-    share the error.
+    share the error. A contact does not get more than the whole load by it.
     """
     if not (error > 0 and cof > 0):
         return sampled
@@ -98,11 +103,16 @@ def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole:
         name: each * law_variance / (law_variance + variance)
         for name, each in sampled.share.items()
     }
-    parts = ("cof", "adhesion", "hysteresis", "viscous")
+    whole = 1 / np.maximum(sampled.contact, 1e-9)
+    solid = np.minimum(factor, np.maximum(whole, GRID_OF_CONTACT))
+    parts = {"adhesion": solid, "hysteresis": solid, "viscous": factor}
+    drawn = {name: getattr(sampled, name) * each for name, each in parts.items()}
     return replace(
         sampled,
+        cof=sum(drawn.values()),
+        contact=np.minimum(sampled.contact * solid, 1.0),
         share={**share, "numerical": variance / (law_variance + variance)},
-        **{name: getattr(sampled, name) * factor for name in parts},
+        **drawn,
     )
 
 
@@ -121,19 +131,23 @@ def numerical_errors(
         s^2 = g^2 + d^2 + s_p^2 / n^(2 r) + (m / (n + m) l)^2
 
     s_p the standard deviation over the positions, r the rate of their rule (``RATES``), d what the
-    difference of the two grids leaves open, l the largest difference of a position to their mean: m
-    more that did not converge may be as far off. Without a tread d is the difference to the quick
-    grid. g lies between the grid of the run and endlessly fine ones (``BETWEEN_GRIDS``):
+    difference of the two grids leaves open, none where one was solved, l the largest difference of
+    a position to their mean: m more that did not converge may be as far off. Without a tread d is
+    the difference to the quick grid. g lies between the grid of the run and endlessly fine ones
+    (``BETWEEN_GRIDS``):
     c F (1 - F / W) of the load F on the film of W; of COF, since contact loses what the film gains,
     (c F / W) (adhesion + hysteresis) + c_v viscous, and a share of all.
-    ``numerics.grid_check`` compares with the quick grid, without lugs with ``CHECKED`` cells along
-    the sliding on it, and these with twice the steps in time (first order).
+    ``numerics.grid_check`` compares with a coarser quick grid, without lugs with ``CHECKED`` cells
+    along the sliding on it, and these with twice the steps in time (first order).
 
     Raises:
         InputError: A grid check with a compliance of one grid.
     """
     case = parts.case
-    checked = case.numerics.grid_check and not quick
+    numerics = case.numerics
+    checked = (
+        numerics.grid_check and not quick and numerics.quick_grid_spacing >= CLOSEST * parts.spacing
+    )
     if "compliance" in parts.objects:
         if checked:
             raise InputError(
@@ -152,14 +166,16 @@ def numerical_errors(
         return "not estimated with numerics.tread_positions = 1"
     grid, count, lost = {}, len(positions.places), positions.left_out
     lugs, force = not isinstance(positions, ShoeAngles), solution.contact.normal_force
-    at, share = positions.values, BETWEEN_GRIDS[lugs]
+    alone, size = positions.uncompared > 0, positions.uncompared / ALONE or 1.0
+    at = positions.values
+    share = {name: size * both[alone] for name, both in BETWEEN_GRIDS[lugs].items()}
     film = np.clip(at["fluid_load"] / force, 0.0, 1.0)
-    moved = share["fluid_load"][quick] * film
+    moved = share["fluid_load"] * film
     moved_cof = moved * (at["cof_adhesion"] + at["cof_hysteresis"])
-    moved_cof += share["cof_viscous"][quick] * at["cof_viscous"]
+    moved_cof += share["cof_viscous"] * at["cof_viscous"]
     finer = {name: PEAKS[lugs] * positions.answer(name) for name in numbers}
     finer["fluid_load"] = float((moved * (1 - film)).mean()) * force
-    finer["cof"] = math.hypot(share["cof"][quick] * positions.answer("cof"), moved_cof.mean())
+    finer["cof"] = math.hypot(share["cof"] * positions.answer("cof"), moved_cof.mean())
     rate = RATES[len(tread_on_sole(case)[0])] if lugs else 0.0
     for name, error in finer.items():
         values = at[name]
@@ -167,7 +183,7 @@ def numerical_errors(
         missing = lost / (count + lost) * float(np.abs(values - values.mean()).max())
         grid[name] = math.hypot(error, positions.between.get(name, 0.0), rule, missing)
     origin = f"{count} {positions.several}"
-    if not (lugs or quick):
+    if not (lugs or alone):
         origin = f"difference to {_cells(parts, columns)}"
     return NumericalErrors(grid, {}, f"{origin}, and finer grids")
 

@@ -1,8 +1,9 @@
 """A tread, not one position of it: the answer averaged over where its lugs happen to lie."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,18 +21,34 @@ from .cost import cost
 from .numbers import scalars
 from .prepare import Prepared
 from .sensors import scanned
-from .sole import file_surface, tread_on_sole
+from .sole import bottom_surface, file_surface, landing_front, tread_on_sole
+from .steadiness import later_numbers
 
 ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
 ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
+YAW = math.radians(1)
+"""Angle of a tread against the corner of its heel, to either side, rad; assumed: neither a mould,
+a grinder nor wear holds it better. No standard says it."""
 GOLDEN = (math.sqrt(5) - 1) / 2
-LANDING = 0.1e-3
-"""What lies at most this above the lowest quarter of a sole lands first, m."""
+ACROSS = 6.0
+"""How much less a wave of the places across the shoe matters than one along it: lugs side by side
+have all its phases."""
+HANDED = 0.02
+"""Share of a tread's walls that leans to one side more than to the other, from which it tells a
+tread from its mirror image."""
 FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
-CARRIED = ("fluid_load", "cof_adhesion", "cof_hysteresis", "cof_viscous")
+LOADS = ("fluid_load", "contact_load")
+ON_CONTACT = ("cof_adhesion", "cof_hysteresis")
+COF_PARTS = (*ON_CONTACT, "cof_viscous")
+FAINT = 1e-6
+"""Share of the load that film and contact have at least where the odds of one are asked for."""
+CLOSEST = 1.25
+"""Cells of two grids, coarser over finer, from which their difference says how far both are off."""
+USUAL_STEP = 2 / 3
+"""(coarser - finer) / finer of the grids of a case as they are by default."""
 RATES = {1: 1.0, 2: 0.75}
 """Rate of the rule of positions by the number of periods of the tread, where the film jumps with
 the place (docs/physics/coupled_contact.md)."""
@@ -40,10 +57,14 @@ _HELD = "spread of the friction law, its inputs and the"
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a tread lies: its pattern shifted by (x, y), m, the shoe turned by ``turn``, rad."""
+    """Where a tread lies: its pattern shifted by (x, y), m, and turned by ``yaw``, rad.
+
+    ``turn``, rad, is added to the shoe angle.
+    """
 
     shift: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
+    yaw: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +79,8 @@ class TreadPositions:
         between: Name of a scalar: what the difference of two grids leaves unknown of its mean.
         by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
             case's own place; empty where that is not known or in the values.
+        film_by_angle: What it adds to ln F / (W - F), F the load on the film of W.
+        uncompared: Cells, m, where no other grid was compared with; else 0.
     """
 
     origin: ClassVar[str] = "tread_position"
@@ -70,32 +93,50 @@ class TreadPositions:
     at_own_place: Mapping[str, float]
     between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
+    film_by_angle: float = field(default=0.0, kw_only=True)
+    uncompared: float = field(default=0.0, kw_only=True)
 
     def answer(self, name: str) -> float:
         """Return the scalar of the result: its mean over the places."""
         return float(self.values[name].mean())
 
     def drawn(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at each place in turn, evenly over the band of the angle."""
-        at = np.arange(count)
-        turns = math.sqrt(3) * (2 * np.mod(GOLDEN * at, 1) - 1)
-        values = self.values[name][at % len(self.places)]
-        return np.maximum(values + self.by_angle.get(name, 0.0) * turns, 0)
+        """Return the scalar (count,) at each place in turn, evenly over the band of the angle.
+
+        The angle moves the load on the film by its odds, and adds to other numbers.
+        """
+        turns = self._turns(count)
+        if name != "fluid_load":
+            return np.maximum(self._each(name, count) + self.by_angle.get(name, 0.0) * turns, 0)
+        film, contact = (self._each(load, count) for load in LOADS)
+        more = film * np.exp(self.film_by_angle * turns)
+        return more * (film + contact) / (more + contact)
+
+    def _each(self, name: str, count: int) -> Array:
+        """Return the scalar (count,) at each place in turn, at the angle of the case."""
+        return self.values[name][np.arange(count) % len(self.places)]
+
+    def _turns(self, count: int) -> Array:
+        """Return turns (count,) evenly over the band of the angle, in its standard deviations."""
+        return math.sqrt(3) * (2 * np.mod(GOLDEN * np.arange(count), 1) - 1)
 
     def friction(
         self, friction: FrictionCoefficients, sampled: SampledCof | None
     ) -> tuple[FrictionCoefficients, SampledCof | None]:
-        """Return COF and its draws over the positions, which the draws take in turn."""
+        """Return COF and its draws over the positions, which the draws take in turn.
+
+        Each draw of the law meets the contact and the film of a place, turned by an angle.
+        """
         values = {name: values for name, values in self.values.items() if name.startswith("cof")}
         new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
         if sampled is not None:
-            draws = {}
-            for name in values:
-                part = name.removeprefix("cof_")
-                own = self.at_own_place[name]
-                factors = self.drawn(name, sampled.cof.size) / own if own else 1.0
-                draws[part] = getattr(sampled, part) * factors
-            draws["cof"] = draws["adhesion"] + draws["hysteresis"] + draws["viscous"]
+            count = sampled.cof.size
+            film, contact = (self._each(load, count) for load in LOADS)
+            draws = sampled.law.at(
+                contact / (film + contact),
+                **{name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS},
+                more_odds=self.film_by_angle * self._turns(count),
+            )
             more = {self.origin: float(np.var(values["cof"]))}
             if self.by_angle:
                 more["shoe_angle"] = self.by_angle["cof"] ** 2
@@ -118,7 +159,7 @@ class TreadPositions:
         if len(self.places) == 1:
             return means
         for name in self.values:
-            if not name.startswith("cof"):
+            if name in numbers and not name.startswith("cof"):
                 means[name] = replace(numbers[name], value=self.answer(name))
         over = f"over {len(self.places)} {self.several}"
         means["fluid_load"] = replace(
@@ -175,7 +216,11 @@ class TreadPositions:
     def assumptions(self) -> tuple[str, ...]:
         """Return the band of the shoe angle, where it was used."""
         angle = bool(self.by_angle) or any(place.turn for place in self.places)
-        return ("motion.shoe_angle: ±1 deg",) * angle
+        yaw = any(place.yaw for place in self.places)
+        return (
+            *("motion.shoe_angle: ±1 deg",) * angle,
+            *("shoe.tread: turned ±1 deg against the heel's corner",) * yaw,
+        )
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: where the positions are, COF and load there."""
@@ -185,7 +230,9 @@ class TreadPositions:
 
         cof, film = ({"as_described": self.at_own_place[n]} for n in ("cof", "fluid_load"))
         shift = np.array([place.shift for place in self.places])
+        yaw = [place.yaw for place in self.places]
         return {
+            "position_yaw": at(yaw, "rad", "turn of the tread's pattern, anticlockwise"),
             "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
             "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
             "position_cof": at(self.values["cof"], "1", "coefficient of friction", **cof),
@@ -223,7 +270,9 @@ class ShoeAngles(TreadPositions):
         fields = super(ShoeAngles, self).fields()
         turn = [place.turn for place in self.places]
         about = {"units": "rad", "long_name": "change of the shoe angle"}
-        kept = {name: each for name, each in fields.items() if "shift" not in name}
+        kept = {
+            name: each for name, each in fields.items() if "shift" not in name and "yaw" not in name
+        }
         return {"position_turn": ("tread_position", turn, about), **kept}
 
 
@@ -241,16 +290,26 @@ def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Plac
     """Return ``count`` places of a pattern with the periods (n, 2), m.
 
     The first at ``begin``, shares (n,) of the periods; at rest without. Even along the first period
-    and along a second, where they follow the order of golden shares: no low wave across both meets
-    all of them in one phase, as it meets those of a lattice of 4 or 6. All at the shoe angle of the
+    and along a second, on the lattice whose shortest wave that it can't tell from none is
+    longest; one across the shoe counts ``ACROSS`` times its length. All at the shoe angle of the
     case: the film under bars is a saw-tooth along their period whose teeth the angle moves, and
     positions that have other angles leave a larger error of its mean.
     """
-    order = np.argsort(np.argsort(np.mod(GOLDEN * np.arange(count), 1)))
-    shares = np.column_stack([np.arange(count), order])[:, : len(periods)] / count
-    if begin is not None:
-        shares = np.mod(shares + begin, 1)
+    periods, at = np.asarray(periods, dtype=float), np.arange(count)
+    shares = np.column_stack([at, at * _step(periods, count)])[:, : len(periods)] / count
+    shares = np.mod(shares + (0.0 if begin is None else begin), 1)
     return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
+
+
+def _step(periods: Array, count: int) -> int:
+    """Return by how many parts of the second period a place lies beyond the one before it."""
+    if len(periods) == 1 or count == 1:
+        return 1
+    waves = np.array([h for h in product(range(-count, count + 1), repeat=2) if any(h)])
+    along, across = np.linalg.pinv(periods) @ waves.T
+    length = np.round(np.hypot(along, ACROSS * across) * np.abs(periods).max(), 6)
+    met = [length[waves @ (1, step) % count == 0].min() for step in range(1, count)]
+    return 1 + int(np.argmax(met))
 
 
 def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
@@ -258,14 +317,33 @@ def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
 
     The pattern begins at the front of what lands first, where the teeth of its film lie: so all
     treads meet them in nearly one phase, wherever they were drawn and however wide their lugs are.
+    There it is turned by ``YAW``, to either side alike: lugs that meet a
+    corner of the heel all at once are a tooth of the film that no real sole has. A mirrored sole
+    has the mirrored places.
     """
-    periods, begin, x, height = tread_on_sole(case)
-    clearance = height + math.tan(case.motion.shoe_angle) * x
-    over = np.nan_to_num(clearance, nan=math.inf) - np.nanquantile(clearance, 0.25) - LANDING
-    last = int(np.flatnonzero(over < 0)[-1])
-    front = np.interp(0.0, over[last : last + 2], x[last : last + 2])
-    at_front = np.array([front, 0.0]) @ np.linalg.pinv(periods)
-    return places(periods, position_count(case, quick=quick), at_front - begin)
+    periods, begin = tread_on_sole(case)[:2]
+    hand = _hand(case)
+    mirror = np.array([1, hand])
+    origin = (np.array([landing_front(case), 0.0]) - begin @ periods) * mirror
+    ahead = _reduced(periods * mirror)
+    lie = places(ahead, position_count(case, quick=quick), origin @ np.linalg.pinv(ahead))
+    signs = (1, -1, -1, 1)
+    return tuple(
+        Place((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
+        for k, place in enumerate(lie)
+    )
+
+
+def _reduced(periods: Array) -> Array:
+    """Return periods of the same pattern whose mirror images have the mirrored ones."""
+    first, *more = (each * (1 if tuple(each[::way]) > (0, 0) else -1)
+                    for each, way in zip(np.round(periods, 12), (1, -1), strict=False))  # fmt: skip
+    return np.array(
+        [
+            first,
+            *(each - math.floor(each @ first / (first @ first) + 1e-6) * first for each in more),
+        ]
+    )
 
 
 def tread_positions(
@@ -275,7 +353,6 @@ def tread_positions(
         [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
     ],
     *,
-    load: float,
     spacing: float,
     quick: bool,
 ) -> TreadPositions:
@@ -287,7 +364,7 @@ def tread_positions(
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
     case's own position.
 
-    ``load`` is the whole load, N; ``known`` are the numbers at the case's own place, and what is
+    ``known`` are the numbers at the case's own place, and what is
     known of others, on the grid of the run, of ``spacing`` (m); ``at_places`` solves places,
     each on a grid (m), and gives the index of each with its numbers as they end, None where a
     contact did not converge.
@@ -306,46 +383,102 @@ def tread_positions(
         coarse = spacing
     answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
     failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
-    onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and coarse > spacing else 0.0
+    each = _arrays(own, answers.values())
+    before, after = (_arrays(own, [at[p, h] for p in pairs]) for h in (coarse, spacing))
+    compared = coarse > spacing
+    onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and compared else 0.0
     rate = RATES[len(tread_on_sole(case)[0])] if lugs else 1.0
-    values, between = {}, {}
+    values, near = (carried(each, before, after, order) for order in (onward, 0.0))
+    # of a flat sole the first order of the cells, as the quick grid and that of a run tell it
+    onto = 1 + onward if lugs else USUAL_STEP * spacing / (coarse - spacing) if compared else 0.0
+    between = {}
     for name in own:
-        each = np.array([numbers[name] for numbers in answers.values()])
-        before, after = (np.array([at[p, h][name] for p in pairs]) for h in (coarse, spacing))
-        limit = load if name == "fluid_load" else math.inf
-        order = onward if name in CARRIED else 0.0
-        values[name] = carried(each, before, after, order, limit)
-        further = float((values[name] - carried(each, before, after, 0.0, limit)).mean())
-        apart = after - before
+        apart = after[name] - before[name]
         scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
-        between[name] = math.hypot(further / 2, (1 + order) * scatter / len(pairs) ** rate)
-    for whole in (values, between):
-        whole["cof"] = sum(whole[f"cof_{part}"] for part in ("adhesion", "hysteresis", "viscous"))
-    if not lugs:
-        return ShoeAngles(tuple(answers), values, len(failed), own, between=between)
-    by_angle = {}
-    if all((place, spacing) in at for place in angles):
+        further = float((values[name] - near[name]).mean())
+        further_on = onto if name in (*LOADS, *COF_PARTS) or not lugs else 1.0
+        between[name] = math.hypot(further / 2, further_on * scatter / len(pairs) ** rate)
+    between["cof"] = sum(between[name] for name in COF_PARTS)
+    by_angle, by_film = {}, 0.0
+    if lugs and all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
         by_angle = {name: (up[name] - down[name]) / 2 for name in own}
-    return TreadPositions(
-        tuple(answers), values, len(failed), own, between=between, by_angle=by_angle
+        by_film = (_film_odds(up) - _film_odds(down)) / 2
+    kind = TreadPositions if lugs else ShoeAngles
+    return kind(
+        tuple(answers),
+        values,
+        len(failed),
+        own,
+        between=between,
+        by_angle=by_angle,
+        film_by_angle=by_film,
+        uncompared=0.0 if compared else spacing,
     )
 
 
-def carried(each: Array, coarse: Array, fine: Array, onward: float, limit: float) -> Array:
-    """Return numbers (n,) of a coarse grid on a finer one, by some of both (m,).
+def _arrays(names: Iterable[str], numbers: Iterable[Mapping[str, float]]) -> dict[str, Array]:
+    listed = list(numbers)
+    return {name: np.array([each[name] for each in listed]) for name in names}
 
-    The odds v / (limit - v), v without a limit, are scaled as those of the mean over the m move
-    from ``coarse`` to ``fine``, and ``onward`` times as far again. What grows with finer cells
-    grows evenly, of what shrinks the inverse does.
+
+def _film_odds(numbers: Mapping[str, float]) -> float:
+    """Return ln F / (W - F) of the load on the film."""
+    film, contact = (numbers[load] for load in LOADS)
+    least = FAINT * (film + contact)
+    return math.log(max(film, least) / max(contact, least))
+
+
+def carried(
+    each: Mapping[str, Array], coarse: Mapping[str, Array], fine: Mapping[str, Array], onward: float
+) -> dict[str, Array]:
+    """Return numbers (n,) of a coarse grid on a finer one by name, by some of both (m,).
+
+    The odds of the loads on film and contact move as those of their means do, and ``onward`` times
+    as far again, and so does what a newton of the contact and the film have of friction; so contact
+    and film bear the load at each place. Other numbers move as their means do. What grows with
+    finer cells grows evenly, of what shrinks the inverse does.
     """
-    before, after = (float(one.mean()) for one in (coarse, fine))
-    if not (0 < before < limit and 0 < after < limit):
-        return each if before == after else np.full_like(each, after)
-    step = after / before * (1 - before / limit) / (1 - after / limit)
-    factor = step + onward * (step - 1) if step > 1 else step / (1 + onward * (1 - step))
-    share = np.minimum(each / limit, 1.0)
-    return each * factor / (1 - share + factor * share)
+
+    def total(numbers: Mapping[str, Array], name: str) -> float:
+        force = sum(numbers[load] for load in LOADS) if name in COF_PARTS else 1.0
+        return float((numbers[name] * force).sum())
+
+    def factor(name: str, over: str = "", order: float = 0.0) -> float:
+        before, after = (total(numbers, name) for numbers in (coarse, fine))
+        if over:
+            before, after = before * total(fine, over), after * total(coarse, over)
+        if not (before > 0 and after > 0):  # it is there on one grid alone, or on none
+            return 1.0
+        step = after / before
+        return step + order * (step - 1) if step > 1 else step / (1 + order * (1 - step))
+
+    film, contact = (each[load] for load in LOADS)
+    more = film * factor(*LOADS, onward)
+    onto = (film + contact) / (more + contact)
+    result = {"fluid_load": more * onto, "contact_load": contact * onto}
+    for name in each.keys() - {*LOADS, "cof"}:
+        if name in ON_CONTACT:
+            result[name] = each[name] * onto * factor(name, "contact_load", onward)
+        else:
+            result[name] = each[name] * factor(name, order=onward if name in COF_PARTS else 0.0)
+    result["cof"] = np.sum([result[name] for name in COF_PARTS], axis=0)
+    return {name: result[name] for name in each}
+
+
+def _hand(case: Case) -> int:
+    """Return 1, of the mirrored case -1: where the walls of a tread lean to, else its plan form."""
+    surface = bottom_surface(case)
+    land, inside = surface.land, surface.inside
+    up, down = (
+        np.count_nonzero((land[a] != land[b]) & inside[a] & inside[b])
+        for a, b in ((np.s_[1:, 1:], np.s_[:-1, :-1]), (np.s_[1:, :-1], np.s_[:-1, 1:]))
+    )
+    lean = (up - down) / max(up + down, 1)
+    if abs(lean) < HANDED:
+        x, y = np.meshgrid(surface.x - surface.x.mean(), surface.y, indexing="ij")
+        lean = float((x * y)[inside].sum() + 1e-3 * (x * y)[land].sum())
+    return 1 if lean >= 0 else -1
 
 
 def _places_on_grids(
@@ -355,10 +488,12 @@ def _places_on_grids(
     coarse = case.numerics.quick_grid_spacing
     if treaded(case):
         all_places = case_places(case, quick=quick)
-        if quick or coarse <= spacing:
+        if quick or coarse < CLOSEST * spacing:
             return all_places, all_places, spacing
         return all_places, all_places[::2], coarse
-    return shoe_angles(), shoe_angles()[: 3 if quick else 1], spacing if quick else coarse
+    if quick or coarse < CLOSEST * spacing:
+        return shoe_angles(), shoe_angles(), spacing
+    return shoe_angles(), shoe_angles()[:1], coarse
 
 
 def position_count(case: Case, *, quick: bool) -> int:
@@ -416,8 +551,10 @@ def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, case.motion.speed)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     numbers, _ = scalars(case, contact, friction, sensor)
-    return {
+    numbers |= later_numbers(parts, contact)
+    values = {
         name: each.value
         for name, each in numbers.items()
         if each.value is not None and name not in ("normal_force", "slip_probability")
     }
+    return {**values, "contact_load": friction.normal_force - friction.fluid_load}

@@ -76,7 +76,8 @@ class Prepared:
         """
         compliance = self.compliance
         if sole is not None and "compliance" not in self.objects:
-            compliance = self.case.compliance.build(turned(self.context, turn), sole)
+            context = turned(self.context, turn)
+            compliance = self.case.compliance.rebuilt(self.compliance, context, sole)
         sole = self.sole if sole is None else sole
         asperities = self.asperities if asperities is None else asperities
         edged = edged_law(self.case, self.context, self.law, sole, asperities)

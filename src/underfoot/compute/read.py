@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.case import Case
+from underfoot.case.motion import SLOWEST
 from underfoot.core import Breach, Progress, SourcedValue, display, silent
-from underfoot.friction import SampledCof
+from underfoot.friction import FrictionLaw, PairContactLaw, SampledCof
+from underfoot.friction.pair_contact import UnexpectedReading
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
@@ -20,6 +22,7 @@ from .prepare import Prepared
 from .sensors import blind_sensor
 from .sole import overload_breaches
 from .solve import Solution
+from .steadiness import later_numbers, steady_slide, with_steadiness
 from .summary import FILM_MATTERS
 
 
@@ -72,11 +75,13 @@ def readings(
         friction = replace(friction, cof=sampled.sourced("cof", cof))
     sensor = solution.sensor
     values, risk = numbers.scalars(case, contact, friction, sensor, sampled, parts.slip_model)
+    values |= later_numbers(parts, contact) | steady_slide(parts, contact)
     values |= solution.recorder.array_scalars()
     micro = micro_contact(parts, contact)
     values |= {} if micro is None else micro.scalars()
     if positions:
         values = positions.averaged(values)
+    values = with_steadiness(values)
     drawn = positions.drawn if positions else None
     values = numbers.with_film_spread(values, solution.friction.film_odds, drawn)
     drainage = None
@@ -86,6 +91,7 @@ def readings(
     remarks = {
         "drainage": drainage.advice() if drainage else "",
         "overload": numbers.overload_words(overload),
+        "slope": numbers.slope_words(case),
         **(positions.labels() if positions else {}),
     }
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
@@ -130,17 +136,31 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
         else "Square cells do not resolve where the film enters: COF and film load of a flat heel "
         'may be off by half; numerics.cells_along = "auto" resolves it.',
         "sensor": blind_sensor(case, sensor, contact),
+        "floor_reading": " ".join(map(str, _unexpected_readings(parts.law))),
     }
     return {name: remark for name, remark in (remarks | more).items() if remark}
 
 
+def _unexpected_readings(law: FrictionLaw) -> tuple[UnexpectedReading, ...]:
+    """Return what was read of the floor and not foretold."""
+    return law.draws.outside if isinstance(law, PairContactLaw) else ()
+
+
 def _last_instant(case: Case) -> str:
-    """Return when and at which angle a motion that turns ends; empty where the angle is held."""
-    history = case.motion.build()
-    if history is None or not np.ptp(history.shoe_angle):
+    """Return when the numbers of a motion that ends are taken, and what is assumed of its start."""
+    history, end = case.motion.build(), case.motion.end_time
+    if end is None:
         return ""
-    time, angle = display(history.time[-1], "s"), display(history.shoe_angle[-1], "rad")
-    return f"at the end of the motion ({time}, shoe angle {angle})"
+    at = f"at {display(end, 's')}"
+    if history is not None and np.ptp(history.shoe_angle):
+        angle = display(history.shoe_angle[-1], "rad")
+        at = f"at the end of the motion ({display(end, 's')}, shoe angle {angle})"
+    if history is not None and abs(history.speed[-1]) < SLOWEST:
+        at += f", where the shoe is at rest: that of sliding off at {display(SLOWEST, 'm/s')}"
+    film = case.sourced("motion.start_film")
+    if case.contaminant is not None and film.assumed:
+        at += f", from {display(film.value or 0.0, 'm')} above the floor at touch-down, assumed"
+    return at
 
 
 def chamfer_remark(case: Case) -> str:

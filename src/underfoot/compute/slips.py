@@ -21,6 +21,7 @@ from underfoot.slip.dynamics import (
 from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.sole_state import SolverSettings
 
+from .numbers import required_friction
 from .prepare import prepared
 from .solve import pool_depth
 
@@ -76,13 +77,14 @@ def slip_population(
         ends = min(low, mean.value), max(high, mean.value)
         return Spread(mean.value, sd, *ends, mean.source, mean.assumed)
 
-    angle = case.motion.shoe_angle
+    angle, asked = case.motion.shoe_angle, case.sourced("risk.rcof_mean")
+    needed = required_friction(case)
     return Population(
         subjects=people.subjects if subjects is None else subjects,
         seed=people.seed,
         histories=tuple(histories) if histories else packaged_histories(),
         mass=spread("slip.mass", 20.0, 200.0),
-        rcof=spread("risk.rcof", 0.0, 1.0),
+        rcof=Spread(needed.mean, needed.sd, 0.0, 1.0, asked.source, asked.assumed),
         walking_speed=spread("slip.walking_speed", 0.5, 2.5),
         heel_speed=spread("slip.heel_speed", 0.02, 2.0),
         shoe_angle=Spread(

@@ -57,6 +57,8 @@ RESOLVED = 8
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
 LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+SUMMITS = 3.0
+"""Times Rq: how far summits stand out of the mean plane."""
 FOREFOOT_RIGID = Range(
     math.radians(-7.5),
     math.radians(60.0),
@@ -68,6 +70,8 @@ WHOLE = 0.95
 """Share of a file's whole sole from which a region of it has a ball to bend at."""
 ROLL_STEP = math.radians(1.0)
 """Between the angles at which the sole is held against the floor to find what comes near it."""
+LANDING = 0.1e-3
+"""What lies at most this above the lowest quarter of a sole lands first, m."""
 WEAR_STEP = 0.25e-3
 """Thickness that Archard wear removes between two contacts, m."""
 
@@ -89,17 +93,22 @@ def sole_map(
     *,
     shift: tuple[float, float] = (0.0, 0.0),
     turn: float = 0.0,
+    yaw: float = 0.0,
 ) -> SoleMap:
     """Return the tilted sole of the case on a grid of ``spacing`` (m).
 
-    ``shift`` (x, y; m) moves the tread under the sole, ``turn`` (rad) adds to the shoe angle. Wear
+    ``shift`` (x, y; m) moves the tread under the sole and ``yaw`` (rad, anticlockwise seen from
+    above) turns it about the front of what lands first; ``turn`` (rad) adds to the shoe angle. Wear
     stays where it is.
     """
     if case.shoe.outsole is not None:
-        return file_sole_map(case, spacing, shift=shift, turn=turn)
+        return file_sole_map(case, spacing, shift=shift, turn=turn, yaw=yaw)
     shape = sole_shape(case, progress)
-    if shape.tread is not None and any(shift):
-        shape = cast("SoleShape", replace(cast("Any", shape), tread=shape.tread.moved(shift)))
+    if shape.tread is not None and (any(shift) or yaw):
+        tread = shape.tread.moved(shift)
+        if yaw:
+            tread = replace(tread, yaw=yaw, pivot=(landing_front(case), 0.0))
+        shape = cast("SoleShape", replace(cast("Any", shape), tread=tread))
     angle = case.motion.shoe_angle + turn
     sole = shoe.heel_map(shape, shoe_angle=angle, spacing=spacing)
     plan = case.shoe.heel
@@ -306,32 +315,49 @@ def tread_on_sole(case: Case) -> tuple[NDArray[np.float64], ...]:
     return periods, shape.tread.offset @ np.linalg.pinv(periods), *shape.centre_line()
 
 
-def file_surface(case: Case, shift: tuple[float, float] = (0.0, 0.0)) -> SoleSurface:
+def landing_front(case: Case) -> float:
+    """Return the front of what lands first of the case's new sole, m from its rear end."""
+    _, _, x, height = tread_on_sole(case)
+    clearance = height + math.tan(case.motion.shoe_angle) * x
+    over = np.nan_to_num(clearance, nan=math.inf) - np.nanquantile(clearance, 0.25) - LANDING
+    last = int(np.flatnonzero(over < 0)[-1])
+    return float(np.interp(0.0, over[last : last + 2], x[last : last + 2]))
+
+
+def file_surface(
+    case: Case, shift: tuple[float, float] = (0.0, 0.0), yaw: float = 0.0
+) -> SoleSurface:
     """Return the bottom of the case's outsole file, worn as the case says.
 
-    ``shift`` (x, y; m) moves its tread before it is worn.
+    ``shift`` (x, y; m) and ``yaw`` (rad) move its tread before it is worn, as ``sole_map`` has it.
     """
     surface, wear = file_outsole(case).surface, case.shoe.wear
-    if any(shift):
+    if any(shift) or yaw:
         from underfoot.shoe.tread_shift import moved_tread
 
-        surface = moved_tread(surface, shift, file_periods(case))
+        pivot = (landing_front(case), 0.0)
+        surface = moved_tread(surface, shift, file_periods(case), yaw=yaw, pivot=pivot)
     removed = wear.build() if wear.depth > 0 else None
     return surface if removed is None else worn_surface(surface, removed)
 
 
 def file_sole_map(
-    case: Case, spacing: float, *, shift: tuple[float, float] = (0.0, 0.0), turn: float = 0.0
+    case: Case,
+    spacing: float,
+    *,
+    shift: tuple[float, float] = (0.0, 0.0),
+    turn: float = 0.0,
+    yaw: float = 0.0,
 ) -> SoleMap:
     """Return the tilted outsole of the case's file on the solver's grid, trimmed to its reach.
 
-    ``shift`` (x, y; m) moves its tread, ``turn`` (rad) adds to the shoe angle.
+    ``shift``, ``turn`` and ``yaw`` as in ``sole_map``.
 
     Raises:
         InputError: Channels below the grid, a region or unit that doesn't fit, tread deeper than
             the outsole, nothing under the load.
     """
-    surface = file_surface(case, shift)
+    surface = file_surface(case, shift, yaw)
     thickness = case.shoe.sole.outsole_thickness
     deepest = float(np.max(surface.tread_depth))
     if deepest >= thickness:
@@ -456,6 +482,17 @@ def forefoot_breaches(case: Case, sole: SoleMap) -> list[Breach]:
     name = "shoe angle of a sole whose forefoot does not bend"
     return breaches(
         "forefoot", {name: FOREFOOT_RIGID}, {name: rolls(case) + case.motion.shoe_angle}
+    )
+
+
+def tread_breaches(sole: SoleMap, rq: float) -> list[Breach]:
+    """Return whether the summits of a roughness of ``rq`` (m) fill the channels of a tread."""
+    depth = float(sole.tread_depth.max())
+    deeper = Range(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
+    return (
+        breaches("tread", {"depth of the channels": deeper}, {"depth of the channels": depth})
+        if depth
+        else []
     )
 
 

@@ -138,7 +138,7 @@ def solved_at(
 
     ``finer``: ``solver_settings``.
     """
-    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn)
+    sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
     here = parts.on(sole, turn=place.turn)
     return here, solved_motion(here, finer=finer, progress=progress)
 
@@ -184,10 +184,7 @@ def averaged(
     known = {Place(): place_numbers(parts, solution.contact)}
     if treaded(parts.case):
         known |= _turned(parts, solution.contact)
-    load = solution.contact.normal_force
-    return tread_positions(
-        parts.case, known, at_places, load=load, spacing=parts.spacing, quick=quick
-    )
+    return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
 def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, float]]:
@@ -248,7 +245,6 @@ def solver_settings(
         start_film=motion.start_film,
         rise_time=motion.force_rise_time,
         end_time=motion.end_time,
-        steady=motion.to_steady_state,
         tolerance=case.numerics.tolerance,
         film=None if isinstance(film, NewtonianFilm) else film,
     )
@@ -282,7 +278,9 @@ def solved_motion(
     }
     if history is not None:
         return solve_history(*on, history, map_angle=motion.shoe_angle, **common)
-    return solve_sliding(*on, speed=motion.speed, normal_force=motion.normal_force, **common)
+    return solve_sliding(
+        *on, speed=motion.sliding_speed, normal_force=motion.normal_force, **common
+    )
 
 
 def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list[SoleContact]:
@@ -301,10 +299,10 @@ def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list
         parts.compliance,
         parts.asperities,
         viscosity=parts.viscosity,
-        speed=parts.case.motion.speed,
+        speed=parts.case.motion.sliding_speed,
         normal_force=parts.case.motion.normal_force,
         turn=turn,
-        duration=settings.end_time,
+        duration=start.time,
         steps=2,
         settings=settings,
         inlet=_inlet(parts),

@@ -25,12 +25,14 @@ GAIN_MATTERS = 1.1
 """Ratio of the COF without the film to the present one above which drainage is worth naming."""
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "cof": ("Coefficient of friction", ""),
+    "later_cof": ("  held on", "load, speed and shoe angle stay"),
     "cof_tread_position": ("  spread over tread positions", ""),
     "cof_shoe_angle": ("  spread over a degree of shoe angle", ""),
     "cof_adhesion": ("  from adhesion", ""),
     "cof_hysteresis": ("  from hysteresis", ""),
     "cof_viscous": ("  from shearing the fluid", ""),
     "fluid_load": ("Load carried by the fluid", "under the whole sole"),
+    "later_fluid_load": ("  held on", "load, speed and shoe angle stay"),
     "fluid_load_sensor": ("  as floor sensors read it", ""),
     "peak_fluid_pressure": ("Peak fluid pressure", "anywhere under the sole"),
     "peak_fluid_pressure_sensor": ("  as a floor sensor reads it", ""),
@@ -50,11 +52,14 @@ GRIPS, SLIPS = 1e-3, 0.05
 """Slip probability that every verdict "grips" lies below, the least that is printed; and that every
 verdict "slips" lies above: 1 in 20, that of a floor at the end of "high slip potential" (pendulum
 value 24; as printed by C. Harris, Tomorrow's Health & Safety, April 2023, after HSE and BRE)."""
+LONGEST_SLIDE = 0.5
+"""m, assumed: no slip tester slides further in one reading."""
 LUGS_SHOWN = 6
 """Most lugs in the table of their drainage."""
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "film_spread": "Spread of the film",
+    "slope": "Slope",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
     "grid_error": "Numerical error",
@@ -65,6 +70,8 @@ LABELS = {
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
+CAUTIONS = ("floor_reading", "positions_left_out", "angle_as_exact")
+"""Labels that are cautions, the most serious first."""
 PARTS: Mapping[str, str] = {
     "exponential": "how closely rough surfaces come together under this pressure",
     "persson": "how closely rough surfaces come together under this pressure",
@@ -74,6 +81,7 @@ PARTS: Mapping[str, str] = {
     "speed_table": "the friction of this sole on this floor",
     "compound": "how the rubber answers at the rates of sliding",
     "grid": "the tread, which has few cells of the grid across its details",
+    "tread": "channels that the summits of the rough surfaces fill",
     "forefoot": "push-off: the forefoot of a shoe bends where this sole stays straight",
     "compliance": "how the rubber gives way under the load",
     "gent_1958": "the stiffness of a rubber of this hardness",
@@ -179,7 +187,7 @@ def headline(
         text += ", mean over positions of the tread"
     if "instant" in labels:
         text += f", {labels['instant']}"
-    sentences = [f"Available COF {text}."]
+    sentences = [f"Available COF {text}.", *steadiness(scalars)]
     if "overload" in labels:
         sentences.append(f"{labels['overload'][0].upper()}{labels['overload'][1:]}.")
     regime = f" ({labels['regime']})" if "regime" in labels else ""
@@ -193,6 +201,22 @@ def headline(
     return tuple(sentences)
 
 
+def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[str, ...]:
+    """Return what to say of an answer that is not that of steady sliding, or only of a long one."""
+    if "later_cof" in scalars:
+        time, film = (
+            quantity_text(_number(scalars, f"later_{name}"), unit)
+            for name, unit in (("time", "s"), ("fluid_load", "N"))
+        )
+        cof = value_text("later_cof", scalars["later_cof"])
+        return (f"Not steady: held on to {time} COF is {cof}, the load on the film {film}.",)
+    slide = scalars.get("steady_slide")
+    if slide is None or (slide.value or 0.0) <= LONGEST_SLIDE:
+        return ()
+    way = quantity_text(slide.value or 0.0, "m")
+    return (f"Sliding is steady only after {way}, further than a slip tester slides.",)
+
+
 def cautions(
     status: Status,
     scalars: Mapping[str, SourcedValue],
@@ -204,7 +228,7 @@ def cautions(
     """Return why the numbers of a usable result may not be trusted; ``slip_model`` is its name."""
     if not status.usable:
         return ()
-    reasons = [labels[name] for name in ("positions_left_out", "angle_as_exact") if name in labels]
+    reasons = [labels[name] for name in CAUTIONS if name in labels]
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
         reasons.append(f"Slip probability {slip.note}.")

@@ -40,7 +40,8 @@ class Effects(Presentable):
     """Indices of one output, an input a row.
 
     Attributes:
-        main, main_half: S1 (Sobol) or sigma (Morris, in the output's unit) and half its interval.
+        main, main_half: S1 (Sobol) and half its interval; sigma (Morris, in the output's unit),
+            whose interval nobody estimates (NaN).
         total, total_half: ST or mu*.
         basis: What they were computed on, with its error.
     """
@@ -69,7 +70,7 @@ class Effects(Presentable):
     def headline(self) -> tuple[str, ...]:
         """Return the most effective input and the basis."""
         first = int(np.argmax(self.total))
-        value = f"{self.total[first]:.3g} ± {self.total_half[first]:.2g}"
+        value = _shown(self.total[first], self.total_half[first])
         return (
             f"{self.output} depends most on {self.paths[first]} ({self.heads[1]} {value}).",
             f"On {self.basis}.",
@@ -81,13 +82,17 @@ class Effects(Presentable):
         rows = [
             (
                 self.paths[k],
-                f"{self.total[k]:.3g} ± {self.total_half[k]:.2g}",
-                f"{self.main[k]:.3g} ± {self.main_half[k]:.2g}",
+                _shown(self.total[k], self.total_half[k]),
+                _shown(self.main[k], self.main_half[k]),
             )
             for k in order
         ]
         title = f"{self.output}: {self.analysis.capitalize()} indices, 95 %, on {self.basis}"
         return Table(title, ("Input", self.heads[1], self.heads[0]), rows)
+
+
+def _shown(value: float, half: float) -> str:
+    return f"{value:.3g} ± {half:.2g}" if np.isfinite(half) else f"{value:.3g}"
 
 
 def sampled_effect_points(plan: StudyPlan) -> list[tuple[float, ...]]:
@@ -149,7 +154,10 @@ def _indices(plan: StudyPlan, points: Array, values: Array) -> Array:
         indices = _salib(plan, "analyze")(*given)
     nothing = np.zeros(len(plan.dimensions))
     names = [part for name in KEYS[method] for part in (name, f"{name}_conf")]
-    return np.nan_to_num(np.array([indices.get(name, nothing) for name in names], dtype=float))
+    columns = np.nan_to_num(np.array([indices.get(name, nothing) for name in names], dtype=float))
+    if method == "morris":
+        columns[1] = np.nan
+    return columns
 
 
 def _salib(plan: StudyPlan, step: str) -> Callable[..., Any]:

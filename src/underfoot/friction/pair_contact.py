@@ -191,13 +191,36 @@ def contact_terms(
 
 
 @dataclass(frozen=True, slots=True)
+class UnexpectedReading:
+    """What a machine read outside the 95 % (``low`` to ``high``) that were foretold; its unit."""
+
+    machine: str
+    unit: str
+    value: float
+    low: float
+    middle: float
+    high: float
+
+    def __str__(self) -> str:
+        digits = 2 if self.unit == "COF" else 0
+        read, middle, low, high = (
+            f"{x:.{digits}f}" for x in (self.value, self.middle, self.low, self.high)
+        )
+        return (
+            f"{self.machine} read {read} {self.unit} where {middle} (95 %: {low} to {high}) was "
+            "foretold of this floor. The reading counts; check it, and the floor's roughness."
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class PairDraws:
     """Joint draws of the constants and of the errors of ln COF, each (draws,).
 
     ``sd_laboratory``, ``sd_dry_part``, ``sd_pair``, ``sd_reading`` are the standard deviations of
     the errors of a laboratory, of its dry-like part, of a pair and of a reading. ``errors`` holds
     those that readings of one laboratory determined, by name; the others are drawn. ``basis`` says
-    what the draws are those of, ``notes`` what a user should know of them.
+    what the draws are those of, ``notes`` what a user should know of them, ``outside`` the readings
+    that were not foretold.
     """
 
     constants: PairConstants
@@ -209,6 +232,7 @@ class PairDraws:
     source: str = SOURCE
     basis: str = ""
     notes: tuple[str, ...] = ()
+    outside: tuple[UnexpectedReading, ...] = ()
 
     @property
     def count(self) -> int:
@@ -219,7 +243,8 @@ class PairDraws:
         """Return the draws of some rows."""
         at = np.asarray(index)
         columns = {name: values[at] for name, values in self.columns().items()}
-        return replace(_from_columns(columns, self.source), basis=self.basis, notes=self.notes)
+        told = {name: getattr(self, name) for name in ("basis", "notes", "outside")}
+        return replace(_from_columns(columns, self.source), **told)
 
     def error(self, name: str, deviation: Array, seed: int) -> Array:
         """Return the error of ln COF with a name: as determined, or drawn.

@@ -31,12 +31,71 @@ HIGHEST = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LawDraws:
+    """What is drawn of a sole whatever its film carries: (samples,) each, or one number for all.
+
+    Attributes:
+        adhesion, hysteresis, viscous: Draws of the law over its value, each part by itself.
+        model: Error of the law, added to the friction coefficient of the contact.
+        suction: Factor on the contact friction.
+        odds: Error of ln F / (W - F), F the load on the film, W the whole.
+        zero: Added to COF by the film.
+        tread: Error of ln COF.
+        highest: COF that no error of the tread leads beyond.
+    """
+
+    adhesion: Array
+    hysteresis: Array
+    viscous: Array
+    model: Array | float = 0.0
+    suction: Array | float = 1.0
+    odds: Array | float = 0.0
+    zero: Array | float = 0.0
+    tread: Array | float = 0.0
+    highest: float = HIGHEST
+
+    def at(
+        self,
+        contact: Array | float,
+        *,
+        adhesion: Array | float,
+        hysteresis: Array | float,
+        viscous: Array | float,
+        more_odds: Array | float = 0.0,
+    ) -> dict[str, Array]:
+        """Return draws of COF, of its parts and of ``contact``, (samples,) each, by name.
+
+        Loads are drawn, and each newton of the contact has the friction that the law draws for it:
+        no draw has more contact than the whole load.
+
+        Parameters:
+            contact: Share of the load on the contact as computed, 0 to 1.
+            adhesion, hysteresis, viscous: COF by each as computed at that share.
+            more_odds: What is to be added to ``odds``.
+        """
+        film = 1.0 - np.asarray(contact)
+        onto = 1.0 / (contact + film * np.exp(self.odds + more_odds))
+        slow = hysteresis * self.hysteresis
+        solid = np.maximum(adhesion * self.adhesion + slow + self.model * contact, 0.0)
+        solid, slow = (each * onto * self.suction for each in (solid, slow))
+        slow = np.minimum(slow, solid)
+        shear = np.maximum(viscous * self.viscous + self.zero, 0.0)
+        most = np.maximum(self.highest / np.maximum(solid + shear, 1e-9), 1.0)
+        factor = np.minimum(np.exp(self.tread), most)
+        parts = {"adhesion": solid - slow, "hysteresis": slow, "viscous": shear}
+        drawn = {"cof": solid + shear, **parts}
+        drawn = {name: each * factor for name, each in drawn.items()}
+        return {**drawn, "contact": contact * onto}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class SampledCof:
     """Draws of COF and of its parts, each (samples,), and what they rest on.
 
     ``share``: part of the variance of COF that goes with each input ("model": the law's own error),
     squared correlations over their sum, 1. ``left_out``: inputs taken as exact because their spread
-    is not known.
+    is not known. ``contact``: share of the load on the contact in each draw. ``law``: what was
+    drawn, for other loads.
     """
 
     cof: Array
@@ -47,6 +106,8 @@ class SampledCof:
     left_out: tuple[str, ...]
     confidence: float
     seed: int
+    contact: Array
+    law: LawDraws
 
     def sourced(self, name: str, value: SourcedValue) -> SourcedValue:
         """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
@@ -147,33 +208,33 @@ def sampled_cof(
 
     def parts(values: Mapping[str, float]) -> Array:
         drawn = law.at({k: v for k, v in values.items() if k not in APART})
-        adhesion, hysteresis, viscous = factor * sums(
-            drawn(pressure, speed, gap), counts, wet_counts
-        )
-        solid = max(adhesion + hysteresis + values.get(MODEL, 0.0) * carried, 0.0)
-        if SUCTION in inputs:
-            ratio = min(max(values[SUCTION], 0.0), VACUUM) / (
-                pull.value if pull and pull.value else 1.0
-            )
-            share = 1.0 + pull_share * (ratio - 1.0)
-            solid, hysteresis = solid * share, hysteresis * share
-        odds = sum(values.get(name, 0.0) for name in (FILM, *ROUGH))
-        share = 1.0 / (carried + (1.0 - carried) * np.exp(odds))
-        solid, hysteresis = solid * share, hysteresis * share
-        hysteresis = min(hysteresis, solid)
-        viscous = max(viscous * np.exp(values.get(SHEAR, 0.0)) + values.get(ZERO, 0.0), 0.0)
-        whole = np.array([solid + viscous, solid - hysteresis, hysteresis, viscous])
-        most = max(highest / max(whole[0], 1e-9), 1.0)
-        return whole * min(np.exp(values.get(TREAD, 0.0)), most)
+        return factor * sums(drawn(pressure, speed, gap), counts, wet_counts)
 
     options = {"samples": samples, "seed": seed, "shares": False}
     spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)
+    drawn, suctions = spread.drawn, 1.0
+    if SUCTION in drawn and pull is not None and pull.value:
+        ratio = np.clip(drawn[SUCTION], 0.0, VACUUM) / pull.value
+        suctions = 1.0 + pull_share * (ratio - 1.0)
+    of_law = np.where(exact > 0, spread.draws / np.where(exact > 0, exact, 1.0), 1.0).T
+    of_law[2] *= np.exp(drawn.get(SHEAR, 0.0))
+    draws = LawDraws(
+        *of_law,
+        model=drawn.get(MODEL, 0.0),
+        suction=suctions,
+        odds=sum(drawn.get(name, 0.0) for name in (FILM, *ROUGH)),
+        zero=drawn.get(ZERO, 0.0),
+        tread=drawn.get(TREAD, 0.0),
+        highest=highest,
+    )
+    here = draws.at(carried, **dict(zip(PARTS, map(float, exact), strict=True)))
     return SampledCof(
-        *spread.draws.T,
-        share=_shares(spread),
+        **here,
+        share=_shares(here["cof"], drawn),
         left_out=tuple(name for name in spread.left_out if SHEAR not in inputs),
         confidence=confidence,
         seed=seed,
+        law=draws,
     )
 
 
@@ -225,13 +286,12 @@ def _joint(law: FrictionLaw, samples: int, seed: int) -> Mapping[str, Array]:
     return {} if draws is None else draws(samples, seed)
 
 
-def _shares(spread: Propagated) -> dict[str, float]:
-    cof = spread.draws[:, 0]
+def _shares(cof: Array, drawn: Mapping[str, Array]) -> dict[str, float]:
     if np.std(cof) <= 1e-9 * np.abs(cof).max(initial=0.0):
         return {}
     squares = {
         name: float(np.corrcoef(draws, cof)[0, 1]) ** 2
-        for name, draws in spread.drawn.items()
+        for name, draws in drawn.items()
         if np.std(draws) > 0
     }
     total = sum(squares.values())

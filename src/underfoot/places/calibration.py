@@ -26,9 +26,9 @@ from underfoot.friction import (
     packaged_pair_draws,
     read_pair_draws,
 )
-from underfoot.friction.pair_contact import Pair
+from underfoot.friction.pair_contact import Pair, UnexpectedReading
 
-from .joint import JointDraws, floor_name, interval
+from .joint import KEPT_AS, JointDraws, floor_name, interval
 from .machines import (
     ANY_FLOOR_RQ,
     Fluid,
@@ -63,12 +63,19 @@ class FloorReading:
 
 def learn_floor(
     joint: JointDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
-) -> None:
-    """Teach draws what a machine read on a floor."""
+) -> tuple[UnexpectedReading, ...]:
+    """Teach draws what a machine read on a floor; return it where it was not foretold."""
+    foretold = interval(reading.machine.read(joint, floor, floor_rq, reading.fluid))
     log = reading.machine.log_likelihood(
         joint, floor, floor_rq, reading.fluid, reading.value, kind=reading.kind, sd=reading.sd
     )
     joint.learn(log, str(reading))
+    low, middle, high = foretold
+    too_high, too_low = reading.value > high, reading.value < low
+    if not {"value": too_high or too_low, "lower": too_high, "upper": too_low}[reading.kind]:
+        return ()
+    title, unit = reading.machine.title, reading.machine.scale.unit
+    return (UnexpectedReading(title, unit, reading.value, low, middle, high),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +89,10 @@ class FloorCalibration(Presentable):
     before: tuple[float, float, float]
     after: tuple[float, float, float]
     effective: float
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return the readings that were not foretold."""
+        return tuple(map(str, self.draws.outside))
 
     def heading(self) -> str:
         """Return the title."""
@@ -116,16 +127,25 @@ def floor_calibration(
     joint, roughness = floor_draws(pair, draws, seed), f"roughness of floor {FLOOR}"
     share = floor_name(pair)
     before = interval(joint.between(roughness, pair.floor_rq))
-    for one in readings:
-        learn_floor(joint, FLOOR, pair.floor_rq, one)
+    outside = [told for one in readings for told in learn_floor(joint, FLOOR, pair.floor_rq, one)]
     rows = np.arange(KEPT)  # in random order already
     known = {**joint.errors(), share: joint.share(roughness)}
+    if pair.compound_and_floor not in known:  # no reading of this pair determined it
+        error = joint.pair_error(pair, pair.compound_and_floor, FLOOR)
+        known[pair.compound_and_floor] = joint.constants.sd_pair * error
+    machines = {one.machine.name for one in readings}
+    known |= joint.kept(
+        f"floor {FLOOR} beyond",
+        *(f"{what} of {name}" for name in machines for what in ("factor", "reader", "walker")),
+        *(f"{name} on {FLOOR}" for name in machines),
+    )
     kept = replace(
         joint.constants.rows(rows),
         errors={name: values[rows] for name, values in known.items()},
         source=f"{draws.source}; floor read: {'; '.join(map(str, readings))}",
         basis="of a floor that was read",
         notes=draws.notes,
+        outside=(*draws.outside, *outside),
     )
     after = interval(joint.between(roughness, pair.floor_rq))
     return FloorCalibration(readings, kept, before, after, joint.fewest)
@@ -134,8 +154,11 @@ def floor_calibration(
 def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> JointDraws:
     """Return joint draws that know of the floor of a pair what its draws do."""
     joint, share = JointDraws(seed=seed, start=draws), floor_name(pair)
-    if share in draws.errors:
-        joint.begin(f"roughness of floor {FLOOR}", joint.errors()[share])
+    for name, known in joint.errors().items():
+        if name == share:
+            joint.begin(f"roughness of floor {FLOOR}", known)
+        elif name.startswith(KEPT_AS):
+            joint.begin(name.removeprefix(KEPT_AS), known)
     return joint
 
 
@@ -160,7 +183,8 @@ def machine_reading(case: Case, *, method: str, keep: Sequence[str] = ()) -> Mac
             case.entries.get("contaminant", "fluid of the case"), law.pair.family, viscosity
         )
     joint = floor_draws(law.pair, law.draws, case.numerics.seed)
-    return prediction(device, joint, FLOOR, law.pair.floor_rq, fluid, law.pair.measured[1])
+    told = prediction(device, joint, FLOOR, law.pair.floor_rq, fluid, law.pair.measured[1])
+    return replace(told, outside=law.draws.outside)
 
 
 def pair_law(case: Case) -> PairContactLaw:

@@ -1,19 +1,17 @@
 """Which shoe for a place: slips of every shoe over its floors, fluids and people, in joint draws.
 
-A step of a person who needs the friction r on a floor of slope alpha slips with
-
-    P = logistic(k (A - r' + c)),   r' = tan(alpha + atan r)
-
-(``underfoot.slip``), A the available friction of shoe, floor and fluid. Its median is that of the
-solved case; its draws are the law's, with the load on the film off by the model's error and by what
-is not known of the gap:
+A step in a fluid slips with the probability that ``run`` gives of the same case
+(``underfoot.slip.slip_chances``), A the available friction of shoe, floor and fluid. Its median is
+that of the solved case; its draws are the law's, with the load on the film off by the model's error
+and by what is not known of the gap:
 
     A = g mu_c (1 - phi) exp(t) + A_v phi / phi_0
 
 g what lugs and pressure make of the law's contact friction mu_c, phi the film's share of the load,
-t the error of the tread model. Slips a year are steps times the mean of P over floors (by area),
-fluids (by share of the steps) and tasks. k and c are drawn as far as publications differ. Steps on
-a dry floor count as safe: the law's dry friction has an interval too wide to say more.
+t the error of the tread model. What is answered of a shoe is the mean of P over floors (by area),
+fluids (by share of the steps) and tasks: of the steps in a fluid, the share that slips. Steps on a
+dry floor count as safe: the law's dry friction has an interval too wide to say more. One number
+stands for the draws everywhere: their mean, of what is left the ratio of two means.
 """
 
 from __future__ import annotations
@@ -34,41 +32,55 @@ from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import file_periods, sole_map
 from underfoot.compute.solve import solved_at
-from underfoot.core import ConvergenceError, InputError, Progress, silent
+from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
-from underfoot.core.presentation import Presentable, Table, percent, probability_text
+from underfoot.core.presentation import (
+    Presentable,
+    Table,
+    drawn_probability_text,
+    interval_text,
+    percent,
+    probability_text,
+    value_text,
+)
 from underfoot.core.threads import threads_limited
 from underfoot.friction import PairContactLaw
-from underfoot.friction.pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, Pair
+from underfoot.friction.pair_contact import (
+    CONTACT_PRESSURE,
+    TERMS,
+    ContactTerms,
+    Pair,
+    UnexpectedReading,
+)
 from underfoot.friction.shoe_class import SPEED, SlipTest, slip_tests
 from underfoot.friction.tread_error import tread_error
+from underfoot.slip import RcofPopulation, ReportG6, mean_of_draws, slip_chances
 
 from .calibration import learn_floor
 from .joint import JointDraws, Reading, interval
 from .machines import FLUIDS, Machine, machines
 from .place import Place, PlaceFloor, PlaceShoe, same_shoe
 
-SLOPE, HALF = (math.log(48.0), 0.2), (-0.085, 0.05)
-"""ln of minus the slope, and ACOF - RCOF at even odds, each with its spread between publications
-(report, G.6.3: -41.2 to -54.7; -0.06 and -0.11)."""
-NODES, NODE_WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
-PER = 100
-"""Workers that slips are counted of."""
+MODEL = ReportG6()
 DECIDED = 0.75
 """Chance of being best from which a shoe is called the best."""
 UNLIKELY = 0.05
 TWICE = 2.0
 """Slips of the worn shoe over those of the new one from which it is to be replaced."""
+ROUGH_FLOOR_RQ = 9e-6
+"""Rq (m) of the floor that a change of floors is computed with."""
 ROUGHER_FLOOR = {"roughness": {"rq": {"value": "9 um", "uncertainty": "3 um"}}}
-"""The floor that a change of floors is computed with: clay quarry tile of the catalogue."""
+"""Clay quarry tile of the catalogue."""
 WASHED = "detergent"
 """What an oily floor is wet with after it was washed."""
 POSITIONS = 2
 """Places of a tread, half a period apart, whose film counts."""
 BINS = 10
 """Readings, equally likely, of which it is counted how many change the choice."""
-LEAST, MOST_RATIO = 0.01, 100.0
-"""Slips below which, and ratio of slips beyond which, no number is printed."""
+MOST_RATIO = 100.0
+"""Ratio of slips beyond which no number is printed."""
+IDLE = 5e-3
+"""Share of the slips that a change moves at least: a smaller one does nothing."""
 CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
 
 
@@ -83,14 +95,14 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class ShoeAnswer:
-    """What is said of a shoe: slips per 100 workers and year, and the chance that it is best.
+    """What is said of a shoe: the share of steps in a fluid that slip, the chance that it is best.
 
     ``reported`` are the slips that people will report, where those of today are given and reports
     go with slips.
     """
 
     shoe: PlaceShoe
-    slips: tuple[float, float, float]
+    slips: SourcedValue
     best: float
     replaced: str
     reported: str
@@ -98,15 +110,21 @@ class ShoeAnswer:
 
 @dataclass(frozen=True, slots=True)
 class Lever:
-    """A change: slips that are left of those of today, median and 95 %."""
+    """A change: slips left of those of today (95 % around the ratio), and the chance of fewer."""
 
     name: str
     left: tuple[float, float, float]
+    fewer: float
+
+    @property
+    def does_something(self) -> bool:
+        """Whether it moves the slips."""
+        return any(abs(end - 1) >= IDLE for end in self.left)
 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """A measurement that could be made: chance that the choice changes, slips that this saves."""
+    """A measurement that could be made: chance that the choice changes, share of slips it saves."""
 
     name: str
     changes: float
@@ -128,6 +146,7 @@ class Choice(Presentable):
     present: str
     effective: float
     floors_before_after: tuple[tuple[str, str, str], ...] = ()
+    outside: tuple[tuple[str, UnexpectedReading], ...] = ()
 
     def heading(self) -> str:
         """Return the title."""
@@ -141,9 +160,7 @@ class Choice(Presentable):
     def headline(self) -> tuple[str, ...]:
         """Return the answer, or that there is none."""
         first, count = self.first, len(self.shoes)
-        low, median, high = first.slips
-        rate = f"{_count(median)} slips per {PER} workers and year (95 %: {_count(low)} to "
-        rate += f"{_count(high)})"
+        rate = f"{value_text('slip_probability', first.slips)} of steps in a fluid slip"
         if count == 1:
             lines = [f"{first.shoe.name}: {rate}."]
         elif first.best >= DECIDED:
@@ -160,18 +177,16 @@ class Choice(Presentable):
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
             )
-        told = [each for each in self.levers if each.left[2] < 1]
-        if told:
-            best = min(told, key=lambda each: each.left[1])
+        if self.levers and self.levers[0].left[1] < 1:
+            most = self.levers[0]
             lines.append(
-                f"Most is gained by {best.name}, which leaves {_share(best.left)} of the slips of "
-                "today."
+                f"Most is gained by {most.name}: it leaves {_share(most.left)} of the slips of "
+                f"today, fewer with a probability of {drawn_probability_text(most.fewer)}."
             )
         else:
-            lines.append("No other shoe or floor is sure to leave fewer slips.")
-        helpful = [each for each in self.measurements if each.changes >= 0.05]
-        if helpful:
-            one = helpful[0]
+            lines.append("No change that was tried leaves fewer slips.")
+        if self.measurements and self.measurements[0].changes >= 0.05:
+            one = self.measurements[0]
             lines.append(
                 f"Measure first: {one.name}; it changes the choice with a chance of "
                 f"{_of_bins(one.changes)}."
@@ -182,9 +197,10 @@ class Choice(Presentable):
         """Return what the numbers are not."""
         lines = [
             "A slip is a heel faster than 0.2 m/s of people who walk as if no fluid were there: "
-            "many more than people report. Compare shoes by their ratio, not reports with the "
-            "count. Steps on dry floors count as safe.",
+            "many more than people report. Compare shoes by their ratio. Steps on dry floors count "
+            f"as safe; a worker takes {self.place.wet_steps:,.0f} steps a day in a fluid.",
         ]
+        lines += [f"{floor}: {told}" for floor, told in self.outside]
         twins = [
             f"{one.shoe.name} and {two.shoe.name}"
             for number, one in enumerate(self.shoes)
@@ -207,7 +223,8 @@ class Choice(Presentable):
             (
                 each.shoe.name,
                 probability_text(each.best),
-                *(_count(x) for x in (each.slips[1], each.slips[0], each.slips[2])),
+                probability_text(each.slips.value or 0.0),
+                interval_text("slip_probability", each.slips),
                 "" if each.shoe.price is None else f"{each.shoe.price:g}",
                 _monthly(each.shoe),
                 each.replaced,
@@ -215,7 +232,7 @@ class Choice(Presentable):
             )
             for each in sorted(self.shoes, key=lambda each: -each.best)
         ]
-        heads = ("Shoe", "Best", f"Slips per {PER} and year", "95 % from", "to", "Price")
+        heads = ("Shoe", "Best", "Steps in a fluid that slip", "95 %", "Price")
         heads = (*heads, "Price a month", "Replace", "Reported")
         told = [i for i in range(len(heads)) if any(row[i] for row in rows)]
         return Table(
@@ -224,9 +241,12 @@ class Choice(Presentable):
 
     def tables(self) -> tuple[Table, ...]:
         """Return shoes, changes, measurements, where slips happen, friction."""
-        levers = [(one.name, _share(one.left)) for one in self.levers]
+        levers = [
+            (one.name, _share(one.left), drawn_probability_text(one.fewer)) for one in self.levers
+        ]
         measures = [
-            (one.name, _of_bins(one.changes), _count(one.saves)) for one in self.measurements
+            (one.name, _of_bins(one.changes), probability_text(one.saves))
+            for one in self.measurements
         ]
         where = [(name, probability_text(share)) for name, share in self.sources]
         cofs = [
@@ -236,7 +256,7 @@ class Choice(Presentable):
         tables = [
             self.table(),
             Table(f"What a change leaves of the slips with {self.present}",
-                  ("Change", "Slips left (95 %)"), levers),
+                  ("Change", "Slips left (95 %)", "Fewer"), levers),
             Table("What one measurement would change of the shoe with the fewest slips on average",
                   ("Measurement", "Chance of another choice", "Slips saved by it"), measures),
             Table(f"Where the slips with {self.present} happen",
@@ -275,13 +295,16 @@ class Choice(Presentable):
                 {
                     "name": each.shoe.name,
                     "chance_best": each.best,
-                    "slips_per_100_and_year": each.slips[1],
-                    "interval_95": [each.slips[0], each.slips[2]],
+                    "slip_probability": each.slips.value,
+                    "interval_95": each.slips.interval,
                     "replace": each.replaced,
                 }
                 for each in self.shoes
             ],
-            "changes": [{"name": one.name, "left": list(one.left)} for one in self.levers],
+            "changes": [
+                {"name": one.name, "left": list(one.left), "fewer": one.fewer}
+                for one in self.levers
+            ],
             "measurements": [
                 {"name": one.name, "changes": one.changes, "saves": one.saves}
                 for one in self.measurements
@@ -290,8 +313,6 @@ class Choice(Presentable):
 
 
 def _count(value: float) -> str:
-    if value < LEAST:
-        return f"below {LEAST:g}"
     return f"{value:.2g}" if value < 10 else f"{float(f'{value:.2g}'):,.0f}"
 
 
@@ -437,20 +458,15 @@ def shoe_name(shoe: PlaceShoe) -> str:
 
 
 def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: JointDraws) -> Array:
-    """Return the share (count,) of steps that slip.
+    """Return the share (count,) of steps that slip, as ``run`` has it.
 
     Parameters:
         acof: Draws (count,) of the available friction.
         rcof, sd: Required friction on the level, mean and standard deviation between people.
         slope: Of the floor, rad; the friction that a step needs there is tan(slope + atan r).
     """
-    k = np.exp(SLOPE[0] + SLOPE[1] * joint.normal("slope of the slip model"))
-    half = HALF[0] + HALF[1] * joint.normal("even odds of the slip model")
-    share = np.zeros(joint.count)
-    for node, weight in zip(NODES, NODE_WEIGHTS / NODE_WEIGHTS.sum(), strict=True):
-        needed = np.tan(slope + np.arctan(max(rcof + sd * node, 0.0)))
-        share += weight * expit(-k * (acof - needed - half))
-    return share
+    people = RcofPopulation(rcof, sd).on_slope(slope)
+    return slip_chances(acof, people, MODEL, joint.normal)
 
 
 def test_cof(
@@ -490,7 +506,7 @@ def chosen(
     }
     before = {name: interval(joint.between(f"roughness of floor {name}", rq))
               for name, rq in floor_rq.items()}  # fmt: skip
-    _learn(place, joint, floor_rq, new_cases)
+    outside = _learn(place, joint, floor_rq, new_cases)
     solver = _Solver(place, joint, quick, _read_floors(place, joint, floor_rq))
     shares: dict[str, dict[tuple[str, str], Array]] = {}
     worn_rate: dict[str, Array] = {}
@@ -524,14 +540,13 @@ def chosen(
                 else {key: 0.5 * (x + worn_slips[key]) for key, x in shares[shoe.name].items()}
             )
     rates = {name: _sum(each) for name, each in shares.items()}
-    per_year = PER * place.steps
     matrix = np.array([rates[shoe.name] for shoe in place.shoes])
     lowest = matrix <= matrix.min(axis=0) * (1 + 1e-9)
     best = (lowest / lowest.sum(axis=0)).mean(axis=1)
     answers = tuple(
         ShoeAnswer(
             shoe,
-            interval(per_year * rates[shoe.name]),
+            mean_of_draws(rates[shoe.name] / place.wet_share, source=MODEL.source),
             float(chance),
             _replaced(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
             _reported(place, rates[shoe.name], rates[present.name]),
@@ -544,24 +559,36 @@ def chosen(
     others = [each for each in answers if each.shoe.name != present.name]
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
-        levers.append(Lever(f"{other} instead of {present.name}", _left(rates[other], today)))
+        levers.append(_lever(f"{other} instead of {present.name}", rates[other], today))
     new = _sum(_slips(place, joint, states[present.name][False]))
-    fluids = dict.fromkeys(place.fluids(), 1.0)
-    one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
-    cells = solver.cells(present, [one], False)
-    tiled = {
-        (floor.name, fluid): cells[one.name, fluid]
+    smooth = [
+        floor
         for floor in place.floors
-        for fluid in floor.fluids
-        if fluid != "dry"
-    }
-    rougher = _sum(_slips(place, joint, tiled))
-    levers.append(Lever("floors of clay quarry tile (Rq 9 um)", _left(rougher, new)))
+        if np.median(joint.between(f"roughness of floor {floor.name}", floor_rq[floor.name]))
+        < ROUGH_FLOOR_RQ * (1 - IDLE)
+    ]
+    if smooth:
+        fluids = dict.fromkeys(place.fluids(), 1.0)
+        one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
+        cells = solver.cells(present, [one], False)
+        tiled = states[present.name][False] | {
+            (floor.name, fluid): cells[one.name, fluid]
+            for floor in smooth
+            for fluid in floor.fluids
+            if fluid != "dry"
+        }
+        where = (
+            "" if len(smooth) == len(place.floors) else f" ({', '.join(f.name for f in smooth)})"
+        )
+        name = f"floors of clay quarry tile (Rq 9 um){where}"
+        levers.append(_lever(name, _sum(_slips(place, joint, tiled)), new))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
-    measurements = _measurements(place, joint, floor_rq, new_cases, matrix * per_year)
-    # the mean share, as what a change leaves is a share: a mean of slips is of few, slippery draws
+    levers = sorted(
+        (each for each in levers if each.does_something), key=lambda each: (each.left[1], each.name)
+    )
+    measurements = _measurements(place, joint, floor_rq, new_cases, matrix)
     mean = {
-        key: float((value / np.maximum(today, 1e-300)).mean())
+        key: float(value.mean() / max(today.mean(), 1e-300))
         for key, value in shares[present.name].items()
     }
     sources = tuple(
@@ -570,7 +597,7 @@ def chosen(
     )
     return Choice(
         place, answers, tuple(levers), measurements, sources, tuple(cofs), present.name,
-        joint.fewest, _floors(place, joint, floor_rq, before),
+        joint.fewest, _floors(place, joint, floor_rq, before), outside,
     )  # fmt: skip
 
 
@@ -585,16 +612,13 @@ def _cleaning(
     new: Mapping[tuple[str, str], Cell],
     shares: Mapping[tuple[str, str], Array],
 ) -> list[Lever]:
-    """Return what cleaning leaves: each fluid on half the steps; oil washed off, the floor wet.
-
-    Water alone changes nothing of an oily floor: an oil film is left under it.
-    """
+    """Return what cleaning leaves: each fluid on half the steps; oil washed off, the floor wet."""
     joint, levers = solver.joint, []
     today = _sum(shares)
     for fluid in place.fluids():
         halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
         name = f"{fluid} on half the steps, wiped up sooner"
-        levers.append(Lever(name, _left(_sum(halved), today)))
+        levers.append(_lever(name, _sum(halved), today))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
         washed = {key: cell for key, cell in new.items() if key[1] == WASHED}
@@ -608,9 +632,7 @@ def _cleaning(
         }
         name = f"{', '.join(oily)} washed off with {WASHED}, the floor left wet"
         after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
-        levers.append(Lever(name, _left(after, before)))
-        same = (1.0, 1.0, 1.0)
-        levers.append(Lever(f"{', '.join(oily)} rinsed with water alone: oil stays", same))
+        levers.append(_lever(name, after, before))
     return levers
 
 
@@ -629,11 +651,17 @@ def _learn(
     joint: JointDraws,
     floor_rq: Mapping[str, tuple[float, float]],
     cases: Mapping[str, Any],
-) -> None:
-    """Teach the draws every reading of floors and shoes, in the order of names."""
-    for floor in sorted(place.floors, key=lambda each: each.name):
-        for one in floor.readings:
-            learn_floor(joint, floor.name, floor_rq[floor.name], one)
+) -> tuple[tuple[str, UnexpectedReading], ...]:
+    """Teach the draws every reading of floors and shoes, in the order of names.
+
+    Return the readings of floors that were not foretold.
+    """
+    outside = [
+        (floor.name, told)
+        for floor in sorted(place.floors, key=lambda each: each.name)
+        for one in floor.readings
+        for told in learn_floor(joint, floor.name, floor_rq[floor.name], one)
+    ]
     learned = []
     for shoe in sorted(place.shoes, key=lambda each: each.name):
         if any(same_shoe(shoe, other) for other in learned):
@@ -652,6 +680,7 @@ def _learn(
                 passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
+    return tuple(outside)
 
 
 def _read_floors(
@@ -694,7 +723,15 @@ def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
 
 
 def _left(after: Array, before: Array) -> tuple[float, float, float]:
-    return interval(after / np.maximum(before, 1e-300))
+    """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws."""
+    low, _, high = interval(after / np.maximum(before, 1e-300))
+    middle = float(after.mean() / max(before.mean(), 1e-300))
+    return min(low, middle), middle, max(high, middle)
+
+
+def _lever(name: str, after: Array, before: Array) -> Lever:
+    fewer = np.mean(after < before) + 0.5 * np.mean(after == before)
+    return Lever(name, _left(after, before), float(fewer))
 
 
 def _reported(place: Place, after: Array, today: Array) -> str:
@@ -775,7 +812,7 @@ def _measurements(
             other = int(np.argmin(inside))
             if inside[other] < inside[now] * (1 - 1e-9):
                 changes += float(here.sum())
-                saved += float(inside[now] - inside[other])
+                saved += float((inside[now] - inside[other]) / slips[now].mean())
         found.append(Measurement(name, changes, saved))
     return tuple(sorted(found, key=lambda one: (-one.saves, one.name)))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -69,10 +69,13 @@ class Evidence:
 
     def unlearned(self, machine: Machine) -> tuple[float, float]:
         """Return mean and variance of ln COF by a machine that has learned nothing."""
-        joint = JointDraws(count=DRAWS)
-        taught = replace(machine, learned=NOTHING)
-        log = np.log(taught.cof(joint, self.floor, self.rq, self.bounds[0].fluid))
+        log = np.log(self.unlearned_cof(JointDraws(count=DRAWS), machine))
         return float(np.median(log)), float(np.var(log))
+
+    def unlearned_cof(self, joint: JointDraws, machine: Machine | None = None) -> Array:
+        """Return draws (count,) of the COF by a machine that has learned nothing."""
+        taught = replace(machine or self.machine, learned=NOTHING)
+        return taught.cof(joint, self.floor, self.rq, self.bounds[0].fluid)
 
 
 @cache
@@ -194,6 +197,52 @@ def learned(device: Machine, left_out: str = "") -> Learned | None:
     source, floor = np.maximum(np.exp(spreads), LEAST_SPREAD)
     factor = float(ones @ inverse @ off / weight)
     return Learned(factor, float(weight**-0.5), float(source), float(np.hypot(floor, pair)))
+
+
+def floor_likeness(left_out: str = "") -> float:
+    """Return how alike two machines find a floor beyond its roughness: a correlation of ln COF.
+
+    Its posterior mean over 0 to 1, by the restricted likelihood of all readings as in ``learned``,
+    with the machines' spreads as learned. Machines that read one floor share what is not known of
+    its roughness besides. A source is one laboratory whatever it reads with.
+
+    Parameters:
+        left_out: A source whose readings do not count.
+    """
+    read = [
+        each
+        for each in evidence()
+        if each.middle is not None and each.machine.learned and each.source != left_out
+    ]
+    joint = JointDraws(count=DRAWS)
+    law = np.log([each.unlearned_cof(joint) for each in read])
+    off = np.log([float(each.machine.scale.cof(each.middle)) for each in read])
+    off -= np.median(law, axis=1)
+
+    def alike(what: Callable[[Evidence], str]) -> Array:
+        names = np.array([what(each) for each in read])
+        return (names[:, None] == names).astype(float)
+
+    floor, device = alike(lambda e: e.floor), alike(lambda e: e.machine.name)
+    spreads = [(e.machine.learned.source_sd, e.machine.learned.floor_sd)
+               for e in read if e.machine.learned]  # fmt: skip
+    of_source, of_floor = (np.outer(sd, sd) for sd in np.transpose(spreads))
+    rest = np.cov(law) * floor + READING**2 * np.eye(len(read))
+    rest += of_source * alike(lambda e: e.source)
+    machines_of = np.unique(device, axis=0).T
+
+    def loss(likeness: float) -> float:
+        whole = rest + of_floor * floor * np.where(device > 0, 1.0, likeness)
+        inverse = np.linalg.inv(whole)
+        weight = machines_of.T @ inverse @ machines_of
+        left = off - machines_of @ np.linalg.solve(weight, machines_of.T @ inverse @ off)
+        volumes = np.linalg.slogdet(whole)[1] + np.linalg.slogdet(weight)[1]
+        return float(left @ inverse @ left + volumes)
+
+    grid = np.linspace(0, 1, 101)
+    losses = np.array([loss(float(each)) for each in grid])
+    density = np.exp(-0.5 * (losses - losses.min()))
+    return float(grid @ density / density.sum())
 
 
 @cache

@@ -33,6 +33,12 @@ DRAWS = 8000
 FEWEST = 50
 """Effective draws below which a reading contradicts the law or the readings before it."""
 KINDS = ("value", "lower", "upper")
+FLOOR_LIKENESS = 0.64
+"""Correlation of what two rubbers find on one wet floor beyond its roughness (ln COF): as machines
+teach that read the same floors (``evidence.floor_likeness``)."""
+LIKE_FAMILIES = ("aqueous", "detergent")
+"""Fluids of those readings."""
+KEPT_AS = "share of "
 
 
 def floor_name(pair: Pair) -> str:
@@ -73,6 +79,14 @@ class JointDraws:
         self._shares: dict[str, Array] = {}
         self._errors = {name: values[rows] for name, values in begin.errors.items()}
 
+    def kept(self, *heads: str) -> dict[str, Array]:
+        """Return the shares of what begins with one of ``heads``, by the name kept for them."""
+        return {
+            f"{KEPT_AS}{name}": share
+            for name, share in self._shares.items()
+            if name.startswith(heads)
+        }
+
     def begin(self, name: str, share: Array) -> None:
         """Set the draws of ``share`` under a name: what readings before determined."""
         self._shares[name] = share
@@ -90,6 +104,16 @@ class JointDraws:
     def normal(self, name: str) -> Array:
         """Return standard normal draws; the same name gives the same."""
         return ndtri(self.share(name))
+
+    def beyond_roughness(self, floor: str, name: str, family: str = LIKE_FAMILIES[0]) -> Array:
+        """Return standard normal draws (count,) of what a contact finds of a floor, its roughness
+        known; contacts of several names on one floor are alike by ``FLOOR_LIKENESS``.
+        """
+        own = self.normal(name)
+        if family not in LIKE_FAMILIES:
+            return own
+        shared = self.normal(f"floor {floor} beyond its roughness")
+        return np.sqrt(FLOOR_LIKENESS) * shared + np.sqrt(1 - FLOOR_LIKENESS) * own
 
     def between(self, name: str, ends: tuple[float, float]) -> Array:
         """Return draws between two ends, even in the logarithm."""
@@ -134,9 +158,7 @@ class JointDraws:
         errors = {
             DRY_PART: scale * base.sd_dry_part * self.normal(f"dry part: {laboratory}"),
             LABORATORY: scale * base.sd_laboratory * self.normal(f"laboratory: {laboratory}"),
-            pair.compound_and_floor: scale
-            * base.sd_pair
-            * self.normal(f"pair: {sole}, {floor}, {pair.family}"),
+            pair.compound_and_floor: scale * base.sd_pair * self.pair_error(pair, sole, floor),
             floor_name(pair): self.share(f"roughness of floor {floor}"),
             pair.sole_roughness: self.share(f"roughness of sole {sole}"),
         }
@@ -144,6 +166,10 @@ class JointDraws:
         terms = ContactTerms(*(drawn[name] for name in TERMS))
         cof = terms.adhesion(pressure, drag) + terms.hysteresis
         return cof * drawn["laboratory"] * drawn["pair"]
+
+    def pair_error(self, pair: Pair, sole: str, floor: str) -> Array:
+        """Return standard normal draws (count,) of the error of a pair."""
+        return self.beyond_roughness(floor, f"pair: {sole}, {floor}, {pair.family}", pair.family)
 
     def log_likelihood(self, cof: Array, reading: Reading) -> Array:
         """Return ln p(reading | draw), (count,), of a predicted COF."""

@@ -33,7 +33,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Entry, catalogue
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.film import side_leakage, wedge_load_factor
-from underfoot.friction.pair_contact import Pair
+from underfoot.friction.pair_contact import Pair, UnexpectedReading
 from underfoot.material import youngs_modulus_gent
 from underfoot.questions.method import Basis
 from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
@@ -190,7 +190,7 @@ class Learned:
             self.factor
             + self.factor_sd * joint.normal(f"factor of {machine}")
             + self.source_sd * joint.normal(f"reader of {machine}")
-            + self.floor_sd * joint.normal(f"{machine} on {floor}")
+            + self.floor_sd * joint.beyond_roughness(floor, f"{machine} on {floor}")
         )
 
 
@@ -443,6 +443,7 @@ class MachinePrediction(Presentable):
     median: float
     high: float
     classes: tuple[tuple[str, float], ...]
+    outside: tuple[UnexpectedReading, ...] = ()
 
     def heading(self) -> str:
         """Return the title."""
@@ -460,7 +461,7 @@ class MachinePrediction(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return what the number rests on that nobody measured."""
-        lines = []
+        lines = list(map(str, self.outside))
         if self.fluid.name not in self.machine.fluids:
             allowed = ", ".join(self.machine.fluids)
             lines.append(

@@ -10,6 +10,7 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.case import text as toml
+from underfoot.case.surfaces import STEEPEST_RAMP
 from underfoot.core import InputError, RangeError, to_si, unknown_name
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
@@ -17,8 +18,6 @@ from .calibration import FloorReading
 from .joint import Reading
 from .machines import RZ_OVER_RQ, RZ_SPREAD, machine
 
-STEEPEST_SLOPE = math.radians(15.0)
-"""Steepest floor that people walk as they do on the level (1 in 4; assumed)."""
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
 """``ANY_FLOOR_RQ`` as a case writes it."""
 LEAST_REGION, MOST_REGION = 2e-3, 90e-3
@@ -92,7 +91,7 @@ class Task:
 class Place:
     """A place with everything that the choice depends on.
 
-    ``steps`` of a worker in a year; ``reported`` slips per 100 workers and year of today.
+    ``steps`` of a worker in a day; ``reported`` slips per 100 workers and year of today.
     """
 
     name: str
@@ -104,13 +103,28 @@ class Place:
     assumed: tuple[str, ...]
     reported: float | None = None
 
+    @property
+    def wet_share(self) -> float:
+        """Share of the steps that are in a fluid."""
+        return sum(
+            floor.share * often
+            for floor in self.floors
+            for fluid, often in floor.fluids.items()
+            if fluid != "dry"
+        )
+
+    @property
+    def wet_steps(self) -> float:
+        """Steps of a worker in a day that are in a fluid."""
+        return self.steps * self.wet_share
+
     def fluids(self) -> tuple[str, ...]:
         """Return every fluid of the place once, in alphabetical order."""
         return tuple(sorted({fluid for floor in self.floors for fluid in floor.fluids} - {"dry"}))
 
     def case(self, shoe: PlaceShoe, floor: PlaceFloor, fluid: str, worn: bool = False) -> Case:
         """Return the case of a shoe on a floor under a fluid, as the slip tester slides it."""
-        section = dict(shoe.section)
+        section, slope = dict(shoe.section), f"{floor.slope!r} rad"
         if worn and shoe.worn_region is not None:
             depth = self.case(shoe, floor, fluid).value("shoe.tread.depth")
             if not depth:
@@ -128,7 +142,7 @@ class Place:
             {
                 "name": f"{shoe.name} on {floor.name}, {fluid}",
                 "shoe": section,
-                "floor": dict(floor.section),
+                "floor": {**floor.section, **({"slope": slope} if floor.slope else {})},
                 "contaminant": fluid,
                 "motion": MOTION,
                 "friction": {"model": "pair"},
@@ -180,7 +194,7 @@ def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
     if "rcof_mean" not in people:
         assumed.append("people.rcof_mean: not given; 0.20 of adults who walk straight on the level")
     steps = _number(people, "steps_per_day", "people", 8000.0, (1, 1e5))
-    days = _number(people, "days_per_year", "people", 220.0, (1, 366))
+    _number(people, "days_per_year", "people", 220.0, (1, 366))  # files of 0.2 have it
     if "steps_per_day" not in people:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
     tasks = tuple(_task(each) for each in people.get("task", [])) or (Task("walking", 1.0, mean),)
@@ -191,7 +205,7 @@ def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
         shoes,
         tasks,
         _number(people, "rcof_sd", "people", 0.03, (0.001, 0.2)),
-        steps * days,
+        steps,
         tuple(assumed),
         _number(people, "reported_slips", "people", 0.0, (0.0, 1e6))
         if "reported_slips" in people
@@ -295,11 +309,11 @@ def _floor(
             "is missing", where=f"{where}.fluids", allowed="shares, or [fluids] of all"
         )
     slope = to_si(entry.get("slope", "0 deg"), "rad", where=f"{where}.slope")
-    if not 0 <= slope <= STEEPEST_SLOPE:
+    if not 0 <= slope <= STEEPEST_RAMP:
         raise RangeError(
             f"{math.degrees(slope):.3g} deg is no floor that people walk on as on the level",
             where=f"{where}.slope",
-            allowed=f"0 deg to {math.degrees(STEEPEST_SLOPE):.0f} deg",
+            allowed=f"0 deg to {math.degrees(STEEPEST_RAMP):.0f} deg",
             remedy="Stairs and steeper ramps need their own required friction",
         )
     section: dict[str, Any] = {key: entry[key] for key in ("from", "roughness") if key in entry}

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,23 +11,22 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.compute import summary
+from underfoot.compute.numbers import required_friction
 from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
+from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
-from underfoot.friction.propagation import probability_higher
-from underfoot.friction.tread_error import READING
+from underfoot.slip import slip_chances
+
+from .order import SEEN, Order, Verdict, order_of_draws, order_of_values
+from .separation import MOVES, Separation, of_conditions, of_reading
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
 
 LETTERS = "ABCDEFGHIJKL"
-DECIDED = 0.75
-"""Least probability at which an order is stated."""
-REPEATS = math.sqrt(2) * READING
-"""Standard deviation of ln of the ratio of two readings of one tester."""
-COMPARED = {"shoe": "soles", "floor": "floors", "contaminant": "fluids", "motion": "motions"}
 Z95 = 1.96
 _FILE, _CHECKSUM = "shoe.outsole.file", "shoe.outsole.sha256"
 LONGEST_CELL = 34
@@ -50,19 +48,29 @@ class Rank:
 class ComparedQuantity:
     """One quantity of all results.
 
-    ``different`` has the letters of the results that differ from the first by more than 1.96
-    standard deviations of the difference; None where no uncertainty is known.
+    ``orders`` has that of each result against the first, by its letter: by the draws that both
+    share where there are any, as the ranking has it; empty where no spread is known.
     """
 
     name: str
     label: str
     values: tuple[SourcedValue | None, ...]
-    different: tuple[str, ...] | None
+    orders: Mapping[str, Order]
+
+    @property
+    def different(self) -> tuple[str, ...]:
+        """Letters of the results of which an order against the first is stated."""
+        told = (Verdict.HIGHER, Verdict.LOWER)
+        return tuple(letter for letter, order in self.orders.items() if order.verdict in told)
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Presentable):
-    """Two to twelve results side by side."""
+    """Two to twelve results side by side.
+
+    ``order`` is that of the two highest COF; ``separations``, where it is open, what would tell
+    them apart, the surest first.
+    """
 
     kind: ClassVar[str] = "comparison"
 
@@ -71,6 +79,8 @@ class Comparison(Presentable):
     quantities: tuple[ComparedQuantity, ...]
     differences: tuple[tuple[str, ...], ...]
     reasons: tuple[str, ...]
+    order: Order | None = None
+    separations: tuple[Separation, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Comparison of {len(self.results)} results: {self.headline()[0]:.120}>"
@@ -99,31 +109,30 @@ class Comparison(Presentable):
         better, other = self.label(first.letter), self.label(second.letter)
         chance = first.better_than_next
         sure = f"probability {_chance(chance, 'not estimated')}"
-        if lead == 0.0 or (chance is not None and chance < DECIDED):
+        verdict = Verdict.OPEN if self.order is None else self.order.verdict
+        if verdict is Verdict.EQUAL:
+            return (
+                f"{better} and {other} are equal for every purpose: COF higher by {lead:.3f} "
+                f"({sure}), too small to see. Readings of one tester repeat within {SEEN:.0%}.",
+                self._different(),
+            )
+        if verdict is not Verdict.HIGHER and self.order is not None:
             order = f"The order of {better} and {other} is not decided: COF higher by {lead:.3f}"
-            return (f"{order} ({sure}).", self._telling(first.letter, second.letter))
-        else:
-            order = f"{better} has the higher COF than {other}, by {lead:.3f}"
-            if len(self.results) > 2:
-                order = f"{better} has the highest COF, {lead:.3f} above {other}"
+            return (f"{order} ({sure}).", *self._telling(second.cof.value or 0.0))
+        order = f"{better} has the higher COF than {other}, by {lead:.3f}"
+        if len(self.results) > 2:
+            order = f"{better} has the highest COF, {lead:.3f} above {other}"
         return (f"{order} ({sure}).", self._different())
 
-    def _telling(self, *letters: str) -> str:
-        """Return the measurement that would tell the order of two, or that none can."""
-        at = [LETTERS.index(letter) for letter in letters]
-        known = (self.results[k].data.get("cof_draws") for k in at)
-        draws = [np.log(each.values) for each in known if each is not None]
-        spread = float(np.std(draws[0] - draws[1])) if len(draws) == 2 else math.inf
-        if spread < REPEATS:
-            return (
-                f"No reading would tell: they lie within {spread:.0%}, and readings of one tester "
-                f"repeat within {READING:.0%}. Take them as equal."
-            )
-        apart = {
-            row[0].split(".")[0] for row in self.differences if row[1 + at[0]] != row[1 + at[1]]
-        }
-        both = next((subject for part, subject in COMPARED.items() if part in apart), "cases")
-        return f"One measurement would tell: COF of both {both} on one tester, all else alike."
+    def _telling(self, least: float) -> tuple[str, ...]:
+        """Return what would tell an order that is open, and what a tester could see of it."""
+        seen = f"The smallest difference a tester would see is {SEEN * least:.3f} ({SEEN:.0%})."
+        if not self.separations or self.order is None:
+            return (seen,)
+        best = self.separations[0]
+        if best.told - self.order.told < MOVES:
+            return (f"Nothing that was tried would tell: at best {best}.", seen)
+        return (f"What would tell: {best}.", seen)
 
     def cautions(self) -> tuple[str, ...]:
         return self.reasons
@@ -132,12 +141,12 @@ class Comparison(Presentable):
         rows = []
         for quantity in self.quantities:
             texts = ["" if v is None else value_text(quantity.name, v) for v in quantity.values]
-            remark = ""
-            if quantity.different is not None:
-                named = ", ".join(quantity.different) if len(self.results) > 2 else "yes"
-                remark = named if quantity.different else "no"
+            remark = "; ".join(
+                _order_text(order, letter if len(self.results) > 2 else "")
+                for letter, order in quantity.orders.items()
+            )
             rows.append((quantity.label, *texts, remark))
-        return Table("Results", ("Quantity", *self.letters, "Differs from A"), rows)
+        return Table("Results", ("Quantity", *self.letters, f"{self.letters[1:]} against A"), rows)
 
     def tables(self) -> tuple[Table, ...]:
         ranking = Table(
@@ -156,7 +165,13 @@ class Comparison(Presentable):
         )
         rows = [tuple(map(_shortened, row)) for row in _with_short_names(self.differences)]
         inputs = Table("Inputs that differ", ("Input", *self.letters), rows)
-        return (*((ranking,) if self.ranking else ()), self.table(), inputs)
+        steps = Table(
+            "What would tell the two highest apart",
+            ("Step", "Probability of the order then"),
+            [(one.step, drawn_probability_text(one.told)) for one in self.separations],
+        )
+        parts = (*((ranking,) if self.ranking else ()), self.table(), inputs)
+        return (*parts, *((steps,) if self.separations else ()))
 
     @property
     def letters(self) -> str:
@@ -175,12 +190,18 @@ class Comparison(Presentable):
                     "name": quantity.name,
                     "values": [None if v is None else v.to_dict() for v in quantity.values],
                     "different_from_first": quantity.different,
+                    "orders": {
+                        letter: {"verdict": str(one.verdict), **asdict(one)}
+                        for letter, one in quantity.orders.items()
+                    },
                 }
                 for quantity in self.quantities
             ],
             "differences": [
                 {"path": path, "values": list(values)} for path, *values in self.differences
             ],
+            "order": self.order and {"verdict": str(self.order.verdict), **asdict(self.order)},
+            "separations": [asdict(one) for one in self.separations],
             "results": [result.to_dict() for result in self.results],
         }
 
@@ -203,14 +224,15 @@ class Comparison(Presentable):
             if quantity.different:
                 labels.append((label if label == parent else f"{parent} {label}").lower())
         if not labels:
-            return "No quantity differs beyond its 95 % interval."
-        return f"Beyond the 95 % intervals differ: {'; '.join(labels).replace('cof', 'COF')}."
+            return "No other quantity differs for sure."
+        return f"These differ: {'; '.join(labels).replace('cof', 'COF')}."
 
 
 def compare(
     *items: Result | Case,
     quick: bool = False,
     catalogue: Catalogue | None = None,
+    separate: bool = False,
     progress: Progress = silent,
 ) -> Comparison:
     """Return results side by side, ranked by COF; cases are computed first.
@@ -220,6 +242,8 @@ def compare(
         quick: Compute cases on the coarse grid.
         catalogue: Where the stored cases of results find their entries; the built-in one by
             default.
+        separate: Where the order of the two highest is open, compute them under other fluids,
+            angles and worn, to say what would tell them apart; else a reading alone is thought of.
         progress: Receives stage, fraction and residual.
 
     The probability that one COF is higher than another is the share of the joint draws in which it
@@ -242,13 +266,35 @@ def compare(
         Case.from_text(item.case_text, catalogue=catalogue) if isinstance(item, Result) else item
         for item in items
     ]
+    ranking = _ranking(results)
+    order, separations = None, ()
+    if ranking:
+        top = [LETTERS.index(rank.letter) for rank in ranking[:2]]
+        order = order_of(results[top[0]], results[top[1]])
+        if order is not None and order.verdict is Verdict.OPEN:
+            separations = _separations(
+                [results[k] for k in top], [cases[k] for k in top], separate, progress
+            )
     return Comparison(
         results,
-        _ranking(results),
-        _quantities(results),
+        ranking,
+        _quantities(results, cases),
         tuple(case_differences(cases)),
         _reasons(results),
+        order,
+        separations,
     )
+
+
+def _separations(
+    results: Sequence[Result], cases: Sequence[Case], separate: bool, progress: Progress
+) -> tuple[Separation, ...]:
+    """Return what would tell two results apart, the surest first."""
+    found = of_conditions(*cases, progress=progress) if separate else []
+    drawn = _shared_draws(*results)
+    if drawn is not None:
+        found.append(of_reading(*drawn))
+    return tuple(sorted(found, key=lambda one: -one.told))
 
 
 def check_paths(paths: Sequence[Path]) -> None:
@@ -303,14 +349,26 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
 
 def chance_higher(first: Result, second: Result) -> float | None:
     """Return the probability that the first COF is higher, from shared draws where there are."""
-    laws = {result.provenance.closures.get("friction") for result in (first, second)}
-    both = []
-    for result in (first, second):
-        cof, draws = result.scalars["cof"], result.data.get("cof_draws")
-        if cof.value is None:
-            return None
-        both.append((cof.value, cof.uncertainty, None if draws is None else draws.values))
-    return probability_higher(*both, shared=laws == {"pair"})
+    order = order_of(first, second)
+    return None if order is None else order.higher
+
+
+def order_of(first: Result, second: Result) -> Order | None:
+    """Return the order of two COF: by the draws that both share, else as independent values."""
+    drawn = _shared_draws(first, second)
+    if drawn is not None:
+        return order_of_draws(*drawn)
+    return order_of_values(first.scalars["cof"], second.scalars["cof"])
+
+
+def _shared_draws(first: Result, second: Result) -> tuple[Array, Array] | None:
+    """Return the draws of COF of two results of the law of the pair; None without."""
+    if any(one.provenance.closures.get("friction") != "pair" for one in (first, second)):
+        return None
+    both = [one.data.get("cof_draws") for one in (first, second)]
+    if both[0] is None or both[1] is None or both[0].size != both[1].size:
+        return None
+    return np.asarray(both[0].values), np.asarray(both[1].values)
 
 
 def _interval(scalar: SourcedValue) -> tuple[float, float] | None:
@@ -322,26 +380,49 @@ def _interval(scalar: SourcedValue) -> tuple[float, float] | None:
     return max(scalar.value - half, 0.0), scalar.value + half
 
 
-def _quantities(results: Sequence[Result]) -> tuple[ComparedQuantity, ...]:
+def _quantities(results: Sequence[Result], cases: Sequence[Case]) -> tuple[ComparedQuantity, ...]:
     rows = []
     for name, (label, _) in summary.QUANTITIES.items():
         values = tuple(result.scalars.get(name) for result in results)
         if any(value is not None for value in values):
-            rows.append(ComparedQuantity(name, label, values, _different_from_first(values)))
+            pairs = zip(LETTERS[1:], range(1, len(results)), strict=False)
+            orders = {letter: _order_in(name, results, cases, at) for letter, at in pairs}
+            known = {letter: order for letter, order in orders.items() if order is not None}
+            rows.append(ComparedQuantity(name, label, values, known))
     return tuple(rows)
 
 
-def _different_from_first(values: Sequence[SourcedValue | None]) -> tuple[str, ...] | None:
-    first = values[0]
-    if first is None or first.value is None or first.uncertainty is None:
+def _order_in(name: str, results: Sequence[Result], cases: Sequence[Case], at: int) -> Order | None:
+    """Return the order of a quantity of one result against the first."""
+    first, other = results[0], results[at]
+    if name not in other.scalars or name not in first.scalars:
         return None
-    differs = {
-        letter: abs(other.value - first.value)
-        > Z95 * math.hypot(first.uncertainty, other.uncertainty)
-        for letter, other in zip(LETTERS[1:], values[1:], strict=False)
-        if other is not None and other.value is not None and other.uncertainty is not None
-    }
-    return tuple(letter for letter in differs if differs[letter]) if differs else None
+    if name == "cof":
+        return order_of(other, first)
+    drawn = _shared_draws(other, first)
+    if name != "slip_probability" or drawn is None:
+        return order_of_values(other.scalars[name], first.scalars[name])
+    chances = [
+        slip_chances(draws, required_friction(case), case.risk.build())
+        for draws, case in zip(drawn, (cases[at], cases[0]), strict=True)
+    ]
+    slips, friction = order_of_draws(chances[0], chances[1]), order_of_draws(*drawn)
+    # what nobody can tell of the friction nobody can tell of the slips
+    same = required_friction(cases[at]) == required_friction(cases[0])
+    return replace(slips, within=friction.within if same else slips.within)
+
+
+def _order_text(order: Order, letter: str) -> str:
+    """Return what is said of an order, with its probability where one is stated."""
+    chance = {
+        Verdict.HIGHER: order.higher,
+        Verdict.LOWER: 1 - order.higher,
+        Verdict.EQUAL: order.within,
+        Verdict.OPEN: None,
+    }[order.verdict]
+    word = "not decided" if chance is None else str(order.verdict)
+    sure = "" if chance is None else f", {drawn_probability_text(chance)}"
+    return f"{letter} {word}{sure}".strip()
 
 
 def _reasons(results: Sequence[Result]) -> tuple[str, ...]:

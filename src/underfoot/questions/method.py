@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
 from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
@@ -64,10 +66,10 @@ class Requirement:
 class Condition:
     """One floor and fluid of the method with the COF predicted for it.
 
-    ``cof`` is the mean over the method's averaging window with the standard deviation of the
-    friction law and of the open inputs; ``low`` and ``high`` bound 95 % of it. ``probability`` is
-    that of ``cof`` at or above ``limit``; None where the method sets no limit or where the COF was
-    not determined.
+    ``cof`` is that of steady sliding, as the method's averaging window takes it, or of the instant
+    that the method sets, with the standard deviation of the friction law and of the open inputs;
+    ``low`` and ``high`` bound 95 % of it. ``probability`` is that of ``cof`` at or above ``limit``;
+    None where the method sets no limit or where the COF was not determined.
     """
 
     name: str
@@ -81,7 +83,6 @@ class Condition:
     probability: float | None
     band: Band | None
     outcome: Outcome
-    window: tuple[Outcome, ...]
 
     def __str__(self) -> str:
         if self.cof.value is None or self.low is None:
@@ -260,8 +261,9 @@ def method_prediction(
             the friction law alone.
         quick: The coarse grid for the prediction itself.
 
-    The mean over the averaging window is Simpson's rule on its beginning, middle and end. The
-    probability of passing takes ln COF as normally distributed.
+    An averaging window counts as steady sliding, unless the method sets the duration. The
+    probability of passing takes ln COF as two halves of normal distributions, as wide as the
+    interval is on either side.
 
     Raises:
         InputError: An unknown method, a case without what the method leaves open.
@@ -276,30 +278,23 @@ def method_prediction(
         (name, *_prepared(case, entry, floor, fluid, keep))
         for name, floor, fluid in _conditions(entry)
     ]
-    times = _window(entry)
-    batches = [
-        [tested.replace("motion.duration", time) for time in times] or [tested]
-        for _, tested, _ in plan
-    ]
     share = 1.0 / (1 + len(plan)) if with_band else 1.0
     results = outcomes(
-        [each for batch in batches for each in batch],
+        [tested for _, tested, _ in plan],
         quick=quick,
         processes=processes,
         progress=part(progress, 0.0, share),
         stage="Testing by the method",
     )
     conditions, requirements = [], []
-    width = len(batches[0])
     for number, (name, tested, settings) in enumerate(plan):
-        window = tuple(results[number * width : (number + 1) * width])
         effects = None
         if with_band:
             if not variants(tested):
                 raise InputError("no open input to vary", where="sensitivity")
             rest = part(progress, (number + 1) * share, (number + 2) * share)
             effects = sensitivity(tested, quick=True, processes=processes, progress=rest)
-        conditions.append(_condition(entry, name, tested, window, effects))
+        conditions.append(_condition(entry, name, tested, results[number], effects))
         if len(plan) > 1:  # floor and fluid differ from condition to condition
             settings = [
                 replace(each, name=f"{each.name}, {name.replace('_', ' ')}")
@@ -308,10 +303,11 @@ def method_prediction(
                 for each in settings
             ]
         requirements += [each for each in settings if each not in requirements]
-    if times:
-        span = f"{display(times[0], 's')} to {display(times[-1], 's')} after first contact"
+    if window := _window(entry):
+        end = plan[0][1].motion.end_time
+        used = "steady sliding" if end is None else f"at {display(end, 's')}"
         leaf = entry.values["method.averaging_end"]
-        requirements.append(_required("averaging window", span, "mean by Simpson's rule", leaf))
+        requirements.append(_required("averaging window", window, used, leaf))
     return MethodPrediction(
         case.name,
         entry.name,
@@ -393,19 +389,16 @@ def _present(case: Case, section: str) -> str:
     return case.entries.get(section, "given in the case")
 
 
-def _window(entry: Entry) -> tuple[float, ...]:
-    """Return beginning, middle and end of the averaging window after first contact, s."""
+def _window(entry: Entry) -> str:
+    """Return the averaging window of a method; empty where it sets none."""
     if "method.averaging_end" not in entry.values:
-        return ()
-
-    def seconds(path: str) -> float:
-        return float(entry.sourced(path, "s").value or 0.0)
-
-    begin, end = seconds("method.averaging_start"), seconds("method.averaging_end")
-    if entry.text("method.averaging_from") == "force":
-        rise = seconds("motion.force_rise_time")
-        begin, end = begin + rise, end + rise
-    return begin, 0.5 * (begin + end), end
+        return ""
+    begin, end = (
+        display(entry.sourced(f"method.averaging_{name}", "s").value or 0.0, "s")
+        for name in ("start", "end")
+    )
+    after = "the force is there" if entry.text("method.averaging_from") == "force" else "contact"
+    return f"{begin} to {end} after {after}"
 
 
 def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:
@@ -416,42 +409,46 @@ def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:
 
 
 def _condition(
-    entry: Entry, name: str, case: Case, window: tuple[Outcome, ...], effects: Sensitivity | None
+    entry: Entry, name: str, case: Case, outcome: Outcome, effects: Sensitivity | None
 ) -> Condition:
-    middle = window[len(window) // 2]
     limits, titled = f"limits.{name}", f"conditions.{name}.title"
     limit = entry.sourced(limits, "1") if limits in entry.values else None
     title = entry.text(titled) if titled in entry.values else name.replace("_", " ")
     band = effects.band("cof") if effects is not None and effects.nominal.usable else None
-    failed = next((each for each in window if not each.usable), None)
     low = high = probability = None
-    if failed is not None:
-        cof = SourcedValue(None, "1", reason=str(failed.status))
+    if not outcome.usable:
+        cof = SourcedValue(None, "1", reason=str(outcome.status))
     else:
-        values = [each.number("cof") for each in window]
-        mean = values[0] if len(values) == 1 else (values[0] + 4 * values[1] + values[2]) / 6
-        law, interval = middle.spread("cof"), middle.scalars["cof"].interval
-        known = 0.0 if math.isnan(law) else law
-        deviation = math.hypot(known, band.inputs if band else 0.0)
-        # of ln COF: half the interval of the draws where there is one, and the open inputs
-        spread = known / max(mean, 1e-9)
-        if interval is not None and interval[0] > 0:
-            spread = math.log(interval[1] / interval[0]) / (2 * _Z95)
-        spread = math.hypot(spread, band.inputs / max(mean, 1e-9) if band else 0.0)
+        mean = outcome.number("cof")
+        known = float(np.nan_to_num(outcome.spread("cof")))
+        inputs = band.inputs if band else 0.0
         cof = SourcedValue(
             mean,
             "1",
-            source=middle.scalars["cof"].source,
-            uncertainty=deviation,
+            source=outcome.scalars["cof"].source,
+            uncertainty=math.hypot(known, inputs),
             note="friction law and open inputs" if band else "friction law alone",
         )
-        low, high = mean * math.exp(-_Z95 * spread), mean * math.exp(_Z95 * spread)
+        # of ln COF, each side as wide as the interval of the run, and the open inputs
+        below, above = (
+            math.hypot(side, inputs / max(mean, 1e-9)) for side in _sides(outcome.scalars["cof"])
+        )
+        low, high = mean * math.exp(-_Z95 * below), mean * math.exp(_Z95 * above)
         if limit is not None and limit.value:
-            least = math.log(limit.value)
-            probability = probability_at_least(math.log(max(mean, 1e-9)), spread, least)
+            least = math.log(limit.value) - math.log(max(mean, 1e-9))
+            probability = probability_at_least(0.0, below if least < 0 else above, least)
     floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
     return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
-                     middle, window)  # fmt: skip
+                     outcome)  # fmt: skip
+
+
+def _sides(cof: SourcedValue) -> tuple[float, float]:
+    """Return the standard deviation of ln COF below and above its value, by its interval."""
+    value = max(cof.value or 0.0, 1e-9)
+    if cof.interval is None or cof.interval[0] <= 0:
+        return (cof.uncertainty or 0.0) / value, (cof.uncertainty or 0.0) / value
+    low, high = cof.interval
+    return max(math.log(value / low), 0.0) / _Z95, max(math.log(high / value), 0.0) / _Z95
 
 
 def probability_at_least(mean: float, deviation: float, limit: float) -> float:

@@ -7,9 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
+from underfoot.compute.numbers import required_friction
 from underfoot.compute.run import run
 from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
 from underfoot.core import InputError, Progress, SourcedValue, silent
+from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
     Presentable,
     Table,
@@ -20,9 +24,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.progress import part
-from underfoot.slip import RcofPopulation, ReportG6, slip_model, slip_risk
-from underfoot.slip.model import MODELS
-from underfoot.slip.risk import needed_acof
+from underfoot.slip import MODELS, RcofPopulation, needed_acof, slip_model, slip_risk
 
 from .changes import Change, possible_changes
 from .effects import ChangeEffect, change_effects
@@ -33,22 +35,25 @@ if TYPE_CHECKING:
     from underfoot.compute.result import Result
     from underfoot.slip import SlipModel
 
-QUOTED_SLOPES = (-41.2, -45.1, -54.7)
-_QUOTED = (
-    "slope of another study as quoted in final progress report on shoe-floor friction, G.6.3; "
-    "even odds as in the report"
-)
 MOST_CHANGES = 3
+APART = 0.1
+"""Difference of two slip probabilities from which their models are said to differ."""
+LEAST_COF, LEAST_CHANCE = 5e-4, 5e-4
+"""Change of COF and of the slip probability below which a change does nothing that a page shows."""
 RARE = 0.2
 """Slip probability below which people read odds ("1 in 12 steps") more easily than percent."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelRisk:
-    """Slip probability by one published model, and the ACOF it requires for the target."""
+    """Slip probability by one published model, and the ACOF it requires for the target.
+
+    ``assumption`` is what sets the model apart.
+    """
 
     name: str
     source: str
+    assumption: str
     probability: float
     low: float | None
     high: float | None
@@ -59,8 +64,9 @@ class ModelRisk:
 class RiskAssessment(Presentable):
     """Slip probability of a case, what limits its friction, and the effect of changes.
 
-    ``missing_friction`` is the COF that is missing for the ``target`` probability: 0 where the
-    friction is sufficient, None where the model of the case cannot reach the target.
+    ``missing_friction`` is the COF that is missing for the ``target`` probability, with a spread of
+    the friction that grows with it: 0 where the slip probability meets the target, None where no
+    friction does.
     """
 
     kind: ClassVar[str] = "risk"
@@ -84,8 +90,19 @@ class RiskAssessment(Presentable):
     def best(self) -> list[ChangeEffect]:
         """Return the changes that reduce the slip probability, the most effective first."""
         slip, present = "slip_probability", self.outcome.number("slip_probability")
-        useful = [each for each in self.changes if each.computed and each.number(slip) < present]
+        useful = [each for each in self.effective if each.number(slip) < present]
         return sorted(useful, key=lambda each: (each.number(slip), -each.number("cof")))
+
+    @property
+    def effective(self) -> list[ChangeEffect]:
+        """Return the changes that were computed and do something."""
+        return [each for each in self.changes if each.computed and self._moves(each)]
+
+    @property
+    def apart(self) -> list[ModelRisk]:
+        """Return the models whose slip probability is another than that of the case's model."""
+        own = self.outcome.number("slip_probability")
+        return [one for one in self.models if abs(one.probability - own) > APART]
 
     def headline(self) -> tuple[str, ...]:
         if not self.usable:
@@ -101,14 +118,19 @@ class RiskAssessment(Presentable):
             f"available COF of {value_text('cof', scalars['cof'])}.",
             str(self.limit),
         ]
-        if self.missing_friction:
+        if probability <= self.target:
+            sentences.append(
+                f"Friction is sufficient for a slip probability below {percent(self.target)}."
+            )
+        elif self.missing_friction is None:
+            sentences.append(
+                f"No COF gives a slip probability of {percent(self.target)} while so little is "
+                "known of the friction."
+            )
+        else:
             sentences.append(
                 f"A slip probability of {percent(self.target)} needs a COF higher by "
                 f"{self.missing_friction:.2f}."
-            )
-        elif self.missing_friction == 0.0:
-            sentences.append(
-                f"Friction is sufficient for a slip probability below {percent(self.target)}."
             )
         return tuple(sentences)
 
@@ -116,8 +138,18 @@ class RiskAssessment(Presentable):
         outcome = self.outcome
         source = outcome.scalars["slip_probability"].source
         model_name = next((model.name for model in self.models if model.source == source), "")
-        return cautions(
-            outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions, model_name
+        others = [
+            f"Another model has {probability_text(one.probability)} for the same friction and "
+            f"people ({one.name}): {one.assumption[0].lower()}{one.assumption[1:]}"
+            for one in self.apart
+        ]
+        return (
+            *cautions(
+                *(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions),
+                model_name,
+                outcome.labels,
+            ),
+            *others,
         )
 
     def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
@@ -136,7 +168,8 @@ class RiskAssessment(Presentable):
     def table(self) -> Table:
         place = {id(each): number for number, each in enumerate(self.best, 1)}
         rows = []
-        for each in sorted(self.changes, key=lambda one: place.get(id(one), len(self.changes) + 1)):
+        told = [one for one in self.changes if not one.computed or self._moves(one)]
+        for each in sorted(told, key=lambda one: place.get(id(one), len(told) + 1)):
             rank = place.get(id(each))
             if not each.computed:
                 rows.append(("-", each.change.action, "", "", "", f"not computed: {each.reason}"))
@@ -160,7 +193,18 @@ class RiskAssessment(Presentable):
         return (self.table(), models) if self.usable else ()
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        return self.outcome.remarks()
+        told = {id(each) for each in self.effective}
+        idle = [
+            each.change.action for each in self.changes if each.computed and id(each) not in told
+        ]
+        return {**self.outcome.remarks(), "Tried without effect": idle}
+
+    def _moves(self, effect: ChangeEffect) -> bool:
+        """Return whether a change does something that a page shows."""
+        return any(
+            abs(effect.number(name) - self.outcome.number(name)) >= least
+            for name, least in (("cof", LEAST_COF), ("slip_probability", LEAST_CHANCE))
+        )
 
     def to_dict(self) -> dict[str, Any]:
         film_share = self.limit.film_share
@@ -178,6 +222,7 @@ class RiskAssessment(Presentable):
                 {
                     "name": one.name,
                     "source": one.source,
+                    "assumption": one.assumption,
                     "probability": one.probability,
                     "interval_95": [one.low, one.high],
                     "needed_acof": one.needed_acof,
@@ -200,6 +245,7 @@ class RiskAssessment(Presentable):
                     "extrapolated": each.computed and bool(_note(each)),
                     "cof_error": each.error,
                     "higher_cof": each.higher,
+                    "does_something": each.computed and self._moves(each),
                     "reason": each.reason,
                 }
                 for each in self.changes
@@ -262,31 +308,44 @@ def risk_assessment(
         nothing = FrictionLimit(*[math.nan] * 3)
         return RiskAssessment(case.name, outcome, (), nothing, target, None, ())
     rest = part(progress, 0.3, 1.0) if result is None else progress
+    draws = present.data.get("cof_draws")
+    acof = present.scalars["cof"], None if draws is None else np.asarray(draws)
+    models = model_risks(case, *acof, target)
+    own = _needed(target, *acof, required_friction(case), case.risk.build())
     return RiskAssessment(
         case.name,
         outcome,
-        model_risks(case, present.scalars["cof"], target),
+        models,
         friction_limit(present.scalars),
         target,
-        _missing(case, outcome, target),
+        None if own is None else max(own - outcome.number("cof"), 0.0),
         change_effects(case, present, tried, quick=quick, processes=processes, progress=rest),
     )
 
 
-def model_risks(case: Case, acof: SourcedValue, target: float) -> tuple[ModelRisk, ...]:
-    """Return the slip probability by each published model, and the ACOF for ``target``."""
-    published = [(name, slip_model(name)) for name in MODELS]
-    models: list[tuple[str, str, SlipModel]] = [
-        *((name, model.source, model) for name, model in published),
-        *((f"slope {slope:g}", _QUOTED, ReportG6(slope=slope)) for slope in QUOTED_SLOPES),
-    ]
-    rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
-    risks = []
-    for name, source, model in models:
-        risk = slip_risk(acof, rcof=rcof, model=model)
-        probability = risk.probability.value or 0.0
-        needed = _needed(target, rcof, model)
-        risks.append(ModelRisk(name, source, probability, risk.low, risk.high, needed))
+def model_risks(
+    case: Case, acof: SourcedValue, draws: Array | None, target: float
+) -> tuple[ModelRisk, ...]:
+    """Return the slip probability by each published model, and the ACOF for ``target``.
+
+    Each as the result has it: a mean over the same draws of the friction, those of the model's
+    constants on top.
+    """
+    people, risks = required_friction(case), []
+    for name in MODELS:
+        model = slip_model(name)
+        risk = slip_risk(acof, rcof=people, model=model, samples=draws)
+        risks.append(
+            ModelRisk(
+                name,
+                model.source,
+                next(iter(model.assumptions), ""),
+                risk.probability.value or 0.0,
+                risk.low,
+                risk.high,
+                _needed(target, acof, draws, people, model),
+            )
+        )
     return tuple(risks)
 
 
@@ -319,15 +378,15 @@ def _sure(effect: ChangeEffect) -> str:
     return drawn_probability_text(effect.higher)
 
 
-def _needed(target: float, rcof: RcofPopulation, model: SlipModel) -> float | None:
+def _needed(
+    target: float,
+    acof: SourcedValue,
+    draws: Array | None,
+    people: RcofPopulation,
+    model: SlipModel,
+) -> float | None:
+    """Return the ACOF that a model requires for ``target``; None where none is enough."""
     try:
-        return needed_acof(target, rcof=rcof, model=model)
+        return needed_acof(target, rcof=people, model=model, acof=acof, samples=draws)
     except InputError:
         return None
-
-
-def _missing(case: Case, outcome: Outcome, target: float) -> float | None:
-    """Return how much more ACOF the case's own model requires for ``target``."""
-    rcof = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd)
-    needed = _needed(target, rcof, slip_model(case.risk.name))
-    return None if needed is None else max(needed - outcome.number("cof"), 0.0)

@@ -308,6 +308,8 @@ def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[O
     for each in inputs:
         if each.path in case.idle_paths or case.value(each.path) is None:
             continue
+        if each.path == "motion.start_film" and case.motion.end_time is None:
+            continue  # steady sliding has forgotten it
         if each.only_assumed and not case.sourced(each.path).assumed:
             continue
         if each.path == "shoe.material.shore_a" and case.shoe.material.modulus is not None:

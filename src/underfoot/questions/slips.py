@@ -11,9 +11,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.compute.run import run
 from underfoot.compute.slips import slips
 from underfoot.core import InputError, Progress, SourcedValue, silent
-from underfoot.core.presentation import Presentable, Table, percent, quantity_text
+from underfoot.core.presentation import (
+    Presentable,
+    Table,
+    percent,
+    probability_text,
+    quantity_text,
+    value_text,
+)
+from underfoot.core.progress import part
 from underfoot.core.text import decoded
 from underfoot.slip.dynamics import (
     GaitHistory,
@@ -46,12 +55,18 @@ AT_SENSORS = ("peak_pressure", "duration")
 
 @dataclass(frozen=True, slots=True)
 class SlipPopulation(Presentable):
-    """Simulated slips of a population of walkers."""
+    """Simulated slips of a population of walkers.
+
+    ``predicted`` is the slip probability of the same people by the slip model of the case, as
+    ``run`` gives it on the same grid, and ``model`` the name of that.
+    """
 
     kind: ClassVar[str] = "slip"
 
     name: str
     study: SlipStudy
+    predicted: SourcedValue
+    model: str
 
     def __repr__(self) -> str:
         return f"<SlipPopulation on {self.name!r}: {len(self.study.subjects)} walkers>"
@@ -73,10 +88,17 @@ class SlipPopulation(Presentable):
                 "One walker has no spread, so no interval.",
             )
         share, low, high = study.slipped()
-        floor = "" if self.wet else " The case has no fluid: no film."
+        floor = " The case has no fluid: no film."
+        if self.wet:
+            start = quantity_text(study.setting.settings.start_film, "m")
+            floor = (
+                f" The film that a heel traps at touch-down hangs on its assumed height of {start} "
+                "when loading begins, which is not drawn."
+            )
+        spread = "walkers" if study.by_friction is None else "walkers and friction"
         return (
-            f"{round(share * count)} of {count} walkers slip (heel faster than 0.2 m/s): "
-            f"{percent(share)} (95 %: {percent(low)} to {percent(high)}).",
+            f"{probability_text(share)} of simulated steps slip (heel faster than 0.2 m/s; 95 % of "
+            f"{count} {spread}: {probability_text(low)} to {probability_text(high)}).",
             f"Peak heel speed {_value_text(study.mean('peak_speed', 'm/s'))} (mean and standard "
             f"deviation between walkers).{floor}",
         )
@@ -85,7 +107,8 @@ class SlipPopulation(Presentable):
         study = self.study
         reasons = [
             "Drive is that of dry walking and walkers do not react: speeds and distances of long "
-            "slips are upper limits."
+            "slips are upper limits.",
+            *self._other_model(),
         ]
         lower = sum(subject.motion.still_sliding for subject in study.subjects)
         if lower:
@@ -108,6 +131,16 @@ class SlipPopulation(Presentable):
         if study.failed:
             reasons.append(f"{study.failed} slips could not be solved and are left out.")
         return tuple(reasons)
+
+    def _other_model(self) -> tuple[str, ...]:
+        """Return what ``run`` and ``risk`` answer, and why it is another number."""
+        if self.predicted.value is None:
+            return ()
+        return (
+            f"run and risk answer {value_text('slip_probability', self.predicted)} for these "
+            f"people on this floor ({self.model}): a curve fitted to counted slips, with the "
+            "spread of film, tread and grid; here it is that of the contact's friction alone.",
+        )
 
     def table(self) -> Table:
         study = self.study
@@ -171,6 +204,7 @@ class SlipPopulation(Presentable):
             "model": "full" if study.full else "reduced",
             "outcomes": {str(k): [finite(x) for x in v] for k, v in study.shares().items()},
             "numbers": study.numbers(),
+            "slip_probability": {**self.predicted.to_dict(), "model": self.model},
             "row_peaks_Pa": [finite(pressure) for pressure in study.rows()],
             **{f"peak_speed_by_{name}": self._by(name) for name in BANDS},
             "fit_error": None if study.fit is None else str(study.fit.held_out),
@@ -255,9 +289,10 @@ def slip_population(
         histories=histories or None,
         full=full_model,
         fine=not quick,
-        progress=progress,
+        progress=part(progress, 0.0, 0.9),
     )
-    return SlipPopulation(case.name, study)
+    predicted = run(case, quick=quick, progress=part(progress, 0.9, 1.0))
+    return SlipPopulation(case.name, study, predicted.scalars["slip_probability"], case.risk.name)
 
 
 def own_histories(path: Path) -> list[GaitHistory]:

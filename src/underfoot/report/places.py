@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from underfoot.core.html import new_figure
-from underfoot.places.choice import LEAST, PER, Choice
+from underfoot.places.choice import Choice
 
 from .dispatch import FigureMakers, figures
 
@@ -26,12 +26,10 @@ def slips_figure(choice: Choice) -> Figure:
     figure = new_figure(7.0, 1.2 + 0.45 * len(shoes))
     axes = figure.subplots()
     at = np.arange(len(shoes))
-    low, median, high = np.maximum(np.array([each.slips for each in shoes]).T, LEAST)
+    low, high = 100 * np.array([each.slips.interval for each in shoes]).T
     axes.hlines(at, low, high, color="C0", lw=2)
-    axes.plot(median, at, "o", color="C0")
+    axes.plot([100 * (each.slips.value or 0.0) for each in shoes], at, "o", color="C0")
     axes.set_yticks(at, [f"{each.shoe.name} ({100 * each.best:.0f} %)" for each in shoes])
-    axes.set(
-        xscale="log", xlabel=f"slips per {PER} workers and year: median, 95 % (chance of best)"
-    )
+    axes.set(xlim=(0, 100), xlabel="steps in a fluid that slip, %: mean, 95 % (chance of best)")
     axes.set_ylim(-0.6, len(shoes) - 0.4)
     return figure

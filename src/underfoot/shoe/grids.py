@@ -111,6 +111,7 @@ def _heel_slits(
     def level_at(i: Cells, j: Cells, along: Array, across: Array) -> Array:
         return tread.slit_distance(x[i, j] + along * stretch[i, j], y[i, j] + across * spacing)
 
+    angle = sipes.angle + tread.yaw
     return slits_of(
         tread.slit_distance(x, y) > -1.5 * spacing,
         land,
@@ -119,7 +120,7 @@ def _heel_slits(
         level_at,
         depth=np.maximum(sipes.depth - heel.worn_off(x, y), 0.0),
         width=np.full(x.shape, sipes.width),
-        tangent=(np.full(x.shape, math.sin(sipes.angle)), np.full(x.shape, math.cos(sipes.angle))),
+        tangent=(np.full(x.shape, math.sin(angle)), np.full(x.shape, math.cos(angle))),
     )
 
 

@@ -135,6 +135,8 @@ class Tread:
         letters: Of "lettering".
         sipes: Fine slits in the lugs.
         grooves: Where the sole lies as made; shifted with the pattern, whose lugs they part.
+        yaw, pivot: Turn all of it as it lies, rad, anticlockwise seen from above, about a place
+            (x, y), m.
     """
 
     pattern: str
@@ -155,6 +157,8 @@ class Tread:
     edge_chamfer: float = 0.0
     sipes: Sipes | None = None
     grooves: tuple[Groove, ...] = ()
+    yaw: float = 0.0
+    pivot: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         if self.pattern not in PATTERNS:
@@ -281,9 +285,18 @@ class Tread:
         grooves = tuple(replace(each, place=new(each.place)) for each in self.grooves)
         return replace(self, offset=new(self.offset), grooves=grooves)
 
+    def _before_yaw(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Return where places (m) of the turned tread lie in the one that was not turned."""
+        if not self.yaw:
+            return x, y
+        ahead, aside = self.pivot
+        along, across = tread_pattern.rotated(x - ahead, y - aside, self.yaw)
+        return along + ahead, across + aside
+
     def slit_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the sipes, positive in one."""
         assert self.sipes is not None
+        x, y = self._before_yaw(x, y)
         return self.sipes.channel_distance(x - self.offset[0], y - self.offset[1])
 
     def channel_distance(self, x: Array, y: Array) -> Array:
@@ -291,6 +304,7 @@ class Tread:
 
         On a lug the value is minus the distance to its nearest edge.
         """
+        x, y = self._before_yaw(x, y)
         grooves = (each.channel_distance(x, y) for each in self.grooves)
         return np.maximum.reduce([self._pattern_distance(x, y), *grooves])
 

@@ -35,6 +35,8 @@ WIDEST_CHANNEL = 50e-3
 _ROUNDED = (0.25, 3.0)  # slope of a rounded edge: no floor of a channel, no wall
 _SLOPE_REACH = 0.5e-3  # m
 _GRAZED = (2e-3, 0.12)  # m from the rim, slope of the floor there
+_EDGE = (1e-3, 0.1e-3)  # m on both sides of a lug's edge, and what the heights bend there at least
+_EDGED = 0.2  # of the border of land with channels
 _REACHED = 30e-6  # m
 _MOST_NOISE = 0.1e-3  # m: to begin with
 QUIET = 15e-6
@@ -116,6 +118,7 @@ def tread_map(
         np.bincount(numbers.ravel()), 1
     )
     land &= np.isin(numbers, deeper) | (steepness[numbers] < 0.5)
+    land &= ~_bare_ends(height, land, spacing)
     channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
@@ -129,6 +132,40 @@ def tread_map(
     floor = maximum_filter(floor_depth(depth, channel), window)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
     return TreadMap(land, lugs, base, level, noise)
+
+
+def _bare_ends(height: Array, land: Mask, spacing: float) -> Mask:
+    """Return pieces of land that are the floor of channels, where a tilted floor reaches it.
+
+    Such a piece lies above other land and goes over into channel without an edge: an end of the
+    sole without lugs.
+    """
+    if not land.any():
+        return land
+    numbers, count = pieces(land)
+    if count < 2:
+        return np.zeros_like(land)
+    inside = np.isfinite(height)
+    filled = height[nearest_true(inside)]
+    steps = max(1, round(_EDGE[0] / spacing))
+    wide = np.pad(filled, steps, mode="edge")
+    n, m = height.shape
+    bend = np.zeros_like(filled)
+    for axis in (0, 1):
+        before, after = (
+            wide[steps + way * (axis == 0) :, steps + way * (axis == 1) :][:n, :m]
+            for way in (-steps, steps)
+        )
+        bend = np.maximum(bend, np.abs(before + after - 2 * filled))
+    border = land & (distance_to(inside & ~land) <= 1.0)
+    lengths = np.bincount(numbers[border], minlength=count + 1)
+    edged = np.bincount(numbers[border & (bend > _EDGE[1])], minlength=count + 1)
+    lowest = np.full(count + 1, np.inf)
+    np.minimum.at(lowest, numbers[land], height[land])
+    bare = (lengths > 0) & (edged < _EDGED * lengths)
+    bare &= lowest > lowest[1:].min() + SHALLOWEST_CHANNEL
+    bare[0] = False
+    return bare[numbers]
 
 
 def reached_by_floor(height: Array, land: Mask, spacing: float) -> Mask:

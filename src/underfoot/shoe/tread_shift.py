@@ -11,6 +11,7 @@ from underfoot.core.arrays import Array, Mask
 
 from ._kernels.covering_discs import local_width
 from ._kernels.regions import between_land, distance_to, nearest_true, rim
+from ._kernels.tread_pattern import rotated
 from .geometry import SoleSurface
 from .tread_measures import floor_depth, reached_by_floor
 
@@ -129,9 +130,17 @@ def _differs_on_the_way(likeness: Array, lag: Array) -> bool:
     return bool(along.min() < max(along[-1], LEAST_LIKENESS) - _BETWEEN)
 
 
-def moved_tread(surface: SoleSurface, shift: tuple[float, float], periods: Array) -> SoleSurface:
+def moved_tread(
+    surface: SoleSurface,
+    shift: tuple[float, float],
+    periods: Array,
+    *,
+    yaw: float = 0.0,
+    pivot: tuple[float, float] = (0.0, 0.0),
+) -> SoleSurface:
     """Return the surface with its tread moved by ``shift`` (x, y; m), to whole cells.
 
+    Then it is turned by ``yaw`` (rad, anticlockwise seen from above) about ``pivot`` (x, y; m).
     What stands over the base moves (channels with their walls, rounded edges of lugs), the base
     stays. It is the land that a floor reaches, carried on across the channels by the planes of the
     land on both sides, where these meet below the straight line: a bevel keeps its corner. What
@@ -139,7 +148,10 @@ def moved_tread(surface: SoleSurface, shift: tuple[float, float], periods: Array
     """
     base, inside = carried_base(surface), surface.inside
     over = np.where(inside, np.maximum(surface.height - base, 0.0), 0.0)
-    cells = _sources(inside, np.asarray(shift) / surface.spacing, periods / surface.spacing)
+    x, y = np.meshgrid(surface.x - pivot[0], surface.y - pivot[1], indexing="ij")
+    back = np.array(rotated(x, y, yaw)) - (x, y)
+    ways = np.asarray(shift)[:, None, None] - back
+    cells = _sources(inside, ways / surface.spacing, periods / surface.spacing)
     land = inside & surface.land[cells]
     return replace(
         surface,
@@ -151,17 +163,22 @@ def moved_tread(surface: SoleSurface, shift: tuple[float, float], periods: Array
 
 
 def _sources(inside: Mask, shift: Array, periods: Array) -> tuple[NDArray[np.intp], ...]:
-    """Return, for each cell, the indices of the cell of the sole that comes to it."""
+    """Return, for each cell, the indices of the cell of the sole that comes to it.
+
+    ``shift`` (2, nx, ny) and ``periods`` (n, 2) are in cells.
+    """
     counts = np.array(list(product((0, -1, 1, -2, 2), repeat=len(periods))))
-    ways = shift + counts @ periods
-    ways = ways[np.argsort(np.round(np.hypot(*ways.T), 6), kind="stable")]
+    ways = counts @ periods
+    far = np.hypot(*(ways + shift.mean(axis=(1, 2))).T)
+    ways = ways[np.argsort(np.round(far, 6), kind="stable")]
     nearest = np.stack(nearest_true(inside))
     sources, known = nearest.copy(), np.zeros_like(inside)
     place = np.indices(inside.shape)
     for way in ways:
         # a half counts as more, whatever its rounding: one processor must not move it elsewhere
-        cells = np.sign(way) * np.floor(np.abs(way) + 0.5 + 1e-6)
-        there = place - cells.astype(int)[:, None, None]
+        moved = way[:, None, None] + shift
+        cells = np.sign(moved) * np.floor(np.abs(moved) + 0.5 + 1e-6)
+        there = place - cells.astype(int)
         within = np.all([(t >= 0) & (t < n) for t, n in zip(there, inside.shape, strict=True)], 0)
         there = [np.clip(t, 0, n - 1) for t, n in zip(there, inside.shape, strict=True)]
         new = ~known & within & inside[tuple(there)]

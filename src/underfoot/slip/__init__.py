@@ -9,5 +9,7 @@ from .report_g6 import ReportG6 as ReportG6
 from .required import ADULTS_LEVEL_WALKING as ADULTS_LEVEL_WALKING
 from .required import RcofPopulation as RcofPopulation
 from .risk import SlipRisk as SlipRisk
+from .risk import mean_of_draws as mean_of_draws
 from .risk import needed_acof as needed_acof
+from .risk import slip_chances as slip_chances
 from .risk import slip_risk as slip_risk

@@ -1,6 +1,8 @@
 """Checks of coefficients of friction; the logistic curve and its mean over persons."""
 
+import math
 from abc import abstractmethod
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,11 @@ from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import Presentable, Table
 
 LARGEST_ACOF = 5.0
+LOG_SLOPE_SD, FIFTY_PERCENT_SD = 0.2, 0.05
+"""Standard deviation between publications of ln of a logistic's slope and of its ACOF - RCOF at
+even odds (report, G.6.3: slopes of -41.2 to -54.7; -0.06 and -0.11)."""
 _HALF_WIDTH = 9.0
-_NODES = 2001
+_WIDEST_STEP, _STEP_OVER_STRIP = 0.25, 0.79
 
 
 def available(acof: ArrayLike) -> Array:
@@ -65,6 +70,8 @@ class LogisticModel(PresentableModel):
     __slots__ = ()
     name: str
     fifty_percent_at: float
+    log_slope_sd: float
+    fifty_percent_sd: float
 
     @property
     @abstractmethod
@@ -88,6 +95,18 @@ class LogisticModel(PresentableModel):
         spread = -self.log_odds_slope * sd
         return scalar_or_array(normal_mean_of_logistic(self._log_odds(a, mean), spread))
 
+    def drawn(
+        self, acof: Array, rcof_mean: float, rcof_sd: float, normal: Callable[[str], Array]
+    ) -> Array:
+        """Return the mean probability over persons in draws (n,) of ACOF and of slope and x50.
+
+        ``normal`` gives (n,) standard normal draws by name.
+        """
+        slope = self.log_odds_slope * np.exp(self.log_slope_sd * normal("slope of the slip model"))
+        even = self.fifty_percent_at + self.fifty_percent_sd * normal("even odds of the slip model")
+        odds = slope * (available(acof) - rcof_mean - even)
+        return normal_mean_of_logistic(odds, -slope * rcof_sd)
+
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
         """Return whether ACOF - RCOF leaves that of the study (``tested``)."""
         difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
@@ -106,9 +125,12 @@ def normal_mean_of_logistic(mean: Array, deviation: Array) -> Array:
     """Return the mean of ``logistic`` over normally distributed log odds.
 
     Trapezoidal rule over nine standard deviations, which converges exponentially for smooth,
-    decaying integrands; with deviations of up to 100 log odds it is exact to 1e-10.
+    decaying integrands: the poles of the logistic lie pi / deviation off the axis, and the step
+    follows them, so that deviations of up to 100 log odds are exact to 1e-10.
     """
-    z = np.linspace(-_HALF_WIDTH, _HALF_WIDTH, _NODES)
+    widest = float(np.max(deviation, initial=0.0))
+    step = min(_WIDEST_STEP, _STEP_OVER_STRIP / max(widest, 1e-9))
+    z = np.linspace(-_HALF_WIDTH, _HALF_WIDTH, 2 * math.ceil(_HALF_WIDTH / step) + 1)
     weight = np.exp(-0.5 * z**2)
     weight /= weight.sum()
     return logistic(mean[..., None] + deviation[..., None] * z) @ weight

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from underfoot.core import InputError, Range
 
-from ._checks import LogisticModel
+from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
 from .report_g6 import FIFTY_PERCENT_AT
 
 SOURCE = (
@@ -29,10 +29,13 @@ class Beschorner2016(LogisticModel):
     Parameters:
         odds_ratio: Growth of the odds per 0.01 of RCOF, above 1.
         fifty_percent_at: ACOF - RCOF at which half of the steps slip (assumed).
+        log_slope_sd, fifty_percent_sd: How far publications differ in ln slope and in that.
     """
 
     odds_ratio: float = ODDS_RATIO
     fifty_percent_at: float = FIFTY_PERCENT_AT
+    log_slope_sd: float = LOG_SLOPE_SD
+    fifty_percent_sd: float = FIFTY_PERCENT_SD
     name: str = field(default="beschorner_2016", init=False)
     source: str = field(default=SOURCE, init=False)
     assumptions: tuple[str, ...] = field(

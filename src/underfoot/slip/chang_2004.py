@@ -1,5 +1,6 @@
 """A step slips when it needs more friction than there is: Chang (2004)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from underfoot.core import Breach
-from underfoot.core.arrays import scalar_or_array
+from underfoot.core.arrays import Array, scalar_or_array
 
 from ._checks import PresentableModel, available, deviation, required
 
@@ -43,6 +44,12 @@ class Chang2004(PresentableModel):
         with np.errstate(over="ignore"):  # of a spread next to nothing: 0 or 1
             certain = ndtr((mean - a) / np.where(sd > 0, sd, 1.0))
         return scalar_or_array(np.where(sd > 0, certain, np.heaviside(mean - a, 0.5)))
+
+    def drawn(
+        self, acof: Array, rcof_mean: float, rcof_sd: float, normal: Callable[[str], Array]
+    ) -> Array:
+        """Return the probability in draws (n,) of ACOF: the model has no constants to draw."""
+        return np.asarray(self.population(acof, rcof_mean, rcof_sd))
 
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
         return []

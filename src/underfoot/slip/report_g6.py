@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from underfoot.core import InputError, Range
 
-from ._checks import LogisticModel
+from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
 
 SOURCE = "final progress report on shoe-floor friction, G.6.2 and G.6.3"
 SLOPE = -49.2
@@ -27,10 +27,13 @@ class ReportG6(LogisticModel):
     Parameters:
         slope: Change of the log odds per unit of ACOF - RCOF; negative.
         fifty_percent_at: ACOF - RCOF at which half of the steps slip.
+        log_slope_sd, fifty_percent_sd: How far publications differ in both.
     """
 
     slope: float = SLOPE
     fifty_percent_at: float = FIFTY_PERCENT_AT
+    log_slope_sd: float = LOG_SLOPE_SD
+    fifty_percent_sd: float = FIFTY_PERCENT_SD
     name: str = field(default="report_g6", init=False)
     source: str = field(default=SOURCE, init=False)
     assumptions: tuple[str, ...] = field(

@@ -1,6 +1,9 @@
 """Required coefficient of friction (RCOF) of a population."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
 
 from underfoot.core import RangeError
 
@@ -36,6 +39,18 @@ class RcofPopulation:
             raise RangeError(
                 f"{self.sd:g}", where="rcof_sd", allowed="at most 0.5 (it is about 0.03)"
             )
+
+    def on_slope(self, slope: float) -> RcofPopulation:
+        """Return what the same persons need to walk down a slope (rad).
+
+        Who needs r on the level needs tan(slope + atan r): the load leans that much more against
+        the floor. Linear in r around the mean, 0.001 off at 15 degrees and two standard deviations.
+        """
+        if not slope:
+            return self
+        needed = math.tan(slope + math.atan(self.mean))
+        stretch = (1 + needed**2) / (1 + self.mean**2)
+        return replace(self, mean=needed, sd=stretch * self.sd)
 
 
 ADULTS_LEVEL_WALKING = RcofPopulation(mean=0.20, sd=0.03, source=_SOURCE, assumed=True)

@@ -1,31 +1,35 @@
 """Probability of slipping over a population, with its band; the friction that a risk needs."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from underfoot.core import Breach, InputError, SourcedValue
+from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
+from underfoot.friction.propagation import normal_draws
 
 from ._checks import LARGEST_ACOF
 from .model import SlipModel
 from .report_g6 import ReportG6
 from .required import ADULTS_LEVEL_WALKING, RcofPopulation
 
-_Z95 = 1.959963984540054
-_NODES = 201
+DRAWS = 4000
+"""Of an available friction that comes with a standard deviation alone."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class SlipRisk(Presentable):
     """Probability that a step of the population slips.
 
-    ``probability`` is the mean over the uncertain ACOF, its uncertainty the standard deviation
-    that the ACOF's uncertainty makes. ``low`` and ``high`` bound 95 % of it; None when the ACOF
-    came without uncertainty. ``at_best_estimate`` is the probability at the best estimate of ACOF.
+    ``probability`` is the mean over draws of the ACOF and of the model's constants, its uncertainty
+    their standard deviation. ``low`` and ``high`` bound 95 % of them; None when the ACOF came
+    without uncertainty. ``at_best_estimate`` is the probability at the best estimate of all.
     """
 
     probability: SourcedValue
@@ -58,6 +62,39 @@ class SlipRisk(Presentable):
         return f"SlipRisk({self.probability.value:.3g}{band}, model {self.model}{outside})"
 
 
+def slip_chances(
+    acof: Array,
+    rcof: RcofPopulation,
+    model: SlipModel,
+    normal: Callable[[str], Array] | None = None,
+) -> Array:
+    """Return the slip probability of the population in each draw of what is not known, (n,).
+
+    Every answer to "how often does a person slip here" averages these: ``run``, ``risk``, ``slip``
+    and ``choose``.
+
+    Parameters:
+        acof: Draws (n,) of the available friction; below 0 counts as 0.
+        rcof: Required friction of the population, on a slope ``rcof.on_slope``.
+        model: A slip model. One without ``drawn`` is taken as exact.
+        normal: Standard normal draws (n,) by name, of the model's constants; None draws them.
+    """
+    drawn = np.maximum(np.asarray(acof, dtype=float), 0.0)
+    known = getattr(model, "drawn", None)
+    if known is None:
+        return np.asarray(model.population(drawn, rcof.mean, rcof.sd))
+    return known(drawn, rcof.mean, rcof.sd, normal or _named(drawn.size))
+
+
+def mean_of_draws(chances: Array, **rest: Any) -> SourcedValue:
+    """Return a probability as the mean of its draws (n,), with their spread and 95 % interval."""
+    low, high = (float(end) for end in np.quantile(chances, [0.025, 0.975]))
+    spread = float(np.std(chances, ddof=1))
+    return SourcedValue(
+        float(np.mean(chances)), "1", uncertainty=spread, interval=(low, high), **rest
+    )
+
+
 def slip_risk(
     acof: SourcedValue | ArrayLike,
     *,
@@ -78,8 +115,8 @@ def slip_risk(
     Returns:
         SlipRisk: For one ACOF; for an array a list of them, nested as the array is.
 
-    The band holds the uncertainty of ACOF (cut at 0) alone: not that of the model, whose
-    standard errors the report does not print, nor that of the population.
+    The band holds the uncertainty of ACOF (cut at 0) and how far publications differ in the model's
+    constants; not that of the population.
 
     Raises:
         InputError: ACOF not determined, negative or not finite.
@@ -99,44 +136,27 @@ def slip_risk(
     if acof.value is None:
         raise InputError(f"the available friction was not determined: {acof.reason}", where="acof")
     middle = float(chosen.population(acof.value, rcof.mean, rcof.sd))
-    low = high = spread = None
-    expected = middle
-    if samples is not None:
-        drawn = np.maximum(np.asarray(samples, dtype=float), 0.0)
-        values = chosen.population(drawn, rcof.mean, rcof.sd)
-        low, high = (float(p) for p in np.quantile(values, [0.025, 0.975]))
-        expected, spread = float(np.mean(values)), float(np.std(values, ddof=1))
-    elif acof.uncertainty is not None:
-        if not math.isfinite(acof.uncertainty):
-            raise InputError("the uncertainty is not finite", where="acof")
-        ends = np.maximum(acof.value + _Z95 * acof.uncertainty * np.array([1.0, -1.0]), 0.0)
-        low, high = (float(p) for p in chosen.population(ends, rcof.mean, rcof.sd))
-        z = np.linspace(-6.0, 6.0, _NODES)
-        weight = np.exp(-0.5 * z**2) / np.exp(-0.5 * z**2).sum()
-        values = chosen.population(
-            np.maximum(acof.value + acof.uncertainty * z, 0.0), rcof.mean, rcof.sd
-        )
-        expected = float(values @ weight)
-        spread = math.sqrt(max(float((values - expected) ** 2 @ weight), 0.0))
     assumptions = list(chosen.assumptions)
     if rcof.assumed:
         assumptions.append(
             f"Required friction {rcof.mean:g} with a standard deviation of {rcof.sd:g} "
             f"({rcof.source})."
         )
+    about: dict[str, Any] = {
+        "source": chosen.source,
+        "assumed": acof.assumed or rcof.assumed,
+        "note": "spread of the available friction and of the model's constants",
+    }
+    drawn = acof_draws(acof, samples)
+    if drawn is None:
+        reason = "the available friction came without one"
+        probability = SourcedValue(middle, "1", reason=reason, **about)
+    else:
+        probability = mean_of_draws(slip_chances(drawn, rcof, chosen), **about)
     return SlipRisk(
-        probability=SourcedValue(
-            expected,
-            "1",
-            source=chosen.source,
-            uncertainty=spread,
-            reason="" if spread is not None else "the available friction came without one",
-            assumed=acof.assumed or rcof.assumed,
-            note="spread of the available friction alone",
-            interval=None if low is None or high is None else (low, high),
-        ),
-        low=low,
-        high=high,
+        probability=probability,
+        low=probability.interval and probability.interval[0],
+        high=probability.interval and probability.interval[1],
         at_best_estimate=middle,
         model=chosen.name,
         rcof=rcof,
@@ -145,17 +165,44 @@ def slip_risk(
     )
 
 
+def acof_draws(acof: SourcedValue, samples: ArrayLike | None = None) -> Array | None:
+    """Return draws (n,) of an available friction; None where its spread is not known.
+
+    Without ``samples`` it is normal, by one value of each of ``DRAWS`` equally likely strata.
+    """
+    if samples is not None:
+        return np.asarray(samples, dtype=float)
+    if acof.uncertainty is None or acof.value is None:
+        return None
+    if not math.isfinite(acof.uncertainty):
+        raise InputError("the uncertainty is not finite", where="acof")
+    middle = ndtri((np.arange(DRAWS) + 0.5) / DRAWS)
+    order = np.random.default_rng(0).permutation(DRAWS)
+    return acof.value + acof.uncertainty * middle[order]
+
+
+def _named(count: int) -> Callable[[str], Array]:
+    return lambda name: normal_draws(0, name, count)
+
+
 def needed_acof(
-    risk: float, *, rcof: RcofPopulation = ADULTS_LEVEL_WALKING, model: SlipModel | None = None
+    risk: float,
+    *,
+    rcof: RcofPopulation = ADULTS_LEVEL_WALKING,
+    model: SlipModel | None = None,
+    acof: SourcedValue | None = None,
+    samples: ArrayLike | None = None,
 ) -> float:
     """Return the ACOF at which a step of the population slips with probability ``risk``.
 
-    Solves P(ACOF) = risk, where P falls with ACOF; to 1e-12.
+    Solves P(ACOF) = risk, where P falls with ACOF; to 1e-9. An ``acof`` with a spread keeps it, as
+    a share of its value: P is then the mean over its draws, as ``slip_risk`` gives it.
 
     Parameters:
         risk: Target probability, above 0 and below 1.
         rcof: Required friction of the population.
         model: A published model; None takes ``ReportG6``.
+        acof, samples: The present friction as ``slip_risk`` takes it; None is known exactly.
 
     Raises:
         InputError: A risk outside (0, 1), or one that not even no friction (or a COF of 5) reaches.
@@ -168,9 +215,14 @@ def needed_acof(
     if not 0 < risk < 1:
         raise InputError(f"{risk:g}", where="risk", allowed="above 0 and below 1")
     chosen: SlipModel = ReportG6() if model is None else model
+    drawn = None if acof is None or not acof.value else acof_draws(acof, samples)
+    shares = None if drawn is None or acof is None else drawn / float(acof.value or 1.0)
 
-    def excess(acof: float) -> float:
-        return float(chosen.population(acof, rcof.mean, rcof.sd)) - risk
+    def excess(value: float) -> float:
+        if shares is None:
+            return float(chosen.population(value, rcof.mean, rcof.sd)) - risk
+        scaled = np.clip(value * shares, 0.0, LARGEST_ACOF)
+        return float(np.mean(slip_chances(scaled, rcof, chosen))) - risk
 
     if excess(0.0) < 0 or excess(LARGEST_ACOF) > 0:
         raise InputError(
@@ -178,4 +230,4 @@ def needed_acof(
             where="risk",
             remedy="Check the required friction of the population",
         )
-    return float(root_scalar(excess, bracket=(0.0, LARGEST_ACOF), method="brentq", xtol=1e-12).root)
+    return float(root_scalar(excess, bracket=(0.0, LARGEST_ACOF), method="brentq", xtol=1e-9).root)

@@ -74,8 +74,10 @@ def check_setup(
 def check_times(settings: SolverSettings) -> None:
     """Refuse a run that ends before its load is up."""
     positive(settings.rise_time, "settings.rise_time", "s")
+    if settings.end_time is None:
+        return
     positive(settings.end_time, "settings.end_time", "s")
-    if settings.end_time < settings.rise_time and not settings.steady:
+    if settings.end_time < settings.rise_time:
         raise InputError(
             f"the run ends at {settings.end_time} s, before the load is up",
             where="settings.end_time",

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
+import scipy.sparse as sp
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -32,10 +34,12 @@ from ._kernels.elastic import (
     influence_from_symbol,
     wavenumbers,
 )
+from .long_waves import Body, BodyCorrection, LongWaves, body_correction
 
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
 BOX_THICKNESSES = 16.0  # side of the box on which a layer's influence coefficients are found
+LEAST_OWN = 0.05  # of the layers' self compliance is left by what the long waves take
 THINNEST = 0.1  # share of the outsole left above the deepest profile
 REACHED = 1e-3
 """m: a channel deeper than this neither touches the floor nor holds a film (pools: 0.6 mm)."""
@@ -73,6 +77,8 @@ class ConvolutionCompliance:
     ) -> None:
         """``modulus`` (E / (1 - nu^2), Pa) is that of the half-space which short waves meet."""
         self._symbol = symbol
+        self._long_waves: tuple[LongWaves, ...] = ()
+        self.body: BodyCorrection | None = None
         self._modulus = modulus
         plain = np.ones(shape)
         self._weights = np.stack([plain if weight is None else weight for _, weight in parts])
@@ -100,7 +106,44 @@ class ConvolutionCompliance:
     def apply(self, pressure: Array) -> Array:
         """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
         weights = self._weights
-        return np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
+        risen = np.einsum("kij,kij->ij", weights, self._convolution(weights * pressure))
+        for correction in self._long_waves:
+            risen += correction.apply(pressure)
+        return risen
+
+    def corrected(
+        self, body: BodyCorrection | None, sole: SoleMap, plan: Mask
+    ) -> ConvolutionCompliance:
+        """Return the compliance with the long waves of its body put right; itself for None."""
+        if body is None:
+            return self
+        result = self.plus(body.on(sole, plan))
+        result.body = body
+        return result
+
+    def plus(self, long_waves: LongWaves) -> ConvolutionCompliance:
+        """Return the compliance with one more correction of its long waves."""
+        result = copy(self)
+        result._long_waves = (*self._long_waves, long_waves)
+        own = self._self + long_waves.own(self._self.shape)
+        result._self = np.maximum(own, LEAST_OWN * self._self)
+        return result
+
+    def under_hats(self, hats: sp.csr_matrix) -> Array:
+        """Return B^T C B (m/Pa) of fields B (cells, n), in single precision."""
+        shape = self._self.shape
+        loaded = (np.diff(hats.indptr) > 0).reshape(shape)
+        rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        cells = np.arange(loaded.size).reshape(shape)[box]
+        near: Any = hats[cells.ravel()]
+        fields: Any = sp.csc_matrix(near)
+        part = self.within(box, np.float32)
+        risen = np.empty((cells.size, hats.shape[1]))
+        for k in range(hats.shape[1]):
+            field = fields[:, [k]].toarray().reshape(cells.shape).astype(np.float32)
+            risen[:, k] = part.apply(field).ravel()
+        return fields.T @ risen
 
     def within(self, box: Box, dtype: Any = float) -> ConvolutionCompliance:
         """Return the compliance between the cells of a box, whose cost is that of the box.
@@ -108,8 +151,10 @@ class ConvolutionCompliance:
         ``dtype`` is the precision of the transforms.
         """
         part = object.__new__(ConvolutionCompliance)
-        part._symbol, part._self = self._symbol, self._self[box]
+        part._symbol, part._self, part.body = self._symbol, self._self[box], self.body
         part._modulus = self._modulus
+        shape = self._self.shape
+        part._long_waves = tuple(long.within(shape, box, dtype) for long in self._long_waves)
         part._weights = self._weights[:, *box].astype(dtype)
         part._convolution = self._convolution.within(part._self.shape, dtype)
         return part
@@ -182,6 +227,7 @@ def layered_compliance(
     midsole_thickness: float | None = None,
     midsole_poisson_ratio: float = 0.3,
     free_edges: bool = True,
+    known: BodyCorrection | None = None,
 ) -> ConvolutionCompliance:
     """Return the compliance of an outsole layer, its tread and the midsole under it.
 
@@ -195,6 +241,8 @@ def layered_compliance(
             rigid foot; both None for none. A Poisson's ratio of 0.3 stands for a foam (assumed).
         free_edges: Let the plan form and the lugs bulge at their edges. Without it the layer is
             endless and pressure peaks at edges are too high.
+        known: ``body`` of the compliance of another map of the same shoe, whose elements serve this
+            one too; None solves them.
 
     Bonded layer by its Fourier symbol; a midsole adds its own symbol, attenuated by
     (1 + k T) exp(-k T) through the outsole. Free edges: the part of the response that a block of
@@ -203,7 +251,9 @@ def layered_compliance(
     height at each place, more near a free side than in the middle. Lugs stand in series on the
     layer, which feels what of a wave of pressure gets through their mean height; where lugs are
     worn down to less of it, and in channels worn nearly through, it feels short waves too. Slits
-    (``SoleMap.slits``) are free sides of the lugs as far as they are deep and open.
+    (``SoleMap.slits``) are free sides of the lugs as far as they are deep and open. With free edges
+    the long waves of the body above the lugs are put right by elements of its real shape
+    (``long_waves``).
     """
     _check_elastic(modulus, poisson_ratio)
     _check_positive(thickness, "thickness")
@@ -255,13 +305,15 @@ def layered_compliance(
 
     block = influence(footprint)
     plan_weight = balanced_weights(block, plan, give)
+    base: list[tuple[Array, Array | None]] = [(influence(rest), None), (block, plan_weight)]
+    layers = ConvolutionCompliance(shape, base, lambda q: rest(q) + footprint(q), modulus=plane)
+    soft = None
+    if midsole_modulus is not None and midsole_thickness is not None:
+        soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
+    real = Body(sole, plan, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+    correction = body_correction(real, layers.under_hats, known)
     if depth == 0.0:
-        return ConvolutionCompliance(
-            shape,
-            [(influence(rest), None), (block, plan_weight)],
-            lambda q: rest(q) + footprint(q),
-            modulus=plane,
-        )
+        return layers.corrected(correction, sole, plan)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -286,7 +338,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    )
+    ).corrected(correction, sole, plan)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

@@ -21,8 +21,11 @@ from .problem import Problem, State
 
 EASY = 7  # Newton steps below which the time step grows
 GROWTH = 2.0
+STILL, FASTER = 3, 4.0  # Newton steps at most on the way to a steady state, and growth then
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
+BEARS = 1e3  # Pa, of a film that is no edge of the pool: a pocket, which pressure may lift above it
+TOUCHES = 20.0  # times the decay of the asperities' pressure, a gap across which they may touch
 LETS_GO = 1.05  # times the pool depth; without it a cell at the brink flips at every step
 ROOM = 1.3  # times the cells needed now, beyond which they are chosen anew
 MARGIN = 3  # cells around the pool that may come into contact within a step
@@ -57,7 +60,8 @@ class Counts:
 class Demand:
     """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m.
 
-    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters.
+    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters;
+    ``settles``: nothing changes but the contact, on its way to a steady state.
     """
 
     load: float
@@ -65,6 +69,7 @@ class Demand:
     clearance: Array
     tolerance: float
     leaps: bool
+    settles: bool = False
 
 
 class March:
@@ -92,6 +97,7 @@ class March:
         self._pool_depth = pool_depth
         self._shortest = first_step * SHORTEST
         self._cells: Cells | None = None
+        self._settling: tuple[State, State] | None = None  # before the last two steps
         self._lugs = inlet
         self._edges: dict[bool, LeadingEdges] = {}  # by the way that the floor moves
 
@@ -112,8 +118,11 @@ class March:
         """
         limited = self.step > most
         duration = min(self.step, most)
+        start = self.state
         while True:
             demand = demand_after(duration)
+            if demand.settles and self._settling is not None:
+                start = _calmed(*self._settling, self.state)
             problem = replace(
                 self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
             )
@@ -121,9 +130,10 @@ class March:
             gap = self.state.gap
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
-            film = low = _film_mask(problem, gap, self._pool_depth, self.film)
+            film = low = _film_mask(problem, gap, self._pool_depth, self._kept)
             if problem.drained is not None:  # no film, but they touch the floor
                 low = film | (problem.drained & (gap < self._pool_depth))
+            low = low | (gap < 1.5 * TOUCHES * problem.decay)  # out of a thin pool
             near = gap < self._pool_depth + DEEP
             self._cells = _cells(problem, self._fit, self._cells, low, near)
             self.counts.cells = max(self.counts.cells, self._cells.size)
@@ -138,8 +148,8 @@ class March:
                 content=self._content()[cells.numbers],
                 tolerance=demand.tolerance,
                 leaps=demand.leaps,
-                upstream=self._upstream(problem, cells),
-                inlet=self._inlet(problem, cells),
+                upstream=self._upstream(problem, cells, start),
+                inlet=self._inlet(problem, cells, start),
                 tick=tick,
             )
             self.counts.newton += attempt.newton
@@ -147,10 +157,15 @@ class March:
             self.residuals = attempt.residuals
             state = attempt.state and cells.on_whole(attempt.state, problem, self._whole)
             # it must not touch the floor outside the cells of the step
-            if state is not None and not (state.gap[~cells.mask] < 20 * problem.decay).any():
+            beside = TOUCHES * problem.decay
+            if state is not None and not (state.gap[~cells.mask] < beside).any():
+                first = self.state if self._settling is None else self._settling[1]
+                self._settling = (first, self.state) if demand.settles else None
                 self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1
-                grown = duration * GROWTH if attempt.newton < EASY else duration
+                grown = duration * (GROWTH if attempt.newton < EASY else 1.0)
+                if demand.settles and attempt.newton <= STILL:
+                    grown = duration * FASTER
                 # a step cut short by the end of a stage says nothing against longer ones
                 self.step = max(grown, self.step) if limited else grown
                 return duration
@@ -160,7 +175,13 @@ class March:
             if duration < self._shortest:
                 return 0.0
 
-    def _upstream(self, problem: Problem, cells: Cells) -> Upwinding | None:
+    @property
+    def _kept(self) -> Mask:
+        """Cells that keep their film a little longer; ones that bear keep it however high."""
+        brink = self.state.gap < LETS_GO * self._pool_depth
+        return self.film & (brink | (self.state.fluid > BEARS))
+
+    def _upstream(self, problem: Problem, cells: Cells, start: State) -> Upwinding | None:
         """Return how far the faces of the cells lean upstream; None on a dry floor.
 
         From the gap at the start of the step: so it stays out of the Newton matrix.
@@ -168,26 +189,26 @@ class March:
         if problem.viscosity is None:
             return None
         rows = problem.cells
-        start = np.clip(self.state.gap, SMALLEST_GAP, problem.largest_gap)
+        gap = np.clip(start.gap, SMALLEST_GAP, problem.largest_gap)
         carried = 0.5 * abs(problem.wall_speed) * rows.spacing * rows.width
         lean = leaning(
             rows,
-            start,
+            gap,
             rows.width,
             carried * problem.compliance.self_compliance,
-            problem.conductance(start).value,
+            problem.conductance(gap).value,
             backward=problem.wall_speed < 0,
         )
         return Upwinding(*(part[cells.x_faces] for part in lean))
 
-    def _inlet(self, problem: Problem, cells: Cells) -> Inlet | None:
+    def _inlet(self, problem: Problem, cells: Cells, start: State) -> Inlet | None:
         """Return what edges of lugs let in, from the state at the start of the step."""
         if self._lugs is None or problem.viscosity is None:
             return None
         rows, backward = problem.cells, problem.wall_speed < 0
         if backward not in self._edges:
             self._edges[backward] = LeadingEdges(self._lugs, rows, backward=backward)
-        inlet = self._edges[backward].inlet(problem, self.state, rows.west.size)
+        inlet = self._edges[backward].inlet(problem, start, rows.west.size)
         return Inlet(*(part[cells.x_faces] for part in inlet))
 
     def _content(self) -> Array:
@@ -197,11 +218,24 @@ class March:
         return np.where(self.film, self.state.fraction * held, pool)
 
 
+def _calmed(first: State, before: State, now: State) -> State:
+    """Return a state whose pressures and gaps lie half a step back where they swing.
+
+    What a step takes from its start (faces that lean, edges that let in) overshoots the steady
+    state when steps are longer than the memory of the film: each step swings to the other side.
+    """
+    calmed = {}
+    for name in ("pressure", "gap", "fluid"):
+        one, two, three = (getattr(state, name) for state in (first, before, now))
+        calmed[name] = np.where((three - two) * (two - one) < 0, 0.5 * (two + three), three)
+    return replace(now, **calmed)
+
+
 def _film_mask(problem: Problem, gap: Array, pool_depth: float, before: Mask | None) -> Mask:
     """Return the cells that the pool reaches; one that held film lets go a little later."""
     film = gap < pool_depth
     if before is not None:
-        film |= before & (gap < LETS_GO * pool_depth)
+        film |= before
     film &= problem.clearance < 0.5
     if problem.drained is not None:
         film &= ~problem.drained

@@ -16,7 +16,7 @@ from underfoot.shoe.geometry import SoleMap
 from .compliance import Compliance
 from .lug_edges import LugInlet
 from .sole_state import SoleState, SolverSettings
-from .solver import SoleContact, longest_step, passing_time, with_history
+from .solver import SoleContact, held_on, longest_step, passing_time, with_history
 from .stepping import Reporting, SlidingSole
 
 STEPS = 3.0
@@ -80,6 +80,8 @@ def solve_history(
 ) -> SoleContact:
     """Return the contact and film at the end of a history, with what it went through.
 
+    ``later`` holds what drives the sole at the end.
+
     Parameters:
         sole, compliance, law, viscosity, settings, progress, watch, inlet: As in ``SlidingSole``.
         history: Load, speed and shoe angle against time.
@@ -120,4 +122,4 @@ def solve_history(
         if state.status is not Status.CONVERGED:
             break
     assert state is not None  # a history has two points or more
-    return with_history(state, sliding)
+    return held_on(with_history(state, sliding), sliding)

@@ -104,14 +104,27 @@ def row_compliance(compliance: Compliance, cells: RowCells, land: Mask) -> RowCo
         (weights.ravel(), (np.tile(numbers, len(weights)), squares.ravel())), (cells.size, count)
     )
     spread.eliminate_zeros()  # a square cell has its own deflection
-    short = getattr(compliance, "short_waves", None)
     near = sp.csr_matrix((cells.size, cells.size))
-    if short is not None and (cells.width < 1).any():
-        near = _near(cells, home, squares, weights, *short)
+    if (cells.width < 1).any():
+        near = _near(cells, home, squares, weights, *short_waves(compliance, cells.spacing))
     own = compliance.self_compliance.ravel()[home] * cells.width
     own *= (weights * (squares == home)).sum(axis=0)
     own += near.diagonal()
     return RowCompliance(compliance, shape, mean, spread, near, np.maximum(own, own.max() * 1e-3))
+
+
+def short_waves(compliance: Compliance, spacing: float) -> tuple[Array, float]:
+    """Return weight (nx, ny) and modulus (Pa) of the half-space that short waves meet.
+
+    As the compliance says by ``short_waves``, else 2 / (k C(k)) of its symbol C at the shortest
+    wave of cells of ``spacing`` (m).
+    """
+    known = getattr(compliance, "short_waves", None)
+    if known is not None:
+        return known
+    shortest = np.pi / spacing
+    give = float(compliance.symbol(np.array([shortest]))[0])
+    return np.ones(compliance.self_compliance.shape), 2 / (shortest * give)
 
 
 def _home(cells: RowCells, land: Mask) -> Indices:

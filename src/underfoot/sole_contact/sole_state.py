@@ -26,8 +26,7 @@ class SolverSettings:
             (assumed).
         rise_time: Time over which the load rises linearly to its full value, s (report, G.4.1: 30
             ms).
-        end_time: Time at which the result is taken, s (assumed: 90 ms of sliding under full load).
-        steady: Go on until nothing moves instead of stopping at ``end_time``.
+        end_time: Time at which the result is taken, s; None goes on until nothing moves.
         tolerance: Largest relative imbalance of volume, of load and of the cavitation condition.
         time_resolution: Steps at least that the rise takes, that the rest takes, and that the floor
             takes to pass six pieces of land (the lugs of a tread) in.
@@ -40,8 +39,7 @@ class SolverSettings:
     pool_depth: float = 0.6e-3
     start_film: float = 50e-6
     rise_time: float = 0.03
-    end_time: float = 0.12
-    steady: bool = False
+    end_time: float | None = 0.12
     tolerance: float = 1e-4
     backend: str | None = None
     most_newton: int = 40

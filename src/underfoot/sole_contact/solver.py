@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -28,12 +28,15 @@ to a fifth (docs/guide/performance.md)."""
 class SoleContact(SoleState):
     """The last instant of a run (see ``SoleState``) with its history in time and its cost.
 
-    ``instant`` is what ``solve_on`` goes on from.
+    ``instant`` is what ``solve_on`` goes on from. ``later``: what becomes of it where load, speed
+    and shoe angle are held for as long again, and for a sole's length of sliding at least; None
+    where it is the steady state, or not known.
     """
 
     history: History
     counts: Counts
     instant: Bookmark
+    later: SoleState | None = None
 
 
 @threads_limited(1)
@@ -53,7 +56,8 @@ def solve_sliding(
     """Return contact pressure, fluid pressure and film under a sole pressed and slid.
 
     The load rises linearly over ``settings.rise_time`` and stays; the result is the state at
-    ``settings.end_time``, or the steady one. Equations: ``SlidingSole``.
+    ``settings.end_time``, with what becomes of it ``later``, or the steady one. Equations:
+    ``SlidingSole``.
 
     Parameters:
         sole: Undeformed sole over the floor.
@@ -84,9 +88,7 @@ def solve_sliding(
         viscosity=viscosity,
         settings=settings,
         typical_force=normal_force,
-        reporting=Reporting(
-            progress, end_time=None if settings.steady and not dry else end, watch=watch
-        ),
+        reporting=Reporting(progress, end_time=end, watch=watch),
         inlet=inlet,
     )
     rise = settings.rise_time
@@ -100,7 +102,7 @@ def solve_sliding(
     counts = sliding.counts
     left = settings.most_time_steps - counts.time_steps - counts.rejected
     if not dry and state.status.usable and left > 0:
-        if settings.steady:
+        if end is None:
             state = sliding.settle(normal_force=normal_force, speed=speed, most_steps=left)
         elif end > rise:
             state = sliding.advance(
@@ -111,7 +113,24 @@ def solve_sliding(
                 / settings.time_resolution,
                 most_steps=left,
             )
-    return with_history(state, sliding)
+    now = with_history(state, sliding)
+    return now if dry or end is None else held_on(now, sliding)
+
+
+def held_on(now: SoleContact, sliding: SlidingSole) -> SoleContact:
+    """Return a contact with what it becomes ``later``, where all that drives the sole is held."""
+    duration = max(now.time, sliding.sliding_time(now.speed))
+    if not now.status.usable or sliding.viscosity is None:
+        return now
+    longest = longest_step(duration, passing_time(sliding.sole, now.speed))
+    sliding.close_history()
+    later = sliding.advance(
+        duration,
+        normal_force=now.normal_force,
+        speed=now.speed,
+        longest_step=longest / sliding.settings.time_resolution,
+    )
+    return replace(now, later=later if later.status.usable else None)
 
 
 def passing_time(sole: SoleMap, speed: float) -> float:
@@ -200,5 +219,8 @@ def with_history(state: SoleState, sliding: SlidingSole) -> SoleContact:
     """Return a state with the history and the cost of the sole that it comes from."""
     solved = {part.name: getattr(state, part.name) for part in fields(SoleState)}
     return SoleContact(
-        **solved, history=sliding.history, counts=sliding.counts, instant=sliding.bookmark()
+        **solved,
+        history=sliding.history,
+        counts=replace(sliding.counts),
+        instant=sliding.bookmark(),
     )

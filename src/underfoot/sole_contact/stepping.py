@@ -31,7 +31,13 @@ PASSED = (10.0, 1e-3)  # times the tolerance, at most the second: a balance that
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
-STEADY_CHANGE = 3e-4  # share of the load by which the pressures may change over such a step
+STEADY_CHANGE = 3e-4  # share of the load by which that on the film may change over such a step
+STEADY_MOVE = 3e-3  # share of the load that may change its place then
+MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
+CREEPING = 100.0  # s in which a sole slides its length, from which half the elapsed time counts
+SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
+LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
+MEMORY = 0.5  # of the time in which a sole slides its length: what a film remembers
 MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from its map's angle
 
 
@@ -128,7 +134,7 @@ class SlidingSole:
             law=law,
             viscosity=viscosity,
             wall_speed=0.0,
-            largest_gap=min(4 * settings.pool_depth, 5e-3),
+            largest_gap=min(max(4 * settings.pool_depth, LIFTED), 5e-3),
             decay=decay,
             settings=settings,
             drained=None if sole.slits is None else cells.of(sole.slits.drained),
@@ -196,27 +202,41 @@ class SlidingSole:
     ) -> SoleState:
         """Carry on at constant load and speed until nothing moves, and return that.
 
-        At rest: over a step of a quarter of the elapsed time the pressures change by less than
-        3e-4 of the load.
+        At rest: over a step of a quarter of the elapsed time, in which the sole slides its own
+        length, the load on the film changes by less than 3e-4 of the whole, and less than 3e-3 of
+        it moves to another place. Where long steps keep failing, a film is at rest that changes by
+        less than 1 % while the sole slides twice its length.
         """
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
         self._load = normal_force
         load = self._march.problem.load
-        loading = 2 * self.settings.rise_time
+        loading = max(2 * self.settings.rise_time, self._time)
+        passing, rejected = self.sliding_time(speed), self.counts.rejected
+
+        def slow() -> bool:
+            begin = self._time - (2 * passing if passing < CREEPING else 0.5 * self._time)
+            film = self.history.fluid_load
+            change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
+            least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
+            return begin > loading and change < SLOW * least
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
+            if self.counts.rejected - rejected > MOST_REJECTED and slow():
+                return True
             change = load(np.abs(after.pressure - before.pressure))
             moved = abs(load(after.fluid - before.fluid))
             return (
                 self._time > loading
-                and step > STEADY_STEP * self._time
-                and max(change, moved) < STEADY_CHANGE * normal_force
+                and step > max(STEADY_STEP * self._time, passing)
+                and moved < STEADY_CHANGE * normal_force
+                and change < STEADY_MOVE * normal_force
             )
 
-        ramp = self._ramp(LONGEST_TIME, normal_force, speed, None)
-        done = self._loop(ramp, LONGEST_TIME, math.inf, most_steps, settled)
+        longest = max(LONGEST_TIME, 100 * passing)
+        ramp = self._ramp(longest, normal_force, speed, None)
+        done = self._loop(ramp, longest, math.inf, most_steps, settled)
         return self._state(done)
 
     def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
@@ -260,6 +280,16 @@ class SlidingSole:
         march.state, march.film, march.step = state, film, first_step
         self._load, self._speed = mark.load, mark.speed
         self._leaps = True
+
+    def sliding_time(self, speed: float) -> float:
+        """Return the time (s) in which the sole slides its own length at a speed; 0 at rest."""
+        length = float(np.ptp(self.sole.x[self.sole.inside.any(axis=1)]))
+        return length / abs(speed) if speed else 0.0
+
+    def close_history(self) -> None:
+        """End the history: what comes is another that nobody watches."""
+        self.history = History()
+        self._reporting = replace(self._reporting, watch=None)
 
     def _ramp(
         self, duration: float, normal_force: float, speed: float, shoe_angle: float | None
@@ -308,9 +338,13 @@ class SlidingSole:
                 clearance = march.problem.clearance
                 if angle != self._angle:
                     clearance = self._clearance(angle)
-                leaps = self._leaps or settled is not None
+                now = self._load, self._speed, self._angle
+                settles = settled is not None
+                if (load, speed, angle) == now:  # steps longer than the memory of the film swing
+                    settles |= duration > MEMORY * self.sliding_time(speed)
                 last = settled is not None or self._time + duration > end * (1 - 1e-12)
-                return Demand(load, -speed, clearance, exact if last else passed, leaps)
+                leaps = self._leaps or settles
+                return Demand(load, -speed, clearance, exact if last else passed, leaps, settles)
 
             fraction = self._fraction(min(start + march.step, end))
             state = march.state

@@ -53,11 +53,15 @@ QUICK_DEPTHS = (0.0, 0.3e-3, 0.8e-3, 1.5e-3, 3.0e-3)
 DECIDING = (
     "shoe.heel.facet_angle",
     "interface.roughness_beyond_cutoff",
-    "motion.start_film",
     "shoe.tread.lug_width",
 )
 """Open inputs varied under treaded shoes, where others move readings near 0 by less, and with
 ``quick``."""
+ROUGHNESS_BEYOND_CUTOFF = {
+    "value": 1.5,
+    "assumed": True,
+    "source": "chosen on load and peak of the untreaded work shoe in glycerol, G.4.2",
+}
 LOAD, TRUE_LOAD, PEAK = "fluid_load_sensor", "fluid_load", "peak_fluid_pressure_sensor"
 LEAST = {LOAD: 0.01, TRUE_LOAD: 0.01, PEAK: 100.0}
 """N, Pa: smaller readings are none."""
@@ -91,7 +95,7 @@ class Condition:
 
     @cached_property
     def case(self) -> Case:
-        """The case: catalogue entries only, nothing set for this condition alone."""
+        """The case: catalogue entries and what all share, nothing set for this condition alone."""
         return Case.from_mapping(
             {
                 "file_version": 1,
@@ -100,6 +104,7 @@ class Condition:
                 "floor": {"from": FLOOR},
                 "contaminant": {"from": FLUIDS[self.fluid]},
                 "motion": {"from": SETUP},
+                "interface": {"roughness_beyond_cutoff": ROUGHNESS_BEYOND_CUTOFF},
                 "sensor": {"from": SETUP},
                 "numerics": {"cells_along": 1} if self.squares else {},
             }

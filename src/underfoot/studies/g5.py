@@ -135,7 +135,7 @@ def numbers_of(study: SlipStudy) -> dict[str, float]:
     for name, values in _columns(crossed).items():
         known = values[np.isfinite(values)]
         found[name] = float(known.mean()) if known.size else math.nan
-    found["slipped"] = study.slipped()[0]
+    found["slipped"] = float(study.of("slipped").mean())
     found["correlation"] = math.nan if (r := study.correlation()) is None else r
     rows = study.rows()
     found["last_row_change"] = float(rows[-1] / rows[0] - 1.0) if rows[0] > 0 else math.nan
@@ -353,9 +353,9 @@ def conclusions(studies: Mapping[str, SlipStudy], passages: Mapping[str, Array])
     text = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
     pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
     return (
-        f"Treaded: {100 * tread.slipped()[0]:.0f} % slip here, nobody in the report.",
-        f"Untreaded: {100 * bare.slipped()[0]:.0f} % slip. Tread takes the fluid pressure at the "
-        f"sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa with nothing else changed.",
+        f"Treaded: {100 * tread.of('slipped').mean():.0f} % slip here, nobody in the report.",
+        f"Untreaded: {100 * bare.of('slipped').mean():.0f} % slip. Tread takes the fluid pressure "
+        f"at the sensors from {pressures[0]:.0f} to {pressures[1]:.1f} kPa, all else alike.",
         f"Mean peak speed untreaded if 0.06 / 0.114 / 0.17 of the body moved: {text} m/s.",
         f"{passages['peak'].size} passages of a heel over a sensor stand behind Table 7.",
     )

@@ -98,7 +98,7 @@ def soft_ball() -> Check:
         viscosity=viscosity,
         speed=speed,
         normal_force=force,
-        settings=SolverSettings(pool_depth=1.0, start_film=2e-5, steady=True),
+        settings=SolverSettings(pool_depth=1.0, start_film=2e-5, end_time=None),
     )
     central = _usable(solved).film_thickness[np.argmin(np.abs(x)), np.argmin(np.abs(y))]
     return Check(
@@ -174,7 +174,7 @@ def inlet_of_a_worn_heel(corner: float = 30.3e-3) -> Check:
         viscosity=viscosity,
         speed=speed,
         normal_force=spacing * load,
-        settings=SolverSettings(pool_depth=pool, start_film=1e-4, steady=True),
+        settings=SolverSettings(pool_depth=pool, start_film=1e-4, end_time=None),
     )
     middle = int(np.searchsorted(square.x, corner / 2))
     return Check(

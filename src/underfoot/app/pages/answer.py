@@ -366,7 +366,11 @@ class _Answer:
         computed = [each for each in stored["changes"] if each["cof"] is not None]
         computed.sort(key=lambda each: each["slip_probability"])
         present = stored["slip_probability"]["value"]
-        better = [each for each in computed if each["slip_probability"] < present]
+        better = [
+            each
+            for each in computed
+            if each["slip_probability"] < present and each.get("does_something", True)
+        ]
         with self.help:
             title(self.text("answer.help"), 2)
             for each in better:

@@ -73,9 +73,13 @@ def soup_keys(
 
 
 @njit(cache=True)
-def shared_edges(edges: Keys) -> tuple[int, int, int]:
-    """Return how many edges of sorted keys have one face, more than two, or two turned alike."""
-    open_edges, crowded, turned = 0, 0, 0
+def shared_edges(edges: Keys) -> tuple[int, int, int, int]:
+    """Return how many edges of sorted keys have one face, more than two, or two turned alike.
+
+    More than two, as many in one direction as in the other, are bodies that touch or copies: they
+    are counted last, apart.
+    """
+    open_edges, crowded, turned, touching = 0, 0, 0, 0
     one = np.uint64(1)
     n = 0
     while n < edges.size and edges[n] == 0:
@@ -89,31 +93,41 @@ def shared_edges(edges: Keys) -> tuple[int, int, int]:
             n += 1
         if total == 1:
             open_edges += 1
+        elif total > 2 and 2 * forward == total:
+            touching += 1
         elif total > 2:
             crowded += 1
         elif forward != 1:
             turned += 1
-    return open_edges, crowded, turned
+    return open_edges, crowded, turned, touching
 
 
 @njit(cache=True, error_model="numpy")
 def overlap_lines(
     triangles: Triangles,
+    body: NDArray[np.int32],
     axes: Array,
     first: tuple[float, float],
     pitch: float,
     shape: tuple[int, int],
-) -> tuple[int, int]:
-    """Return on how many straight lines through a body its material overlaps, and of how many.
+    near: float,
+) -> tuple[int, int, int]:
+    """Return on how many straight lines a body overlaps itself, on how many faces lie double, met.
 
     Lines along the third axis, ``pitch`` apart. Along a line through a sound body the surfaces are
-    met in turn from outside and from inside; two from outside in a row mean that the surface
-    crosses itself or another body.
+    met in turn from outside and from inside; two from outside in a row, farther apart than
+    ``near``, mean that the surface crosses itself. Two faces turned opposite ways that lie nearer,
+    with nothing else beside them, are faces that lie double.
+
+    Parameters:
+        body: (n,) number of the body of each triangle; all alike: bodies that overlap count too.
+        near: In the unit of the axes.
     """
     lines = shape[0] * shape[1]
     counts = np.zeros(lines + 1, dtype=np.int64)
     height = np.empty(0)
     side = np.empty(0, dtype=np.int8)
+    owner = np.empty(0, dtype=np.int32)
     order = np.empty(0, dtype=np.int64)
     u, v, w = np.empty(3), np.empty(3), np.empty(3)
     for turn in range(2):
@@ -141,25 +155,45 @@ def overlap_lines(
                     else:
                         height[order[line]] = a * w[0] + b * w[1] + (1 - a - b) * w[2]
                         side[order[line]] = 1 if twice > 0 else -1
+                        owner[order[line]] = body[n]
                         order[line] += 1
         if turn == 0:
             counts = np.cumsum(counts)
             height = np.empty(counts[-1])
             side = np.empty(counts[-1], dtype=np.int8)
+            owner = np.empty(counts[-1], dtype=np.int32)
             order = counts[:-1].copy()
-    crossed, met = 0, 0
+    crossed, doubled, met = 0, 0, 0
     for line in range(lines):
         begin, end = counts[line], counts[line + 1]
         if begin == end:
             continue
         met += 1
-        within, bad = 0, False
-        ranks = np.argsort(height[begin:end])
+        ranks = begin + np.argsort(height[begin:end])
+        overlaps, double, whole = False, False, True
+        within = 0
         for k in range(end - begin):
-            within += side[begin + ranks[k]]
-            if within > 1 or within < -1:
-                bad = True
+            here = ranks[k]
+            within += side[here]
+            own, last = 0, -1
+            for m in range(k + 1):
+                if owner[ranks[m]] == owner[here]:
+                    own += side[ranks[m]]
+            for m in range(k + 1, end - begin):
+                if owner[ranks[m]] == owner[here]:
+                    last = m
+                    break
+            if abs(own) > 1 and last >= 0 and height[ranks[last]] - height[here] > near:
+                overlaps = True
+            if last < 0 and own != 0:
+                whole = False
+            # enters and leaves within ``near``, with free space before and behind
+            if k > 0 and within == 0 and height[here] - height[ranks[k - 1]] <= near:
+                free = k == 1 or height[ranks[k - 1]] - height[ranks[k - 2]] > near
+                free = free and (k + 1 == end - begin or height[ranks[k + 1]] - height[here] > near)
+                double = double or free
         # a line that ends within the body grazed an edge or a hole: it tells nothing
-        if bad and within == 0:
-            crossed += 1
-    return crossed, met
+        if whole:
+            crossed += int(overlaps)
+            doubled += int(double)
+    return crossed, doubled, met

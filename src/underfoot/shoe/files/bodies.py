@@ -4,11 +4,13 @@ import re
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import DataError, unknown_name
 from underfoot.core.arrays import Array, Mask
 
 from .._kernels.components import MOST_FACES, components
+from .carriers import carried
 from .floor import without_floor
 from .mesh import Mesh
 from .orientation import box_axes, tread_share
@@ -26,6 +28,7 @@ OTHER_NAMES = re.compile(
 _PLAINLY = re.compile(r"out.?sole|lauf.?sohle", re.IGNORECASE)
 _STRAY_REACH = 3.0  # sizes of the box around nearly all corners
 _STRAY_SHARE = 1e-3  # of the corners
+_ON_TABLE = 0.1  # of a plate: what stands on it
 _BIG = (0.5, 0.4)  # of the longest body's extent along and across
 _SLENDER = 3.0  # height over width: a support, no lug
 _SAME = 0.03  # relative difference of the sizes of a pair
@@ -73,10 +76,11 @@ class _Bodies:
 def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     """Return the triangles of the outsole among the bodies of a file.
 
-    In turn: corners far off all others are left out; a floor plane is cut; the bodies that the
-    user or their names tell; slender bodies (print supports) are left out; a pair is refused or
-    given as both; of bodies stacked one on the other (outsole, midsole, last) the one at the end
-    of the stack whose outer side carries the tread, with the small ones on it.
+    In turn: corners far off all others are left out; a floor plane is cut; lugs and the body that
+    carries them are one; the bodies that the user or their names tell; slender bodies (print
+    supports) are left out; a pair is refused or given as both; of bodies stacked one on the other
+    (outsole, midsole, last) the one at the end of the stack whose outer side carries the tread,
+    with the small ones on it.
 
     Raises:
         InputError: No body of the name asked for.
@@ -91,9 +95,14 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     if mesh.body is None or np.ptp(mesh.body) == 0:
         _refuse_unknown(mesh, settings, where)
         return Found((mesh,), away, tuple(remarks))
-    bodies = _measured(mesh)
-    keep, told = _named(bodies, settings, where)
+    group = np.arange(len(mesh.bodies)) if settings.solid is not None else carried(mesh)
+    keep, told = _named(_measured(mesh), group, settings, where)
     remarks += told
+    mesh, keep, told = _joined(mesh, group, keep)
+    remarks += told
+    if mesh.body is None or np.ptp(mesh.body) == 0:
+        return Found((mesh,), away, tuple(remarks))
+    bodies = _measured(mesh)
     others = ~keep
     for without in (_without_supports, _without_plates):
         keep, told = without(bodies, keep)
@@ -108,6 +117,27 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     if down is None and others.any() and keep.any():
         down = _away(bodies, keep, others)
     return Found((_part(mesh, keep),), away if down is None else down, tuple(remarks))
+
+
+def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask, list[str]]:
+    """Return the mesh with each group of bodies as one, which are kept, and what was joined."""
+    assert mesh.body is not None
+    first, number = np.unique(group, return_inverse=True)
+    if first.size == group.size:
+        return mesh, keep, []
+    names, told = [], []
+    for each in range(first.size):
+        members = [mesh.bodies[n] for n in np.flatnonzero(number == each)]
+        names.append(" + ".join(dict.fromkeys(filter(None, members))))
+        if len(members) > 1:
+            listed = f": {_listed(named)}" if (named := [n for n in members if n]) else ""
+            told.append(
+                f"{len(members)} bodies are one sole, lugs and what they hang on{listed}; told by "
+                "the contact of their faces."
+            )
+    together = np.bincount(number, keep) > 0
+    body = np.asarray(number[mesh.body], dtype=np.int32)
+    return replace(mesh, body=body, bodies=tuple(names)), together, told
 
 
 def _part(mesh: Mesh, keep: Mask) -> Mesh:
@@ -131,7 +161,7 @@ def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
     if count == 0 or count > _STRAY_SHARE * corners.shape[0]:
         return mesh, []
     faces = off.reshape(-1, 3).any(axis=1)
-    places = np.unique(corners[off], axis=0)
+    places = np.unique(corners[off], axis=0) + np.array(mesh.origin)
     place = ", ".join(f"{value:.6g}" for value in places[0])
     remark = (
         f"{places.shape[0]} stray corner{'s' if places.shape[0] > 1 else ''} far off all others, "
@@ -189,8 +219,17 @@ def _matching(names: tuple[str, ...], wanted: str) -> Mask:
     return exact if exact.any() else np.array([wanted in name for name in folded])
 
 
-def _named(bodies: _Bodies, settings: FileSettings, where: str) -> tuple[Mask, list[str]]:
-    """Return the bodies that the user or their names tell to be outsole; all if none are told."""
+def _named(
+    bodies: _Bodies, group: NDArray[np.intp], settings: FileSettings, where: str
+) -> tuple[Mask, list[str]]:
+    """Return the bodies that the user or their names tell to be outsole; all if none are told.
+
+    A body that is one with another (the same number in ``group``) is told with it.
+    """
+
+    def with_group(told: Mask) -> Mask:
+        return np.isin(group, group[told])
+
     sized = bodies.area > 0
     if settings.solid is not None:
         keep = _matching(bodies.names, settings.solid) & sized
@@ -200,6 +239,7 @@ def _named(bodies: _Bodies, settings: FileSettings, where: str) -> tuple[Mask, l
         return keep, [_taken(bodies, keep, sized, "as chosen")]
     other = np.array([_other(name) for name in bodies.names])
     by_name = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
+    by_name, other = with_group(by_name), ~with_group(~other)
     if (by_name & sized).any():
         if (sized & ~by_name).any():
             return by_name & sized, [_taken(bodies, by_name & sized, sized, "by name")]
@@ -253,9 +293,9 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     length, width, height = bodies.size.T
     box = 2 * (length * width + (length + width) * height)
     plates = keep & (np.abs(bodies.area - box) < _BOX * box) & (height < _PLATE * width)
-    # loose lugs are no sole without the plate that they stand on
+    # a base is one with its lugs, so that what is left of plates carries nothing
     others = bodies.size[keep & ~plates, :2].max(axis=0, initial=0.0)
-    plates &= (others > _BIG[1] * bodies.size[:, :2]).all(axis=1)
+    plates &= (others > _ON_TABLE * bodies.size[:, :2]).all(axis=1)
     plates &= (bodies.size[:, :2] > _BIG[1] * others).all(axis=1)
     if not plates.any():
         return keep, []

@@ -5,7 +5,7 @@ import numpy as np
 from underfoot.core.arrays import Array, Mask
 
 from .._kernels.covering_discs import local_width
-from .._kernels.regions import carried_on, grown, pieces, rim, without_holes
+from .._kernels.regions import carried_on, distance_to, grown, pieces, rim, without_holes
 from ..tread_measures import TreadMap
 
 LARGEST_HOLE = 1e-4
@@ -20,6 +20,7 @@ _FAR_SIDE = 1.5e-3  # m above the next two cells
 _LEDGE = 1e-3  # m above what lies beside it
 _WIDEST_LEDGE = 12e-3  # m
 _BESIDE = 2e-3  # m from its edge
+_ALONG = 0.35  # of the sides of a ledge: along the rim
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
 
 
@@ -41,7 +42,8 @@ def _without_stray_parts(height: Array, spacing: float) -> tuple[Array, list[str
         return height, []
     sizes = np.bincount(parts.ravel())
     sizes[0] = 0
-    keep = sizes >= SMALLEST_PART * sizes.sum()
+    # many parts alike are no accident
+    keep = (sizes >= min(SMALLEST_PART * sizes.sum(), sizes.max() / 2)) & (sizes > 0)
     gone = int(count - np.count_nonzero(keep))
     area = float(sizes[~keep].sum()) * spacing**2 * 1e6
     height = np.where(keep[parts], height, np.nan)
@@ -152,7 +154,13 @@ def without_ledges(
         high_up = inside & ~land & (height - tread.base > 1.2 * channel_depth + _LEDGE)
     high_up &= local_width(high_up, spacing) < _WIDEST_LEDGE
     numbers, _ = pieces(high_up)
-    gone |= np.isin(numbers, np.setdiff1d(numbers[rim(inside, 3)], [0]))
+    # along a ledge is as much rim as tread; channels that open at the rim have lugs on both sides
+    count = int(numbers.max()) + 1
+    open_sides = np.bincount(numbers[rim(inside, 1)], minlength=count)
+    walls = np.bincount(numbers[distance_to(land) <= 1.0], minlength=count)
+    ledge = (open_sides > _ALONG * (open_sides + walls)) & (open_sides > 0)
+    ledge[0] = False
+    gone |= ledge[numbers]
     share = np.count_nonzero(gone) / np.count_nonzero(inside)
     cut_open &= land & ~gone
     if share == 0 or share > _MOST_LEDGE:

@@ -10,6 +10,7 @@ from underfoot.core.arrays import Array, Mask
 
 from .._kernels.components import MOST_FACES, components
 from .._kernels.regions import grown, shrunk, without_specks
+from .carriers import spanned
 from .mesh import Mesh
 from .orientation import box_axes, levelled
 from .settings import FileSettings
@@ -53,7 +54,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
         if not rest.any():
             continue
         solid = float(np.median((seen.highest - seen.lowest)[rest])) > 2 * half
-        hull = _spanned(rest)
+        hull = spanned(rest)
         plan = rest if solid else hull
         beyond = np.pad(flat & ~plan, 2, mode="edge")
         beyond = grown(shrunk(beyond, 1), 1)[2:-2, 2:-2] & ~plan
@@ -94,14 +95,6 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     begin = "A" if settings.cut_floor else "Assumed: a"
     told = f"{begin} {what} {how} ({np.count_nonzero(cut)} faces).{lost}"
     return replace(mesh, triangles=mesh.triangles[~cut], body=body), down, [told]
-
-
-def _spanned(mask: Mask) -> Mask:
-    """Return the cells between cells of the mask across, then those between these along."""
-    for axis in (1, 0):
-        back = np.flip(np.logical_or.accumulate(np.flip(mask, axis), axis), axis)
-        mask = np.logical_or.accumulate(mask, axis) & back
-    return mask
 
 
 def _within(points: NDArray[np.floating], seen: View, region: Mask) -> Mask:

@@ -5,9 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 
-from .._kernels.regions import without_holes
+from .._kernels.covering_discs import local_width
+from .._kernels.regions import pieces, without_holes
+from ..tread_measures import WIDEST_CHANNEL
+from .carriers import spanned
 from .view import Soundness
 
 NARROWEST, WIDEST = 0.020, 0.150
@@ -28,6 +31,7 @@ MOST_OPEN = 0.15
 """Share of holes in the plan form."""
 ROUGHEST = 0.5e-3
 """Noise from cell to cell beyond which there is no surface, m."""
+_ALL_LAND, _SEVERAL, _OPEN_AROUND = 0.99, 3, 0.08
 _FLAT = 0.02e-3  # m: a plane
 _LONG = 0.200
 
@@ -89,6 +93,31 @@ def check_tread(shape: Shape, has_tread: bool, where: str) -> None:
             allowed=f"a tread, or at most {THICK * 1e3:g} mm",
             remedy='If it is an outsole without tread, state its ground side: --down "-z" (in a '
             'case: down = "-z")',
+        )
+
+
+def check_carried(inside: Mask, land: Mask, spacing: float, where: str) -> None:
+    """Refuse lugs without the body that carries them: all land, with open channels around.
+
+    Raises:
+        DataError: Three parts and more, all land, with gaps as narrow as channels between them.
+    """
+    if np.count_nonzero(land) < _ALL_LAND * np.count_nonzero(inside):
+        return
+    _, parts = pieces(inside, diagonal=True)
+    gaps = spanned(inside) & ~inside
+    if parts < _SEVERAL or not gaps.any():
+        return
+    narrow = gaps & (local_width(gaps, spacing) < WIDEST_CHANNEL)
+    share = np.count_nonzero(narrow) / np.count_nonzero(inside)
+    if share > _OPEN_AROUND:
+        raise DataError(
+            f"its {parts} parts are all land, with open channels around: the body that carries "
+            "them is not among those that were taken",
+            where=where,
+            allowed="lugs that touch the body they hang on",
+            remedy="Export lugs and base together, touching or as one body; --solid takes all "
+            "bodies whose name holds a word",
         )
 
 

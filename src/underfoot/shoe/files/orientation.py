@@ -28,6 +28,9 @@ OFF_CENTRE = 0.005
 _WHOLE = 2.2  # lengths over width: a longer plan form has both ends of a sole
 _WIDEST_HEEL = 0.085  # m
 _CUT_PLACES, _CUT = (4e-3, 16e-3), 0.8  # m from an end; width there over that farther in
+_END = 0.25  # of the length: where its end is looked for
+_LINE_OVER, _LINE = 0.8, 0.02  # of the width: over which, and within which, an end is a line
+_MOST_OBLIQUE = math.tan(math.radians(25))
 _BEND = 0.006  # of the length
 _BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
 _NEAR_FLOOR = 2e-3  # m
@@ -259,15 +262,38 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
     )
 
 
-def cut_ends(plan: Mask, axis: int, spacing: float) -> tuple[bool, bool]:
+def cut_ends(plan: Mask, axis: int, spacing: float, *, oblique: bool = True) -> tuple[bool, bool]:
     """Return whether the near and the far end along ``axis`` are cut straight, not rounded.
 
-    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it.
+    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it; or, with
+    ``oblique``, its rim there is a line, up to 25 degrees off square, over 80 % of its width within
+    2 % of it.
     """
     widths = np.trim_zeros(plan.sum(axis=1 - axis))
     near, far = (min(round(place / spacing), widths.size - 1) for place in _CUT_PLACES)
-    low, high = (bool(each[near] > _CUT * each[far]) for each in (widths, widths[::-1]))
+    square = [bool(each[near] > _CUT * each[far]) for each in (widths, widths[::-1])]
+    if not oblique:
+        return square[0], square[1]
+    turned = plan if axis == 0 else plan.T
+    low, high = (square[0] or _is_line(turned)), (square[1] or _is_line(turned[::-1]))
     return low, high
+
+
+def _is_line(plan: Mask) -> bool:
+    """Return whether the rim at the first rows is a line, square or oblique."""
+    columns = np.flatnonzero(plan.any(axis=0))
+    rim_row = np.argmax(plan[:, columns], axis=0).astype(np.float64)
+    end = rim_row < _END * plan.shape[0]
+    columns, rim_row, width = columns[end], rim_row[end], columns.size
+    near, off, slope = np.ones(columns.size, dtype=bool), np.zeros(columns.size), 0.0
+    for _ in range(5):  # the sides of the end fall out
+        if np.count_nonzero(near) < 3:
+            return False
+        slope, level = np.polyfit(columns[near], rim_row[near], 1)
+        off = np.abs(rim_row - slope * columns - level)
+        near = off < max(_LINE * width, np.quantile(off, _LINE_OVER)) + 1e-9
+    near = off < _LINE * width + 1
+    return bool(abs(slope) < _MOST_OBLIQUE and near.sum() > _LINE_OVER * end.sum() > width / 3)
 
 
 def off_centre(plan: Mask, axis: int) -> float:

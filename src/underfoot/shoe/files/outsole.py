@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
 
+from .._kernels.components import MOST_FACES, components
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
 from ..tread_measures import (
@@ -24,7 +26,7 @@ from .bodies import found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
 from .mesh import Mesh
-from .no_sole import TALL, Shape, check_sole, check_surface, check_tread
+from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
 from .view import Soundness, View, extents, soundness, view
@@ -35,6 +37,8 @@ _LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
 _MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
 _OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
 _SHEET = 0.05e-3
+_SAME_PLACE = 20e-6  # m: faces nearer than this lie on each other
+_MOST_APART = 0.02
 _PLAINLY_OFF = 2.0  # off centre across over that along: a piece is broader than long
 _LONGEST_LAG = 1.5e-3  # m: walls stand farther apart
 _POINTS_NOISE = math.sqrt(2.0)  # a height within a face weighs three points: mean sum w^2 = 1/2
@@ -150,7 +154,7 @@ def _outsole(
     if stated is None and chosen.unit == "auto":
         _, unit_remark = length_unit(whole_length / unit, width / unit, where=where)
     remarks += [unit_remark, *side_remarks, *level_remarks, *sound.remarks()]
-    remarks += [*_view_remarks(seen, sound, mesh), *repaired]
+    remarks += [*_view_remarks(seen, sound, mesh, where), *repaired]
     foot, foot_remark = "", ""
     if whole_length > HEEL[1] or chosen.foot != "auto":
         foot, foot_remark = orientation.foot_of(np.isfinite(height), seen.spacing, chosen)
@@ -175,6 +179,7 @@ def _outsole(
     remarks += region_remarks
     surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
+    check_carried(surface.inside, surface.land, seen.spacing, where)
     alike = any(each.startswith("Assumed: the ground side") for each in side_remarks)
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
@@ -227,7 +232,14 @@ def _sides(
     free = chosen.forward not in DIRECTIONS and square
     offsets = [abs(orientation.off_centre(plan, axis)) for axis in (0, 1)]
     # one straight end is the cut of a piece
-    cut = [len(set(orientation.cut_ends(plan, axis, coarse))) == 2 for axis in (0, 1)]
+    cut = [False, False]
+    for oblique in (
+        False,
+        True,
+    ):  # a side that is nearly a line is no oblique cut beside a square one
+        if cut[0] == cut[1]:
+            ends = (orientation.cut_ends(plan, n, coarse, oblique=oblique) for n in (0, 1))
+            cut = [len(set(each)) == 2 for each in ends]
     plainly = offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE)
     if free and (cut[1] if cut[0] != cut[1] else plainly):
         along, across, plan = across, -along, plan.T[:, ::-1]
@@ -278,7 +290,7 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
     return lifted, axes, remarks
 
 
-def _view_remarks(seen: View, sound: Soundness, mesh: Mesh) -> tuple[str, ...]:
+def _view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple[str, ...]:
     remarks: list[str] = []
     covered = seen.covered
     up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
@@ -289,19 +301,54 @@ def _view_remarks(seen: View, sound: Soundness, mesh: Mesh) -> tuple[str, ...]:
     elif 0.01 < up <= 0.5 and not inward:
         remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
     if not sheet:
-        shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
-        # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
-        odd = (0.381966, 0.527864)
-        first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
-        crossed, met = overlap_lines(
-            mesh.triangles, seen.axes, (first[0], first[1]), _OVERLAP_PITCH, (shape[0], shape[1])
-        )
-        if crossed:
-            remarks.append(
-                f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines "
-                "through the sole; tolerated, the lowest surface counts."
-            )
+        remarks += _agreement(seen, sound, mesh, where)
     return tuple(remarks)
+
+
+def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str]:
+    """Return a remark where bodies overlap or faces lie double.
+
+    Raises:
+        DataError: One body crosses itself, or its faces lie double, on more than 2 % of the lines
+            through it: area by faces and by outline, or volume by faces and by height, disagree.
+    """
+    covered = seen.covered
+    shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
+    # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
+    odd = (0.381966, 0.527864)
+    first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
+
+    def lines(body: NDArray[np.int32]) -> tuple[int, int, int]:
+        return overlap_lines(
+            mesh.triangles, body, seen.axes, (first[0], first[1]), _OVERLAP_PITCH,
+            (shape[0], shape[1]), _SAME_PLACE,
+        )  # fmt: skip
+
+    count = mesh.triangles.shape[0]
+    crossed, doubled, met = lines(np.zeros(count, dtype=np.int32))
+    sure = sound.turned_edges == 0 and sound.duplicates == 0
+    own = 0
+    if sure and crossed > _MOST_APART * met and count <= MOST_FACES:
+        own, _, _ = lines(components(mesh.triangles)[0])
+    for many, what, cause in (
+        (own, "the surface crosses itself", "corners of its faces are mixed up"),
+        (doubled * sure, "faces lie double, with nothing between them",
+         "concave polygons were cut as if they were convex"),
+    ):  # fmt: skip
+        if many > _MOST_APART * met:
+            raise DataError(
+                f"{what} on {many / met:.0%} of the lines through it: its area by faces and by "
+                f"outline disagree, as where {cause}",
+                where=where,
+                allowed=f"{_MOST_APART:.0%}",
+                remedy="Export it again as STEP or, by another program, as triangles",
+            )
+    if not crossed:
+        return []
+    return [
+        f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines through the "
+        "sole; tolerated, the lowest surface counts."
+    ]
 
 
 def _region(

@@ -6,7 +6,6 @@ import zipfile
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -18,13 +17,14 @@ from underfoot.core.registry import offered
 from underfoot.core.text import decoded
 
 from .cad import read_cad
-from .mesh import Mesh
+from .gltf import read_gltf
+from .mesh import AGAIN, Mesh, MeshFile, assembled
+from .ply import read_ply
 from .rhino import read_rhino
-from .scenes import AGAIN, read_scene
 from .stl import looks_like_stl, read_stl
+from .text_meshes import OBJ_WORDS, read_obj, read_off
+from .threemf import read_3mf
 
-MOST_INFLATED = 500e6
-"""Bytes that an archive may hold unpacked: a 3MF of 6 million faces."""
 SUFFIXES = {
     ".stl": "STL",
     ".step": "STEP",
@@ -65,6 +65,19 @@ _FOREIGN = {
 }
 """Beginnings of files that designers send and that hold no readable geometry."""
 _IGES_LINE = re.compile(rb"^.{72}S\s*\d+\s*$")
+_OBJ_VERTEX = re.compile(rb"^[ \t]*v([ \t]+[-+.\deE]+){3}", re.MULTILINE)
+_OBJ_HEAD = 4_000_000
+"""Bytes of an .obj file in which a vertex is looked for: comments and curves may come first."""
+_MESHES: dict[str, Callable[[Path], MeshFile]] = {
+    "STL": read_stl,
+    "OBJ": read_obj,
+    "PLY": read_ply,
+    "OFF": read_off,
+    "GLB": read_gltf,
+    "GLTF": read_gltf,
+    "3MF": read_3mf,
+    "3DM": read_rhino,
+}
 
 
 def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
@@ -103,7 +116,7 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
             where=str(path),
             remedy="Export the outsole again as STL or STEP",
         )
-    mesh = _reader(content, unit)(path)
+    mesh = _read(path, content, unit)
     if mesh.triangles.shape[0] == 0:
         raise DataError("the file holds no faces", where=str(path))
     bad = np.count_nonzero(~np.isfinite(mesh.triangles).all(axis=(1, 2)))
@@ -125,11 +138,10 @@ def _of_text(path: Path, unit: str) -> Mesh:
         return read_mesh(plain, unit)
 
 
-def _reader(content: str, unit: str) -> Callable[[Path], Mesh]:
+def _read(path: Path, content: str, unit: str) -> Mesh:
     if content in ("STEP", "IGES", "BREP"):
-        return partial(read_cad, kind=content, unit=unit)
-    alone = {"STL": read_stl, "3DM": read_rhino}
-    return alone.get(content) or partial(read_scene, kind=content)
+        return read_cad(path, content, unit)
+    return assembled(_MESHES[content](path), str(path))
 
 
 def _head(path: Path) -> bytes:
@@ -176,38 +188,40 @@ def _format_of(head: bytes, path: Path) -> str | None:
             )
     if _IGES_LINE.match(head.split(b"\n")[0].rstrip(b"\r")):
         return "IGES"
-    if re.match(rb"(ST|C|N|4|n)*OFF\b", start):
+    first = next((line for line in head.splitlines() if line.split(b"#")[0].strip()), b"")
+    if re.match(rb"\s*(ST)?C?N?4?n?OFF\b", first):
         return "OFF"
     if start.startswith(b"{") and _is_gltf(path):
         return "GLTF"
     if looks_like_stl(head, path):
         return "STL"
-    lines = [line.split(None, 1)[0] for line in head.splitlines() if line.strip()]
-    known = {b"v", b"vn", b"vt", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl", b"#"}
-    corners = re.search(rb"^v\s+[-+.\d]+\s+[-+.\d]+", head, re.MULTILINE)
-    if corners and all(word in known or word.startswith(b"#") for word in lines[:-1]):
-        return "OBJ"
-    return None
+    return "OBJ" if _is_obj(head, path) else None
+
+
+def _is_obj(head: bytes, path: Path) -> bool:
+    """Return whether the lines begin with words of an OBJ, one of them a vertex."""
+    named = path.suffix.lower() == ".obj"
+    if named and not _OBJ_VERTEX.search(head):
+        with path.open("rb") as stream:
+            head = stream.read(_OBJ_HEAD)
+    head = re.sub(rb"\\[ \t]*\r?\n", b" ", head).replace(b"\r", b"\n")
+    if not _OBJ_VERTEX.search(head):
+        return False
+    words = [line.split(None, 1)[0] for line in head.splitlines() if line.strip()]
+    known = [word in OBJ_WORDS or word.startswith(b"#") for word in words[:-1]]
+    return all(known) or (named and b"\0" not in head)
 
 
 def _zipped(path: Path) -> str:
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
-            inflated = sum(part.file_size for part in archive.infolist())
     except (zipfile.BadZipFile, OSError) as error:
         raise DataError(
             "the file is an archive that is cut short or damaged",
             where=str(path),
             remedy="Export or copy it again",
         ) from error
-    if inflated > MOST_INFLATED:
-        raise DataError(
-            f"the archive holds {inflated / 1e6:.0f} MB",
-            where=str(path),
-            allowed=f"at most {MOST_INFLATED / 1e6:.0f} MB, which a reader takes twice in memory",
-            remedy="Export a coarser mesh (0.1 mm is fine enough), or as binary STL",
-        )
     if any(name.lower().endswith(".model") for name in names):
         return "3MF"
     shown = ", ".join(names[:5]) + (" ..." if len(names) > 5 else "")

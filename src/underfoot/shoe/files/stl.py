@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 
-from .mesh import Mesh
+from .mesh import Body, MeshFile
 
 _HEADER, _RECORD = 84, 50
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
@@ -16,6 +16,7 @@ _NUMBER = rb"[-+0-9.eE]+|[-+]?(?:nan|inf)[a-z]*"
 _CORNER = re.compile(
     rb"vertex\s+(" + _NUMBER + rb")\s+(" + _NUMBER + rb")\s+(" + _NUMBER + rb")", re.IGNORECASE
 )
+_SOLID = re.compile(rb"^[ \t]*solid\b[ \t]*([^\r\n]*)", re.IGNORECASE | re.MULTILINE)
 
 
 def looks_like_stl(head: bytes, path: Path) -> bool:
@@ -35,19 +36,20 @@ def looks_like_stl(head: bytes, path: Path) -> bool:
     return binary and path.suffix.lower() == ".stl"
 
 
-def read_stl(path: Path) -> Mesh:
-    """Return the triangles of an STL file.
+def read_stl(path: Path) -> MeshFile:
+    """Return the bodies of an STL file: one, or the named solids of a text file.
 
     Raises:
         DataError: Truncated, or a text STL whose corners don't make triangles.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:
-        head = stream.read(_HEADER)
-    promised = int.from_bytes(head[80:84], "little") if len(head) == _HEADER else -1
-    if promised >= 0 and size == _HEADER + _RECORD * promised:
-        return Mesh(_binary(path, promised), "STL (binary)")
-    if head.lstrip()[:5].lower() == b"solid":
+        head = stream.read(_HEADER + _RECORD)
+    promised = int.from_bytes(head[80:84], "little") if len(head) >= _HEADER else -1
+    spare = size - _HEADER - _RECORD * promised
+    if promised >= 0 and spare == 0:
+        return _binary(path, promised)
+    if head.lstrip()[:5].lower() == b"solid" and not _is_binary(head, promised, spare):
         return _text(path)
     whole = (size - _HEADER) // _RECORD
     if promised > whole:
@@ -56,31 +58,40 @@ def read_stl(path: Path) -> Mesh:
             where=str(path),
             remedy="Export or copy it again",
         )
-    spare = size - _HEADER - _RECORD * promised
     remark = f"{spare} bytes after the last of {promised} faces were left aside."
-    return Mesh(_binary(path, promised), "STL (binary)", remarks=(remark,))
+    return _binary(path, promised, (remark,))
 
 
-def _binary(path: Path, count: int) -> NDArray[np.float32]:
+def _is_binary(head: bytes, promised: int, spare: int) -> bool:
+    """Return whether bytes behind "solid" are no text and its number of facets fits the size."""
+    odd = any(byte < 9 or byte > 126 for byte in head[80:])
+    return odd and (spare >= 0 or promised < 0 or b"\0" in head)
+
+
+def _binary(path: Path, count: int, remarks: tuple[str, ...] = ()) -> MeshFile:
     records = np.fromfile(path, dtype=_FACET, count=count, offset=_HEADER)
-    return np.ascontiguousarray(records["corners"], dtype=np.float32)
+    corners = np.ascontiguousarray(records["corners"], dtype=np.float32)
+    return MeshFile("STL (binary)", [Body(corners.reshape(-1, 3))], remarks=remarks)
 
 
-def _text(path: Path) -> Mesh:
+def _text(path: Path) -> MeshFile:
     data = path.read_bytes()
     corners = _CORNER.findall(data)
     mentioned = len(re.findall(rb"\bvertex\b", data, re.IGNORECASE))
     facets = len(re.findall(rb"\bendfacet\b", data, re.IGNORECASE))
     if mentioned != len(corners) or len(corners) != 3 * facets:
         line = _first_bad_line(data)
+        comma = re.search(rb"^\s*vertex\s+[-+\d]+,\d", data, re.IGNORECASE | re.MULTILINE)
         raise DataError(
             f"{facets} facets have {len(corners)} readable corners instead of {3 * facets}"
             + (f"; the first line that cannot be read is {line}" if line else ""),
             where=str(path),
-            remedy="The text is cut short or damaged: export the outsole again, as binary STL",
+            remedy="Its numbers have decimal commas: export it with decimal points, or binary"
+            if comma
+            else "The text is cut short or damaged: export the outsole again, as binary STL",
         )
     try:
-        numbers = np.array(corners, dtype="S").astype(np.float32)
+        numbers = np.array(corners, dtype="S").astype(np.float64)
     except ValueError as error:
         raise DataError(f"a corner is no number ({error})", where=str(path)) from error
     if not re.search(rb"\bendsolid\b", data[-400:], re.IGNORECASE):
@@ -89,7 +100,25 @@ def _text(path: Path) -> Mesh:
             where=str(path),
             remedy="Export or copy it again; where all facets are there, add a last line endsolid",
         )
-    return Mesh(numbers.reshape(-1, 3, 3), "STL (text)")
+    return MeshFile("STL (text)", _solids(data, numbers.reshape(-1, 3)))
+
+
+def _solids(data: bytes, corners: NDArray[np.float64]) -> list[Body]:
+    """Return a body for each solid of a text STL, named as its first line says."""
+    bodies, done = [], 0
+    begins = list(_SOLID.finditer(data))
+    for n, begin in enumerate(begins):
+        end = begins[n + 1].start() if n + 1 < len(begins) else len(data)
+        if len(begins) == 1:
+            count = corners.shape[0]
+        else:
+            count = 3 * len(re.findall(rb"\bendfacet\b", data[begin.end() : end], re.IGNORECASE))
+        name = begin[1].decode("utf-8", "replace").strip()
+        bodies.append(Body(corners[done : done + count], name=name))
+        done += count
+    if len(bodies) == 1:  # programs write their own name there, or the file's
+        return [Body(corners)]
+    return bodies
 
 
 def _first_bad_line(data: bytes) -> str:

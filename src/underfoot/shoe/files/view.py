@@ -76,8 +76,8 @@ class Soundness:
     Parameters:
         faces: In the file.
         degenerate, not_finite: Faces without area; faces with a corner that is no number.
-        open_edges, crowded_edges, turned_edges: Edges of one face; of more than two; of two faces
-            that are turned opposite ways.
+        open_edges, crowded_edges, turned_edges: Edges of one face; of more than two, other than
+            of bodies that touch; of two faces that are turned opposite ways.
         duplicates: Faces that are there more than once.
         volume: Signed volume in the file's unit cubed: negative when the normals point inward.
     """
@@ -133,7 +133,7 @@ def soundness(mesh: Mesh, where: str) -> Soundness:
     if degenerate + not_finite == faces.size:
         raise DataError(f"none of its {faces.size} faces has an area", where=where)
     edges.sort()
-    open_edges, crowded, turned = shared_edges(edges)
+    open_edges, crowded, turned, touching = shared_edges(edges)
     return Soundness(
         faces=faces.size,
         degenerate=degenerate,
@@ -141,7 +141,7 @@ def soundness(mesh: Mesh, where: str) -> Soundness:
         open_edges=int(open_edges),
         crowded_edges=int(crowded),
         turned_edges=int(turned),
-        duplicates=_duplicates(faces) if crowded or turned else 0,
+        duplicates=_duplicates(faces) if crowded or turned or touching else 0,
         volume=float(volume),
     )
 

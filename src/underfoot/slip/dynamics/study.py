@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -74,15 +74,22 @@ class FrictionDraws:
         The walkers are drawn from those at the friction of the draw; ``crossed`` takes only those
         whose heel passed over the sensors.
         """
+
+        def values(study: SlipStudy) -> Array:
+            found = study.of(name)
+            return found[study.of("crossed") > 0] if crossed else found
+
+        return self.means_of(values, count)
+
+    def means_of(self, values: Callable[[SlipStudy], Array], count: int) -> Array:
+        """Return the mean of ``values`` of a study over ``count`` walkers of it, (draws,)."""
         generator = np.random.default_rng(self.seed)
         found = np.full(self.nearest.size, math.nan)
         for level, study in enumerate(self.levels):
-            values = study.of(name)
-            if crossed:
-                values = values[study.of("crossed") > 0]
+            known = values(study)
             rows = np.flatnonzero(self.nearest == level)
-            if values.size:
-                found[rows] = values[generator.integers(values.size, size=(rows.size, count))].mean(
+            if known.size:
+                found[rows] = known[generator.integers(known.size, size=(rows.size, count))].mean(
                     axis=1
                 )
         return found
@@ -113,28 +120,37 @@ class SlipStudy:
     by_friction: FrictionDraws | None = None
 
     def shares(self) -> dict[Outcome, tuple[float, float, float]]:
-        """Return share, lower and upper 95 % bound (Wilson) of each class of distance slipped.
-
-        A single person has no band: nan.
-        """
-        count = len(self.subjects)
-        hits = {name: sum(s.seen.outcome is name for s in self.subjects) for name in Outcome}
-        return {name: (n / count, *_wilson(n, count)) for name, n in hits.items()}
+        """Return share, lower and upper 95 % bound of each class of distance slipped."""
+        return {
+            name: self._share(lambda study, name=name: study.outcomes(name)) for name in Outcome
+        }
 
     def slipped(self) -> tuple[float, float, float]:
         """Return the share of steps that slip, and its 95 % bounds.
 
         A step slips when the heel's peak speed after its first minimum exceeds 0.2 m/s (G.6.1,
-        ``trials.SlipDefinition``): the one definition of a slip in the package. The bounds hold
-        the number of walkers and, where the law of friction has a spread, that; else they are
-        Wilson's of the walkers alone.
+        ``trials.SlipDefinition``): the one definition of a slip in the package. ``of("slipped")``
+        has who does at the friction as computed.
         """
-        hits = sum(s.seen.slipped for s in self.subjects)
-        count = len(self.subjects)
-        if self.by_friction is None or count < 2:
-            return (hits / count, *_wilson(hits, count))
-        low, high = np.quantile(self.by_friction.means("slipped", count), [0.025, 0.975])
-        return hits / count, float(low), float(high)
+        return self._share(lambda study: study.of("slipped"))
+
+    def outcomes(self, outcome: Outcome) -> Array:
+        """Return 1 for each subject whose slip is of a class, else 0, (n,)."""
+        return np.array([float(s.seen.outcome is outcome) for s in self.subjects])
+
+    def _share(self, hits: Callable[[SlipStudy], Array]) -> tuple[float, float, float]:
+        """Return the share of hits (n,) with 95 % bounds.
+
+        Where the law of friction has a spread it is the mean over its draws, and the bounds hold
+        that and the number of walkers; else they are Wilson's of the walkers alone. A single person
+        has no bounds: nan.
+        """
+        found = hits(self)
+        if self.by_friction is None or found.size < 2:
+            return (float(found.mean()), *_wilson(int(found.sum()), found.size))
+        drawn = self.by_friction.means_of(hits, found.size)
+        low, high = np.quantile(drawn, [0.025, 0.975])
+        return float(drawn.mean()), float(low), float(high)
 
     def at_contact_friction(self, factor: float) -> SlipStudy:
         """Return the same walkers if the contact rubbed ``factor`` times as much.

@@ -3,7 +3,6 @@
 NGSolve and netgen are loaded only when a sole is meshed.
 """
 
-from .compliance import FiniteElementCompliance as FiniteElementCompliance
 from .compliance import finite_element_compliance as finite_element_compliance
 from .compliance import sole_land as sole_land
 from .elasticity import LandCompliance as LandCompliance

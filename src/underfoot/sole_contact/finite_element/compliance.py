@@ -12,6 +12,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
+from ..long_waves import LongWaves, wide_hats
 from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, sole_mesh
 from .plan import plan_of
@@ -25,69 +26,7 @@ FAR_ELEMENT = 4.0e-3
 REACH = 3.5e-3
 """Land higher above the floor than this (m) keeps the layered compliance alone."""
 FAINT = 0.02
-"""Hats that the grid can't tell apart (relative eigenvalue of their overlap) are left out."""
-
-
-class FiniteElementCompliance:
-    """Finite elements for what varies over an element or more, layers for what is finer.
-
-    C = P D P + (1 - P) L (1 - P) with P the projection (on the grid's cells) to the hats of the
-    land nodes, D the finite-element compliance on them and L the layered compliance. So lugs, rim,
-    thickness and midsole act as they are; symmetric and positive as both parts are. Between cells
-    without finite elements (channels, land far above the floor) and the others L acts.
-    """
-
-    def __init__(
-        self, layers: ConvolutionCompliance, hats: sp.csr_matrix, inverse_gram: Array, exact: Array
-    ) -> None:
-        """``hats`` (cells, n); ``exact`` (n, n) rise of hat i by weight of hat j on the cells."""
-        self._layers = layers
-        self._hats = hats
-        self._transposed = sp.csr_matrix(hats.T)
-        self._inverse_gram = inverse_gram
-        self._exact = exact
-        self._bare = (np.diff(hats.indptr) == 0).reshape(layers.self_compliance.shape)
-        plain = layers.self_compliance
-        own, covered = (self._diagonal(matrix, plain.shape) for matrix in (exact, inverse_gram))
-        self._self = np.maximum(own + (1 - covered) ** 2 * plain, 0.05 * plain)
-
-    def _diagonal(self, matrix: Array, shape: tuple[int, ...]) -> Array:
-        """Return the diagonal of H M H^T as a map; H has its rows in CSR order."""
-        starts, columns, values = self._hats.indptr, self._hats.indices, self._hats.data
-        left = np.zeros(starts.size - 1)
-        for place in np.flatnonzero(np.diff(starts)):
-            nodes = columns[starts[place] : starts[place + 1]]
-            weight = values[starts[place] : starts[place + 1]]
-            left[place] = weight @ matrix[np.ix_(nodes, nodes)] @ weight
-        return left.reshape(shape)
-
-    @property
-    def self_compliance(self) -> Array:
-        """Deflection of a cell under unit pressure on itself alone, (nx, ny), m/Pa."""
-        return self._self
-
-    @property
-    def covered(self) -> NDArray[np.bool_]:
-        """Cells whose pressure the finite elements see, (nx, ny)."""
-        return ~self._bare
-
-    def symbol(self, wavenumber: Array) -> Array:
-        """Return the deflection over pressure (m/Pa) of a wave far from free edges."""
-        return self._layers.symbol(wavenumber)
-
-    def apply(self, pressure: Array) -> Array:
-        """Return the deflection (nx, ny) in m of a pressure field (nx, ny) in Pa."""
-        weight = self._transposed @ pressure.ravel()
-        coarse = (self._hats @ (self._inverse_gram @ weight)).reshape(pressure.shape)
-        rise = self._layers.apply(pressure - coarse)
-        over = self._exact @ weight - self._inverse_gram @ (self._transposed @ rise.ravel())
-        rise += (self._hats @ over).reshape(pressure.shape)
-        rise += np.where(self._bare, self._layers.apply(coarse), 0.0)
-        alone = np.where(self._bare, pressure, 0.0)
-        if alone.any():
-            pushed = self._transposed @ self._layers.apply(alone).ravel()
-            rise += (self._hats @ (self._inverse_gram @ pushed)).reshape(pressure.shape)
-        return rise
+"""Hats that the land can't tell apart (relative eigenvalue of their overlap) are left out."""
 
 
 class OutsoleAndMidsole(TypedDict):
@@ -109,8 +48,11 @@ def finite_element_compliance(
     cache: Cache | None = None,
     progress: Progress = silent,
     **body: Unpack[OutsoleAndMidsole],
-) -> FiniteElementCompliance:
+) -> ConvolutionCompliance:
     """Return the compliance of a sole from finite elements of its real shape.
+
+    Finite elements for what varies over 6 mm or more, lug by lug too; layers for what is finer
+    and for land far above the floor: ``LongWaves`` with hats that the land cuts out.
 
     Parameters:
         sole: Plan form, profile and tread; meshed as its cells show them.
@@ -127,18 +69,18 @@ def finite_element_compliance(
     """
     land = sole_land(sole, cache=cache, progress=progress, **body)
     layers = layered_compliance(sole, **body)
-    hats = hats_on_cells(land, sole)
-    gram = (hats.T @ hats).toarray()
-    size = np.sqrt(np.maximum(np.diagonal(gram), 1e-12))  # each hat counts alike, however small
-    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    nodes, near = hats_on_cells(land, sole), sole.land & (sole.clearance < REACH)
+    fields = wide_hats(sole, near)
+    size = np.sqrt(np.asarray(fields.multiply(fields).sum(axis=0)).ravel())
+    values, vectors = np.linalg.eigh((fields.T @ fields).toarray() / np.outer(size, size))
     distinct = values > FAINT
     turn = vectors[:, distinct] / np.sqrt(values[distinct]) / size[:, None]
-    inverse_gram = turn @ turn.T
     # The sum of hat times pressure over the cells is the force on a node: the elements' own overlap
     # turns it into pressure, so that force is kept where cells cover a rim only in part.
-    by_force = np.linalg.inv(land.overlap.toarray())
-    exact = by_force @ land.work @ by_force * sole.spacing**2
-    return FiniteElementCompliance(layers, hats, inverse_gram, exact)
+    pressure = np.linalg.solve(land.overlap.toarray(), (nodes.T @ fields).toarray() @ turn)
+    exact = pressure.T @ land.work @ pressure * sole.spacing**2
+    change = turn @ (exact - turn.T @ layers.under_hats(fields) @ turn) @ turn.T
+    return layers.plus(LongWaves(fields, 0.5 * (change + change.T)))
 
 
 def sole_land(

@@ -14,6 +14,9 @@ from underfoot.core.sparse import schur_complement, upper_triangle
 from .mesh import SoleMesh
 
 Array = NDArray[np.float64]
+VOLUME_ORDER = 2
+"""Of the integration of the change in volume. At 4, which is exact, a block of nu = 0.49 is 4 to
+7 % too stiff; so its compression is within 2 % of that by elements of order 4."""
 LARGEST_POISSON_RATIO = 0.495
 """Displacement elements of second order lock above it."""
 
@@ -142,7 +145,9 @@ def _assembled(
 
     form = ngsolve.BilinearForm(space, symmetric=True)
     form += 2 * shear * ngsolve.InnerProduct(strain(displacement), strain(test)) * ngsolve.dx
-    form += bulk * ngsolve.div(displacement) * ngsolve.div(test) * ngsolve.dx
+    few = ngsolve.IntegrationRule(ngsolve.PRISM, VOLUME_ORDER)
+    volume = ngsolve.dx(intrules={ngsolve.PRISM: few})
+    form += bulk * ngsolve.div(displacement) * ngsolve.div(test) * volume
     form.Assemble()
     free = np.array([bool(bit) for bit in cast(Any, space.FreeDofs())])
     values, columns, starts = form.mat.CSR()

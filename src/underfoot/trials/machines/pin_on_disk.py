@@ -1,6 +1,7 @@
 """Pin on disk: mean COF of the steady window, COF against speed, radius of the pin."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,6 +9,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError
 
 from ..recording.measurement import Measurement, caution
+from ..recording.signals import runs
 from ..recording.trial import Channel, Trial
 
 BATCH = 5
@@ -75,11 +77,25 @@ def correlated_error(values: np.ndarray) -> float | None:
     return float(means.std(ddof=1) / np.sqrt(batches))
 
 
-NORMAL = ("normal force", "normal", "load", "fz", "fn", "force z")
-SHEAR = ("friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft")
-SPEED = ("sliding speed", "speed", "velocity")
-COF = ("cof", "friction coefficient", "traction coeff", "traction coefficient")
-_LIFTED = 0.1  # share of the median load below which the pin has left the disk
+NORMAL = (
+    "normal force", "normal", "load", "fz", "fn", "force z", "daq.fz", "normalkraft",
+)  # fmt: skip
+SHEAR = (
+    "friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft", "daq.fx",
+    "reibkraft", "reibungskraft",
+)  # fmt: skip
+SPEED = ("sliding speed", "speed", "velocity", "max linear speed")
+COF = (
+    "cof", "friction coefficient", "traction coeff", "traction coefficient", "daq.cof", "µ", "mu",
+    "reibwert", "reibungszahl",
+)  # fmt: skip
+_LIFTED = 0.1  # share of the load below which the pin has left the disk
+_LONG = 30, 0.5  # samples and s that an unloaded stretch needs to be a zero
+_KEPT = 0.2, 0.8  # part of such a stretch, away from where the pin touches and leaves
+_STROKE = 0.25, 0.75  # part of a stroke, away from where it turns
+_STROKES = "the middle half of each, in both directions"
+_FEWEST_TURNS = 4
+_REGULAR = 0.2  # relative scatter of the strokes of a machine
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +124,10 @@ def friction_point(
     """Return the mean COF of a pin-on-disk run.
 
     COF is the mean over the window of |shear| / |normal|, sample by sample; samples at which the
-    pin has left the disk (below a tenth of the median load) are left out and counted. Without
+    pin has left the disk (below a tenth of the load) are left out. Where it stays off the disk for
+    half a second, both forces have their zero: a line between the zeros before and after the load,
+    the nearest one where there is one only; its error counts in the uncertainty. Of a pin that goes
+    to and fro the middle half of each stroke counts: at the turning points nothing slides. Without
     forces the file's own COF column is used, and said.
 
     ``window``: (begin, end) in s; by default the steady part is found (see ``steady_window``).
@@ -116,7 +135,7 @@ def friction_point(
 
     DataError: neither forces nor a COF column, no load, or nothing left in the window.
     """
-    ratio, normal, shear, channel, choices, flags = _ratio(trial)
+    ratio, normal, shear, channel, choices, flags, zero_error = _ratio(trial)
     time = channel.time
     finite = np.isfinite(ratio)
     if window is None:
@@ -140,6 +159,11 @@ def friction_point(
     choices["uncertainty"] = "standard error of the mean from batch means"
     reason = "" if error is not None else "too few samples for a scatter"
     mean, seen = float(values.mean()), tuple(map(caution, flags))
+    if error is not None and normal is not None and zero_error is not None:
+        load = float(np.abs(normal[used]).mean())
+        from_zero = float(np.hypot(zero_error[0], mean * zero_error[1])) / load
+        error = float(np.hypot(error, from_zero))
+        choices["uncertainty"] += f", and {from_zero:.2g} of the zero"
     measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, choices)
     speed = _speed(trial, used) if speed is None else speed
     forces = normal, shear
@@ -193,29 +217,163 @@ def reduced_radius(position: ArrayLike, height: ArrayLike) -> ProfileRadius:
 
 def _ratio(
     trial: Trial,
-) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None, Channel, dict[str, str], list[str]]:
+) -> tuple[
+    np.ndarray,
+    np.ndarray | None,
+    np.ndarray | None,
+    Channel,
+    dict[str, str],
+    list[str],
+    tuple[float, float] | None,
+]:
+    """Return the COF of every sample, both forces, their channel, choices, flags, the zero's error.
+
+    The last holds what the zeros of shear and normal force are known to (N), None without a zero.
+    """
     try:
         normal, shear = trial.channel(*NORMAL), trial.channel(*SHEAR)
     except DataError as problem:
         channel = _channel(trial, COF)
         if channel is None:
             raise problem from None
-        return np.abs(channel.values), None, None, channel, {"cof": "column of the file"}, []
+        choices, ratio = {"cof": "column of the file"}, np.abs(channel.values)
+        if (strokes := _strokes(channel.values)) is not None:
+            choices["strokes"] = _STROKES
+            ratio = np.where(strokes[0], np.abs(channel.values - strokes[1]), np.nan)
+        return ratio, None, None, channel, choices, [], None
     if len(normal.values) != len(shear.values):
         raise DataError("normal and shear force differ in length", where=trial.name)
-    load = np.abs(normal.values)
-    level = float(np.nanmedian(load))
+    choices, flags = {"cof": "|shear| / |normal|"}, []
+    load, push, zero_error = normal.values, shear.values, None
+    stretches = _unloaded_stretches(load, normal.rate)
+    if stretches:
+        time = normal.time
+        zeros = [_zero_line(values, time, stretches) for values in (push, load)]
+        (push_zero, push_error), (load_zero, load_error) = zeros
+        push, load, zero_error = push - push_zero, load - load_zero, (push_error, load_error)
+        parts = " and ".join(f"{time[a]:.3g} to {time[b - 1]:.3g} s" for a, b in stretches[:4])
+        size = np.nanmean(push_zero)
+        choices["zero"] = f"of the unloaded pin ({parts}): {size:.3g} {shear.unit} of shear"
+    size = np.abs(load)
+    loaded = np.isfinite(size)
+    for start, stop in stretches:
+        loaded[start:stop] = False
+    level = float(np.median(size[loaded])) if loaded.any() else 0.0
     if not level > 0:
         raise DataError("the normal force is zero", where=trial.name)
-    pressed = load > _LIFTED * level
-    ratio = np.where(pressed, np.abs(shear.values) / np.where(pressed, load, 1.0), np.nan)
-    flags = []
-    lifted = int((~pressed).sum())
-    if lifted:
-        flags.append(f"{lifted} samples with hardly any load left out")
+    pressed = size > _LIFTED * level
+    strokes = _strokes(np.where(pressed, push, np.nan))
+    if strokes is not None:
+        sliding, middle = strokes
+        if zero_error is None:
+            push = push - middle
+        choices["strokes"] = _STROKES
+        ratio = np.where(pressed & sliding, np.abs(push) / np.where(pressed, size, 1.0), np.nan)
+    else:
+        ratio = np.where(pressed, np.abs(push) / np.where(pressed, size, 1.0), np.nan)
+    lifted = ~pressed
+    for start, stop in stretches:
+        lifted[start:stop] = False
+    inside = np.flatnonzero(pressed)
+    if lost := int(lifted[inside[0] : inside[-1]].sum()):
+        flags.append(f"{lost} samples with hardly any load left out")
     if normal.unit != shear.unit:
         flags.append(f'units differ: normal "{normal.unit}", shear "{shear.unit}"')
-    return ratio, normal.values, shear.values, normal, {"cof": "|shear| / |normal|"}, flags
+    return ratio, load, push, normal, choices, flags, zero_error
+
+
+def _unloaded_stretches(load: np.ndarray, rate: float) -> list[tuple[int, int]]:
+    """Return (start, stop) of the stretches in which the pin was off the disk for long enough.
+
+    The record has two levels of load, or it was never unloaded. Of the two the unloaded one is
+    nearer to zero: a channel's own zero is small against the load.
+    """
+    finite = load[np.isfinite(load)]
+    if len(finite) < 4 * _LONG[0]:
+        return []
+    low, high = np.percentile(finite, (1, 99))
+    if not high > low:
+        return []
+    middle = 0.5 * (low + high)
+    levels = [float(np.median(finite[side])) for side in (finite < middle, finite >= middle)]
+    spreads = [
+        1.4826 * float(np.median(np.abs(finite[side] - level)))
+        for side, level in zip((finite < middle, finite >= middle), levels, strict=True)
+    ]
+    empty, full = sorted(levels, key=abs)
+    if abs(full - empty) < max(0.6 * abs(full), 10.0 * max(spreads)):
+        return []
+    off = np.abs(load - empty) < _LIFTED * abs(full - empty)
+    fewest = max(_LONG[0], round(_LONG[1] * rate))
+    return [(a, b) for a, b in runs(off) if b - a >= fewest]
+
+
+def _zero_line(
+    values: np.ndarray, time: np.ndarray, stretches: list[tuple[int, int]]
+) -> tuple[np.ndarray, float]:
+    """Return the zero of a channel against time (n,), and its standard uncertainty.
+
+    The mean of each unloaded stretch, straight lines between. Its error is that of the means and
+    the scatter of a zero that may go from one to the next at any time.
+    """
+    means, errors, times = [], [], []
+    for start, stop in stretches:
+        a, b = (start + round(share * (stop - start)) for share in _KEPT)
+        part = values[a:b][np.isfinite(values[a:b])]
+        if not len(part):
+            continue
+        means.append(float(part.mean()))
+        spread = float(part.std()) / np.sqrt(len(part))
+        errors.append(max(correlated_error(part) or 0.0, spread))
+        times.append(float(time[a:b].mean()))
+    if not means:
+        return np.zeros(len(values)), 0.0
+    wander = np.abs(np.diff(means)).max(initial=0.0) / np.sqrt(12.0)
+    return np.interp(time, times, means), float(np.hypot(max(errors), wander))
+
+
+def _strokes(push: np.ndarray) -> tuple[np.ndarray, float] | None:
+    """Return the samples (n,) in the middle of strokes, and the mean of both directions (N).
+
+    ``push``: friction (n,), NaN without load. None where the pin does not go to and fro: then the
+    friction neither changes its sign at even times nor falls to nothing at even times.
+    """
+    seen = np.flatnonzero(np.isfinite(push))
+    if len(seen) < 40:
+        return None
+    values = push[seen]
+    low, high = np.percentile(values, (10, 90))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    both = np.mean(np.abs(np.abs(values - middle) - half) < 0.5 * half) > 0.7 and half > 0
+    turns = _changes(values - middle, 0.3 * half) if both else np.zeros(0, dtype=int)
+    if not _even(turns):
+        size = np.abs(values)
+        usual = float(np.median(size))
+        turns, middle = (
+            np.array([(a + b) // 2 for a, b in runs(size < 0.5 * usual)], dtype=int),
+            0.0,
+        )
+        narrow = np.mean(size < 0.5 * usual) < 0.3
+        deep = all(size[max(t - 2, 0) : t + 3].min() < 0.3 * usual for t in turns)
+        if not (_even(turns) and narrow and deep):
+            return None
+    sliding = np.zeros(len(push), dtype=bool)
+    for start, stop in pairwise(turns):
+        a, b = (start + round(share * (stop - start)) for share in _STROKE)
+        sliding[seen[a : b + 1]] = True
+    return sliding, float(middle)
+
+
+def _changes(values: np.ndarray, limit: float) -> np.ndarray:
+    """Indices at which values (n,) go from below -limit to above limit, or back."""
+    sides = np.flatnonzero(np.abs(values) > limit)
+    at = np.flatnonzero(np.diff(np.sign(values[sides])))
+    return (sides[at] + sides[at + 1]) // 2
+
+
+def _even(turns: np.ndarray) -> bool:
+    gaps = np.diff(turns)
+    return len(turns) >= _FEWEST_TURNS and bool(gaps.std() < _REGULAR * gaps.mean() + 1.0)
 
 
 def _channel(trial: Trial, names: tuple[str, ...]) -> Channel | None:

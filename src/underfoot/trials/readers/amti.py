@@ -58,5 +58,5 @@ def read_netforce(draft: Draft) -> Trial:
             scale, unit = (_POUND, "N") if i < 3 else (0.0254 * _POUND, "N*m")
             draft.channel(f"{name}{number}", values[:, i], unit=unit, scale=scale, note="")
         force = values[:, :3] * _POUND
-        draft.plate(force, up=np.eye(3)[2], kind="AMTI BSF, force on the plate turned to the foot")
+        draft.plate(force, kind="AMTI BSF, force on the plate turned to the foot")
     return draft.trial("AMTI BSF")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..recording.trial import Event, Trial
+from ..recording.trial import Event, Trial, Vertical
 from .columns import trial_from_sheet
 from .draft import Draft
 from .sheet import Sheet
@@ -41,6 +41,7 @@ def read_bts(draft: Draft) -> Trial:
         kind = header.get("type", "table")
         raise draft.error(f'"{kind}" is no recording in time', remedy="Export tracks")
     draft.count(header.get("frames", ""), len(numbers), "Frames")
+    draft.up = Vertical((0.0, 1.0, 0.0), "y as BTS has it")
     unit = header.get("measure unit", "")
     tracks = {key: column for key, column in named.items() if key.casefold() != "frame"}
     units = {key: "s" if key == "Time" else unit for key in tracks}

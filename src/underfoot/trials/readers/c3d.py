@@ -5,6 +5,7 @@ and reads truncated files as if they were whole. Sizes are checked before anythi
 """
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,10 +14,11 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..recording import plates
+from ..recording.axes import axis_vector
 from ..recording.measurement import Flag
-from ..recording.trial import Event, Trial
+from ..recording.trial import Event, Trial, Vertical
 from .draft import Draft
-from .text import si_unit, truncated
+from .text import force_unit, si_unit, truncated
 
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
@@ -48,6 +50,16 @@ class C3DFile:
         """Return a parameter as floats in the file's shape; empty when absent or text."""
         value = self.parameters.get(group, {}).get(name)
         return value if isinstance(value, np.ndarray) else np.empty(0)
+
+    def continued(self, group: str, name: str) -> np.ndarray:
+        """Return a parameter of numbers with its continuations (TIMES, TIMES2 ...)."""
+        parts = [self.numbers(group, name)]
+        for number in range(2, 20):
+            part = self.numbers(group, f"{name}{number}")
+            if not part.size or part.shape[:-1] != parts[0].shape[:-1]:
+                break
+            parts.append(part)
+        return np.concatenate(parts, axis=-1) if len(parts) > 1 else parts[0]
 
     def whole_numbers(self, group: str, name: str) -> np.ndarray:
         """Return a parameter as whole numbers; what can't be one is 0."""
@@ -100,10 +112,19 @@ def parse(data: bytes, where: str) -> C3DFile:
     width = 4 * n_points + n_analog
     size = 4 if real else 2
     used = int(shell.number("ROTATION", "USED"))
-    first, last = _frame_range(words, shell, (len(data) - data_start) // max(width * size, 1))
-    frames = last - first + 1
+    end = min([at for at in _later_sections(shell, used, start) if at > data_start] + [len(data)])
+    first, counts = _frame_counts(words, shell)
     if width or not used > 0:
-        _check_size(len(data), data_start, frames, width * size, where)
+        if width == 0 or not any(counts.values()):
+            raise DataError("holds neither points nor analog samples", where=where)
+        if data_start < BLOCK or data_start >= len(data):
+            raise DataError("truncated: the data section is missing", where=where)
+        frames, said = _frames(data[data_start:end], width * size, counts, where)
+        notes += said
+    else:
+        frames = max(counts.values())
+    if n_points != (points_used := shell.number("POINT", "USED", n_points)):
+        notes.append(f"the header counts {n_points} points, POINT:USED {points_used:g}")
     kind = "f4" if real else "i2"
     if not width:
         raw = np.empty(0)
@@ -144,37 +165,63 @@ def _rotations(
     return poses, rate * max(round(ratio), 1)
 
 
-def _check_size(length: int, start: int, frames: int, width: int, where: str) -> None:
-    if width == 0 or frames < 1:
-        raise DataError("holds neither points nor analog samples", where=where)
-    if start < BLOCK or start >= length:
-        raise DataError("truncated: the data section is missing", where=where)
-    whole = (length - start) // width
-    if whole < frames:
-        words = f"truncated or damaged: the header says {frames} frames, the file holds {whole}"
-        raise truncated(words, where)
+def _later_sections(shell: C3DFile, rotations: int, parameters: int) -> list[int]:
+    """Where other sections of the file begin (bytes)."""
+    poses = (int(shell.number("ROTATION", "DATA_START")) - 1) * BLOCK
+    return [parameters, poses] if rotations > 0 else [parameters]
 
 
-def _frame_range(header: np.ndarray, shell: C3DFile, whole: int) -> tuple[int, int]:
-    """Header words hold 16 bits; longer recordings put the range in parameters.
+def _frame_counts(header: np.ndarray, shell: C3DFile) -> tuple[int, dict[str, int]]:
+    """Return the number of the first frame, and how many frames each place of the file counts.
 
-    Where the header's range can't be, that of POINT:FRAMES counts, if just so many (``whole``, but
-    for the last block's padding) are there.
+    Words of the header hold 16 bits, and so do whole numbers of parameters: newer places hold more.
     """
     first, last = int(header[3]), int(header[4])
-    stated = int(shell.number("POINT", "FRAMES")) % 65536
-    if 0 < stated <= whole and (last < first or whole < last - first + 1):
-        return max(first, 1), max(first, 1) + stated - 1
+    counts = {"POINT:FRAMES": int(shell.number("POINT", "FRAMES"))}
+    counts["POINT:FRAMES"] += 65536 * (counts["POINT:FRAMES"] < 0)
+    counts["POINT:LONG_FRAMES"] = int(shell.number("POINT", "LONG_FRAMES"))
     names = ("ACTUAL_START_FIELD", "ACTUAL_END_FIELD")
-    ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") % 65536 for name in names]
+    ends = [shell.whole_numbers("TRIAL", name).ravel(order="F") for name in names]
     if ends[0].size == 2 and ends[1].size == 2:
-        low, high = (int(end[0]) + 65536 * int(end[1]) for end in ends)
-        if high >= low and (high % 65536 == last or last == 65535):
-            return low, high
-    frames = int(shell.number("POINT", "LONG_FRAMES") or 0)
-    if last == 65535 and frames > last - first + 1:
-        return first, first + frames - 1
-    return first, last
+        low, high = (int(end[0] % 65536) + 65536 * int(end[1] % 65536) for end in ends)
+        counts["TRIAL"] = high - low + 1
+        if first in (low % 65536, 65535):
+            first = low
+    if last < 65535 or not any(count > 0 for count in counts.values()):
+        counts["the header"] = last - int(header[3]) + 1
+    counts = {place: count for place, count in counts.items() if count > 0}
+    return max(first, 1), counts
+
+
+def _frames(
+    section: bytes, width: int, counts: dict[str, int], where: str
+) -> tuple[int, list[str]]:
+    """Return how many frames of ``width`` bytes a data section holds, and what else was said.
+
+    Its bytes decide: the count that fills its last block, else all frames down to the last byte
+    that is not zero. Fewer bytes than every place counts: the file is cut short, a DataError.
+    """
+    whole = len(section) // width
+    fewest = max(len(section) - BLOCK, 0) // width + 1
+    fitting = [count for count in counts.values() if fewest <= count <= whole]
+    largest = max(counts.values())
+    if fitting:
+        frames = fitting[0]
+    elif largest > whole:
+        words = f"truncated or damaged: {largest} frames are counted, the file holds {whole}"
+        raise truncated(words, where)
+    else:
+        content = len(section[: whole * width].rstrip(b"\0"))
+        frames = max(largest, -(-content // width))
+    told = {
+        place: count
+        for place, count in counts.items()
+        if count != frames and count != frames % 65536 and not (count == 65535 < frames)
+    }
+    if not told:
+        return frames, []
+    listed = ", ".join(f"{place} {count}" for place, count in told.items())
+    return frames, [f"frames are counted in two ways ({listed}): the data hold {frames}, all read"]
 
 
 def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tuple[float, float]:
@@ -201,11 +248,11 @@ def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
     unsigned = any(text.strip().upper() == "UNSIGNED" for text in shell.texts("ANALOG", "FORMAT"))
     if unsigned and not real:
         raw = raw.view(raw.dtype.str.replace("i", "u"))
-    offset = shell.numbers("ANALOG", "OFFSET").ravel(order="F")
+    offset = shell.continued("ANALOG", "OFFSET").ravel(order="F")
     if unsigned:
         offset = np.where(offset < 0, offset + 65536, offset)
     general = shell.number("ANALOG", "GEN_SCALE", 1.0)
-    scale = shell.numbers("ANALOG", "SCALE").ravel(order="F")
+    scale = shell.continued("ANALOG", "SCALE").ravel(order="F")
     samples = (raw - _padded(offset, n, 0.0)) * (_padded(scale, n, 1.0) * general)
     return np.where(np.abs(samples) < _POSSIBLE, samples, np.nan)
 
@@ -311,9 +358,7 @@ def read_c3d(draft: Draft) -> Trial:
     raw = parse(draft.data, draft.name)
     unit = (raw.texts("POINT", "UNITS") or [""])[0]
     places = raw.points if raw.points.size else raw.rotations[..., :3, 3]
-    size = np.nanmedian(np.abs(places)) if np.isfinite(places).any() else 1000.0
-    unknown = f'unit of the markers "{unit}" is not known'
-    scale = draft.length_unit(unit, float(size), unknown, "their size")
+    scale = draft.length_unit(unit, places if np.isfinite(places).any() else np.array(1000.0))
     draft.start = (raw.first_frame - 1) / raw.point_rate if raw.first_frame > 0 else 0.0
     units = raw.texts("ANALOG", "UNITS")
     draft.rate = raw.analog_rate
@@ -345,6 +390,10 @@ def read_c3d(draft: Draft) -> Trial:
     if left_out:
         draft.notes.append(f"{left_out} points are computed angles, forces or powers: left out")
     draft.events, draft.settings = _events(raw), _settings(raw)
+    screen = (raw.texts("POINT", "Y_SCREEN") or [""])[0]
+    if re.fullmatch("[+-][XYZxyz]", screen):
+        x, y, z = axis_vector(screen.lower()).tolist()
+        draft.up = Vertical((x, y, z), "upward on the screen, POINT:Y_SCREEN")
     return draft.trial("C3D")
 
 
@@ -413,7 +462,6 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         draft.plate(
             force @ axes.T,
             name,
-            up=plates.up_from_normal(axes[:, 2]),
             moment=moment @ axes.T,
             corners=corners,
             raw=signals,
@@ -441,6 +489,10 @@ def _z_points_down(places: np.ndarray) -> bool:
     return True
 
 
+_COUNTS = ("adc", "adu", "bit", "bits", "count", "counts", "lsb", "unknown", "none", "n/a", "-")
+"""What stands for the unit of a channel before its SCALE: the numbers are in the plate's unit."""
+
+
 def _in_si(
     signals: np.ndarray,
     columns: np.ndarray,
@@ -452,17 +504,20 @@ def _in_si(
     wanted = {1: "FFFLLM", 2: "FFFMMM", 3: "FFFFFFFF"}[kind]
     kinds = {"F": ("N", 1.0), "L": ("m", scale), "M": ("N*m", scale)}
     factors = np.ones(len(columns))
-    unknown = set()
+    assumed = set()
     for i, (column, letter) in enumerate(zip(columns, wanted, strict=True)):
-        written = units[column] if column < len(units) else ""
+        written = units[column].strip() if column < len(units) else ""
         si, factors[i] = kinds[letter]
-        unit = si_unit(written)
+        unit = force_unit(written) if si == "N" else si_unit(written)
         if unit and unit[0] == si:
             factors[i] = unit[1]
+        elif written and written.casefold() not in _COUNTS:
+            words = f'the unit of its channel {column + 1} is "{written}", which is no known {si}'
+            raise DataError(words)
         else:
-            unknown.add(f'"{written}" as {si}')
-    if unknown:
-        notes.append("units assumed: " + ", ".join(sorted(unknown)))
+            assumed.add(f'"{written}" as {si}')
+    if assumed:
+        notes.append("units assumed: " + ", ".join(sorted(assumed)))
     return signals * factors
 
 
@@ -479,7 +534,7 @@ def _of_plate(
 
 
 def _events(raw: C3DFile) -> tuple[Event, ...]:
-    times = raw.numbers("EVENT", "TIMES")
+    times = raw.continued("EVENT", "TIMES")
     if times.ndim == 1 and times.size == 2:
         times = times[:, None]
     if times.ndim != 2 or times.shape[0] != 2:

@@ -1,7 +1,8 @@
 """A small C3D writer: markers, analog channels, type-2 force plates."""
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from underfoot.core import InputError
 from ..recording.trial import MADE_UP
 
 _INTEL = 84
+_MOST = 65535  # frames that 16 bits count
+_LONGEST = 255  # entries of a parameter: its sizes are bytes
 
 
 def c3d_bytes(
@@ -33,36 +36,46 @@ def c3d_bytes(
     3) and origin (3,) in m and the six channel names, ``events`` label ("Foot Strike"), context
     ("Left") and time (s). ``mass`` (kg) of the person is left out at zero. ``first_frame`` is the
     number of the first frame (time 0 is that of frame 1), ``frames`` their number where there are
-    no markers. Rates that are no whole multiple, and lengths that do not fit, are an `InputError`.
+    no markers. Lists of more than 255 go on in LABELS2 and so on; frames beyond the 65,535 of the
+    header are counted in LONG_FRAMES and TRIAL. Rates that are no whole multiple, and lengths that
+    do not fit, are an `InputError`.
     """
     per_frame = round(analog_rate / marker_rate)
     frames = len(next(iter(markers.values()))) if frames is None else frames
-    if abs(per_frame * marker_rate - analog_rate) > 1e-9 or frames > 65535:
+    if abs(per_frame * marker_rate - analog_rate) > 1e-9 * analog_rate:
         raise InputError("analog rate must be a multiple of the marker rate", where="c3d")
     if any(len(values) != frames * per_frame for values, _ in analog.values()):
         raise InputError("analog channels must cover the frames exactly", where="c3d")
     names, count = list(analog), len(analog)
+    last_frame = first_frame + frames - 1
     groups: dict[str, dict[str, bytes]] = {
         "POINT": {
-            "USED": _integers([len(markers)]), "FRAMES": _integers([frames]),
+            "USED": _integers([len(markers)]), "FRAMES": _integers([min(frames, _MOST)]),
             "DATA_START": _integers([0]), "SCALE": _floats([-1.0]), "RATE": _floats([marker_rate]),
-            "UNITS": _texts(["mm"], single=True), "LABELS": _texts(list(markers)),
-            "DESCRIPTIONS": _texts([description] * len(markers)),
+            "UNITS": _texts(["mm"], single=True), **_continued("LABELS", list(markers), _texts),
+            **_continued("DESCRIPTIONS", [description] * len(markers), _texts),
         },
         "ANALOG": {
             "USED": _integers([count]), "GEN_SCALE": _floats([1.0]), "RATE": _floats([analog_rate]),
-            "SCALE": _floats([1.0] * count, vector=True),
-            "OFFSET": _integers([0] * count, vector=True),
-            "UNITS": _texts([unit for _, unit in analog.values()]), "LABELS": _texts(names),
-            "DESCRIPTIONS": _texts([description] * count),
+            **_continued("SCALE", [1.0] * count, _float_vector),
+            **_continued("OFFSET", [0] * count, _integer_vector),
+            **_continued("UNITS", [unit for _, unit in analog.values()], _texts),
+            **_continued("LABELS", names, _texts),
+            **_continued("DESCRIPTIONS", [description] * count, _texts),
         },
     }  # fmt: skip
+    if last_frame > _MOST:
+        groups["POINT"]["LONG_FRAMES"] = _floats([frames])
+        groups["TRIAL"] = {
+            "ACTUAL_START_FIELD": _integer_vector([first_frame % 65536, first_frame // 65536]),
+            "ACTUAL_END_FIELD": _integer_vector([last_frame % 65536, last_frame // 65536]),
+        }
     if plates:
         channels = [[names.index(name) + 1 for name in own] for *_, own in plates]
         groups["FORCE_PLATFORM"] = {
             "USED": _integers([len(plates)]),
-            "ZERO": _integers([0, 0], vector=True),
-            "TYPE": _integers([2] * len(plates), vector=True),
+            "ZERO": _integer_vector([0, 0]),
+            "TYPE": _integer_vector([2] * len(plates)),
             "CORNERS": _array(np.array([1e3 * corners for corners, _, _ in plates])),
             "ORIGIN": _array(np.array([1e3 * origin for _, origin, _ in plates])),
             "CHANNEL": _array(np.array(channels), "<i2"),
@@ -72,20 +85,24 @@ def c3d_bytes(
         groups["PROCESSING"] = {"Bodymass": _floats([mass])}
     if events:
         labels, contexts, times = (list(part) for part in zip(*events, strict=True))
-        minutes = np.array([[time // 60.0, time % 60.0] for time in times])
+        minutes = [[time // 60.0, time % 60.0] for time in times]
         groups["EVENT"] = {
             "USED": _integers([len(events)]),
-            "CONTEXTS": _texts(contexts),
-            "LABELS": _texts(labels),
-            "TIMES": _array(minutes),
+            **_continued("CONTEXTS", contexts, _texts),
+            **_continued("LABELS", labels, _texts),
+            **_continued("TIMES", minutes, lambda part: _array(np.array(part))),
         }
     body = _parameters(groups)
     blocks = -(-(len(body) + 4) // 512)
     first_data = 2 + blocks
     at = body.index(b"DATA_START") + len(b"DATA_START") + 2 + 1 + 1
     body = body[:at] + struct.pack("<h", first_data) + body[at + 2 :]
+    if blocks > 255:
+        words = f"the names and descriptions fill {blocks} blocks"
+        raise InputError(words, where="c3d", allowed="255 blocks of 512 bytes")
     parameters = (struct.pack("<BBBB", 1, 0x50, blocks, _INTEL) + body).ljust(512 * blocks, b"\0")
-    counts = (len(markers), count * per_frame, first_frame, first_frame + frames - 1)
+    ends = min(first_frame, _MOST), min(last_frame, _MOST)
+    counts = (len(markers), count * per_frame, *ends)
     header = struct.pack(
         "<BBHHHHHfHHf", 2, 0x50, *counts, 0, -1.0, first_data, per_frame, marker_rate
     )
@@ -113,12 +130,28 @@ def _parameters(groups: Mapping[str, Mapping[str, bytes]]) -> bytes:
     return out + b"\0\0"
 
 
-def _integers(values: Sequence[int], *, vector: bool = False) -> bytes:
-    return _content(2, [len(values)] if vector else [], struct.pack(f"<{len(values)}H", *values))
+def _continued(
+    name: str, values: Sequence[Any], content: Callable[[Sequence[Any]], bytes]
+) -> dict[str, bytes]:
+    """A list as one parameter, or as several of 255 entries: LABELS, LABELS2, LABELS3 ..."""
+    parts = [values[i : i + _LONGEST] for i in range(0, max(len(values), 1), _LONGEST)]
+    return {f"{name}{i if i > 1 else ''}": content(part) for i, part in enumerate(parts, start=1)}
 
 
-def _floats(values: Sequence[float], *, vector: bool = False) -> bytes:
-    return _content(4, [len(values)] if vector else [], struct.pack(f"<{len(values)}f", *values))
+def _integers(values: Sequence[int]) -> bytes:
+    return _content(2, [], struct.pack(f"<{len(values)}H", *values))
+
+
+def _integer_vector(values: Sequence[int]) -> bytes:
+    return _content(2, [len(values)], struct.pack(f"<{len(values)}H", *values))
+
+
+def _floats(values: Sequence[float]) -> bytes:
+    return _content(4, [], struct.pack(f"<{len(values)}f", *values))
+
+
+def _float_vector(values: Sequence[float]) -> bytes:
+    return _content(4, [len(values)], struct.pack(f"<{len(values)}f", *values))
 
 
 def _array(values: np.ndarray, kind: str = "<f4") -> bytes:

@@ -1,25 +1,40 @@
 """Plain tables (CSV, XLSX) as trials: columns by profile, or recognised by name."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
 
-from ..recording.axes import axis_vector
-from ..recording.plates import plate_axes, refused_plate, up_from_normal
+from ..recording.plates import refused_plate
 from ..recording.trial import Trial
 from .draft import Draft
 from .formats import nearest_format
-from .profile import PlateColumns, Profile
+from .profile import PlateColumns
 from .sheet import Sheet, sheet_from
-from .text import is_number, si_unit
+from .text import force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
-_FORCE = re.compile(
-    r"^(?P<before>(?:.*[^a-z])?)f(?:orce)?[ _.]?(?P<axis>[xyz])(?P<after>.*)$", re.I
+_PLATE = re.compile(
+    r"^(?P<before>(?:.*[^a-z])?)(?P<kind>f|force|m|mom|moment|t|torque|a|p|cop|cent(?:re|er)[ _]?of"
+    r"[ _]?pressure)[ _.]?(?P<axis>[xyz])(?P<after>.*)$",
+    re.I,
 )
+# Names of a tribometer's columns, letters only.
+_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load"}
+_SHEAR = {
+    "frictionforce",
+    "shearforce",
+    "tangentialforce",
+    "reibkraft",
+    "reibungskraft",
+    "fx",
+    "ft",
+}
+_COF = {"cof", "\u03bc", "frictioncoefficient", "coefficientoffriction", "reibwert", "reibungszahl"}
+_WHAT = re.compile(r"(forces?|moments?|torques?|cop|centre|center)[ _.:]*$", re.I)
+_FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 _POINT = re.compile(r"^(?P<before>.*?)[ _.:]?(?P<axis>[xyz])$", re.I)
 _NOT_POINTS = re.compile(r"^(f|force|m|moment|torque|a|v|acc|gyro|cop|.*force|.*moment)$", re.I)
 _PREAMBLE = 2  # lines above the names of columns, from which a text has a format of its own
@@ -35,13 +50,23 @@ def read_columns(draft: Draft) -> Trial:
     own = draft.profile
     sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
     above = [line for line in sheet.header if line.strip()]
-    if not own.name and not own.plates and not own.channels and len(above) > _PREAMBLE:
+    named = own.name or own.plates or own.channels or _is_known(sheet)
+    if not named and len(above) > _PREAMBLE:
         words = f"text of an unknown system: {len(above)} lines stand above the table"
         remedy = "Name its columns in a profile, or export as C3D or as a plain table"
         nearest = nearest_format(above)
         raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
     kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
     return trial_from_sheet(draft, sheet, kinds.get(draft.data[:4], "text table"))
+
+
+def _is_known(sheet: Sheet) -> bool:
+    """Whether the columns tell by themselves what they are: a time, and forces or a COF."""
+    folded = {re.sub("^daq|[^a-z\u03bc]", "", name.casefold()) for name in sheet.numbers}
+    forces = folded & _NORMAL and folded & _SHEAR
+    return any(_is_time(sheet, name) for name in sheet.numbers) and bool(
+        forces or folded & _COF or _plate_groups(sheet)
+    )
 
 
 def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
@@ -84,7 +109,7 @@ def _column(sheet: Sheet, name: str) -> np.ndarray:
 
 
 def _factor(unit: str, dimension: str, where: str) -> float:
-    known = si_unit(unit)
+    known = force_unit(unit) if dimension == "N" else si_unit(unit)
     if known is None or known[0] != dimension:
         raise DataError(f'"{unit}" is not a known unit of {dimension}', where=where)
     return known[1]
@@ -113,7 +138,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
         raise draft.error(f'the time column has the unit "{written}"')
     if not written:
         draft.notes.append("time without a unit: taken as s")
-    draft.clock(values * unit[1])
+    draft.clock(values * unit[1], restarts=True)
 
 
 def _is_time(sheet: Sheet, name: str) -> bool:
@@ -130,28 +155,27 @@ def _rate_in(header: Sequence[str]) -> float:
     return next((float(w) for w in words if is_number(w) and 0 < float(w) < 1e6), 0.0)
 
 
-def _triples(sheet: Sheet, pattern: re.Pattern[str]) -> Iterator[tuple[str, tuple[str, str, str]]]:
-    """Names of columns x, y, z that are alike but for the axis, with what stands before it."""
-    groups: dict[tuple[str, str], dict[str, str]] = {}
+def _plate_groups(sheet: Sheet) -> dict[tuple[str, str], dict[str, dict[str, str]]]:
+    """Names of columns by plate (what stands before and behind), quantity (f, m, c) and axis."""
+    groups: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
     for name in sheet.numbers:
-        match = pattern.match(name)
+        match = _PLATE.match(name)
         if match:
-            parts = match.groupdict()
-            folded = parts["before"].casefold() if "after" in parts else parts["before"]
-            key = folded, parts.get("after", "").casefold()
-            groups.setdefault(key, {}).setdefault(parts["axis"].casefold(), name)
-    for (before, _), triple in groups.items():
-        if len(triple) == 3:
-            yield before, (triple["x"], triple["y"], triple["z"])
+            kind = {"f": "f", "m": "m", "t": "m"}.get(match["kind"][0].casefold(), "c")
+            key = _WHAT.sub("", match["before"].casefold()), match["after"].casefold()
+            columns = groups.setdefault(key, {}).setdefault(kind, {})
+            columns.setdefault(match["axis"].casefold(), name)
+    return {key: kinds for key, kinds in groups.items() if len(kinds.get("f", {})) == 3}
 
 
 def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
     """Columns of the plates; triples whose unit is no force become refused plates."""
     plates: dict[str, PlateColumns] = {}
-    for _, triple in _triples(sheet, _FORCE):
-        names = ", ".join(triple)
-        units = {sheet.units.get(name, "") for name in triple}
-        if len(units) > 1 or any((si_unit(unit) or ("",))[0] != "N" for unit in units if unit):
+    for kinds in _plate_groups(sheet).values():
+        x, y, z = (kinds["f"][axis] for axis in "xyz")
+        names = f"{x}, {y}, {z}"
+        units = {sheet.units.get(name, "") for name in (x, y, z)}
+        if len(units) > 1 or any((force_unit(unit) or ("",))[0] != "N" for unit in units if unit):
             written = ", ".join(sorted(f'"{unit}"' for unit in units))
             draft.plates.append(refused_plate(names, f"{written} is not one known unit of force"))
             continue
@@ -159,12 +183,35 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
         if not unit:
             draft.notes.append(f"{names}: taken as N")
         label = f"plate {len(plates) + 1}"
-        plates[label] = PlateColumns(triple, unit=unit or "N")
+        place, length = _pressure_columns(draft, sheet, kinds.get("c", {}), label)
+        plates[label] = PlateColumns(
+            (x, y, z), unit=unit or "N", centre_of_pressure=place, length_unit=length
+        )
         draft.notes.append(
             f"{label} recognised from {names}, "
             "taken as the force on the foot: a profile can say otherwise"
         )
     return plates
+
+
+def _pressure_columns(
+    draft: Draft, sheet: Sheet, columns: dict[str, str], label: str
+) -> tuple[tuple[str, str, str] | None, str]:
+    """Columns of a centre of pressure, in two axes or three, and their unit."""
+    if len(columns) < 2:
+        return None, "m"
+    x, y, z = (columns.get(axis, "") for axis in "xyz")
+    units = {sheet.units.get(name, "") for name in columns.values()}
+    unit = units.pop()
+    if units or (unit and (si_unit(unit) or ("",))[0] != "m"):
+        draft.notes.append(f"{label}: the centre of pressure has no one unit of length: left out")
+        return None, "m"
+    if not unit:
+        values = np.abs(np.concatenate([sheet.numbers[name] for name in columns.values()]))
+        far = np.isfinite(values).any() and float(np.nanpercentile(values, 90)) > _FAR
+        unit = "mm" if far else "m"
+        draft.notes.append(f"{label}: centre of pressure taken as {unit} from its size")
+    return (x, y, z), unit
 
 
 def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None:
@@ -179,36 +226,41 @@ def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None
     corners = None if columns.corners is None else np.array(columns.corners) * length
     place = None
     if columns.centre_of_pressure:
-        place = np.column_stack([_column(sheet, c) for c in columns.centre_of_pressure]) * length
+        zero = np.zeros(len(force))
+        axes = [_column(sheet, c) if c else zero for c in columns.centre_of_pressure]
+        place = np.column_stack(axes) * length
     draft.plate(
         force,
         name if name.startswith("plate") else f"plate {name}",
-        up=_up(force, corners, draft.profile),
         centre_of_pressure=place,
         corners=corners,
         kind="columns " + ", ".join(columns.force),
     )
 
 
-def _up(force: np.ndarray, corners: np.ndarray | None, profile: Profile) -> np.ndarray:
-    if profile.vertical:
-        return axis_vector(profile.vertical)
-    if corners is not None:
-        return up_from_normal(plate_axes(corners)[:, 2])
-    load = np.nan_to_num(np.nanpercentile(np.abs(force), 95, axis=0)) if len(force) else [0.0]
-    return np.eye(3)[int(np.argmax(load))]
-
-
 def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, str, str], str]]:
     markers = dict(draft.profile.markers)
-    for base, triple in _triples(sheet, _POINT):
-        if not base or _NOT_POINTS.match(base) or base in markers or _FORCE.match(triple[0]):
+    plates = _plate_groups(sheet).values()
+    forces = {name for kinds in plates for columns in kinds.values() for name in columns.values()}
+    groups: dict[str, dict[str, str]] = {}
+    for name in sheet.numbers:
+        match = _POINT.match(name)
+        if match and name not in forces:
+            columns = groups.setdefault(match["before"], {})
+            columns.setdefault(match["axis"].casefold(), name)
+    without: dict[str, tuple[str, str, str]] = {}
+    for base, columns in groups.items():
+        if len(columns) < 3 or not base or _NOT_POINTS.match(base) or base in markers:
             continue
+        triple = columns["x"], columns["y"], columns["z"]
         unit = sheet.units.get(triple[0], "")
         if not unit:
-            size = float(np.nanmedian(np.abs(sheet.numbers[triple[2]])))
-            words = f"marker {base} without a unit"
-            unit = "m" if draft.length_unit("", size, words, "its size") == 1.0 else "mm"
-        if (si_unit(unit) or ("",))[0] == "m":
+            without[base] = triple
+        elif (si_unit(unit) or ("",))[0] == "m":
             markers[base] = (triple, unit)
+    if without:
+        columns = [sheet.numbers[name] for triple in without.values() for name in triple]
+        metres = draft.length_unit("", np.array(columns), ", ".join(list(without)[:4]))
+        unit = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}.get(metres, draft.profile.length_unit or "m")
+        markers |= {base: (triple, unit) for base, triple in without.items()}
     return markers

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 
-from ..recording.trial import Trial
+from ..recording.trial import Trial, Vertical
 from .draft import Draft
 from .text import split
 
 _COLUMN = re.compile(r"^(?P<name>.+)\.(?P<kind>Pos|Cop|For|Mom)(?P<axis>[XYZ])$")
-_UP = np.eye(3)[1]
+_UP = Vertical((0.0, 1.0, 0.0), "y as D-Flow has it")
 
 
 def read_dflow(draft: Draft) -> Trial:
@@ -18,7 +18,7 @@ def read_dflow(draft: Draft) -> Trial:
     D-Flow stamps each frame when it arrives, a few ms early or late, sometimes several at once;
     the frames themselves are even. So time is the frame's number over the mean rate, and a frame
     that is missing has no numbers. D-Flow repeats the last place of a marker that it lost: what
-    stands still to the last digit was not seen. y is up.
+    stands still to the last digit from one frame of the cameras to the next was not seen.
 
     Source: documentation of GaitAnalysisToolKit 0.2, Motek module.
     """
@@ -49,25 +49,16 @@ def read_dflow(draft: Draft) -> Trial:
             places.setdefault((match["name"], match["kind"]), {})[match["axis"]] = numbers[:, i]
         elif i > 1 or label.casefold() not in ("timestamp", "framenumber"):
             draft.channel(label, numbers[:, i])
-    lost: dict[str, int] = {}
     known = {
         key: np.column_stack([t[a] for a in "XYZ"]) for key, t in places.items() if len(t) == 3
     }
+    draft.up, draft.every_repeat = _UP, True
     for (name, kind), values in known.items():
         if kind == "Pos":
-            still = np.zeros(len(values), dtype=bool)
-            still[1:] = (np.diff(values, axis=0) == 0.0).all(axis=1)
-            values[still | (values == 0.0).all(axis=1)] = np.nan
-            lost[name] = int(still.sum())
             draft.marker(name, values)
         elif kind == "For":
             place = known.get((name, "Cop"))
-            if place is not None:
-                place = np.where((np.abs(values[:, 1]) > 20.0)[:, None], place, np.nan)
-            draft.plate(values, name, up=_UP, centre_of_pressure=place, kind="D-Flow, y up")
-    if any(lost.values()):
-        listed = ", ".join(f"{name} {n}" for name, n in lost.items() if n)
-        draft.notes.append(f"frames that repeat a marker's place, taken as not seen: {listed}")
+            draft.plate(values, name, centre_of_pressure=place, kind="D-Flow")
     left = sorted({name for (name, kind), t in places.items() if len(t) < 3})
     if left:
         draft.notes.append(f"without three components, left out: {', '.join(left)}")

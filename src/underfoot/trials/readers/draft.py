@@ -1,23 +1,57 @@
 """A trial in the making: what every reader fills, and the checks that readers share."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from underfoot.core import DataError
+from underfoot.core import DataError, nearest_match
 from underfoot.core.text import decoded
 
-from ..recording.plates import finished_plate
-from ..recording.trial import Channel, Event, Marker, Plate, Trial
+from ..recording.axes import found_vertical, heel_candidates, toe_candidates
+from ..recording.plates import finished_plate, plate_up
+from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
-from .text import in_si, lines_of, rate_of, si_unit, table, truncated, unique_names
+from .seen import KINDS, camera_clock, unseen
+from .text import (
+    in_si,
+    known_units,
+    lines_of,
+    rate_of,
+    si_unit,
+    table,
+    truncated,
+    unique_names,
+    without_restarts,
+)
+
+_BODY = 0.03, 300.0  # m: markers of a body lie further apart, and no walkway is longer
+_FOOT = 0.06, 0.8  # m from the heel to the toes of any foot
+_NAMED = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "inch": 0.0254}
+
+
+@dataclass(frozen=True, slots=True)
+class _RawPlate:
+    """A plate as the file holds it; ``more`` as ``finished_plate`` takes it."""
+
+    force: np.ndarray
+    more: dict[str, Any]
+
+    @property
+    def corners(self) -> np.ndarray | None:
+        """Corners (4, 3) in m."""
+        return self.more.get("corners")
 
 
 @dataclass
 class Draft:
-    """One recording while it is read; rate, start and times (s) are those of what is added next."""
+    """One recording while it is read; rate, start and times (s) are those of what is added next.
+
+    ``up`` is the axis that the format says is up, for where neither plates nor markers tell it.
+    ``every_repeat``: the system repeats the place of a marker that it lost. ``metres``: in one unit
+    of length of the file.
+    """
 
     data: bytes
     name: str
@@ -27,17 +61,20 @@ class Draft:
     start: float = 0.0
     times: np.ndarray | None = None
     channels: dict[str, Channel] = field(default_factory=dict)
-    plates: list[Plate] = field(default_factory=list)
+    plates: list[Plate | _RawPlate] = field(default_factory=list)
     markers: dict[str, Marker] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
     notes: list[str] = field(default_factory=list)
     settings: dict[str, str] = field(default_factory=dict)
+    up: Vertical | None = None
+    every_repeat: bool = False
+    metres: float = 1.0
 
     def lines(self) -> list[str]:
         """Return the lines of a text file."""
         return lines_of(decoded(self.data, self.name))
 
-    def error(self, what: str, **more: str) -> DataError:
+    def error(self, what: str, **more: str | None) -> DataError:
         """Return the error that names this file."""
         return DataError(what, where=self.name, **more)
 
@@ -56,16 +93,33 @@ class Draft:
         """Return unique names; duplicates become a note."""
         return unique_names(labels, kind, self.notes)
 
-    def clock(self, times: np.ndarray) -> None:
-        """Take rate, start and times from a column of times (s)."""
+    def clock(self, times: np.ndarray, *, restarts: bool = False) -> None:
+        """Take rate, start and times from a column of times (s).
+
+        ``restarts``: the clock may begin anew with each step of a machine.
+        """
+        if restarts:
+            times, count = without_restarts(times)
+            if count:
+                self.notes.append(
+                    f"the clock begins anew {count} times: the parts follow each other"
+                )
         self.rate, self.start, self.times = rate_of(times, self.name)
 
-    def count(self, written: str, counted: int, key: str = "") -> None:
-        """Refuse a file whose header announces another number of samples than it holds."""
-        if written.isdigit() and int(written) != counted:
-            text = f"{key} is {written}, the file holds {counted}"
-            text = text if key else f"{written} samples announced, {counted} found"
-            raise truncated(f"truncated or damaged: {text}", self.name)
+    def count(self, written: str, counted: int, key: str = "", *, rows: bool = False) -> None:
+        """Note that the header announces another number of samples than the file holds.
+
+        Fewer than announced are refused as cut short, but where they are ``rows`` of a format whose
+        programs write the number before they drop or cut rows.
+        """
+        if not written.isdigit() or int(written) == counted:
+            return
+        said = f"{key} is {written}" if key else f"{written} samples are announced"
+        less = counted < int(written)
+        if less and not rows:
+            raise truncated(f"truncated or damaged: {said}, the file holds {counted}", self.name)
+        more = ": was the file cut short?" if less else ""
+        self.notes.append(f"{said}, the file holds {counted}: all of them are read{more}")
 
     def channel(
         self,
@@ -86,33 +140,151 @@ class Draft:
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:
-        """Add the path (n, 3) of a marker in m."""
-        self.markers[name] = Marker(positions, self.rate, self.start, self.times)
+        """Add the path (n, 3) of a marker in m; exact zeros are a marker that was not seen."""
+        zero = (positions == 0.0).all(axis=1)
+        seen = np.where(zero[:, None], np.nan, positions)
+        self.markers[name] = Marker(seen, self.rate, self.start, self.times)
 
     def plate(self, force: np.ndarray, name: str = "", **more: Any) -> None:
-        """Add a force plate; ``more`` as ``finished_plate`` takes it."""
+        """Add a force plate (n, 3), N; ``more`` as ``finished_plate`` takes it but ``up``."""
         more = {"start": self.start, "subtract_baseline": self.subtract_baseline, **more}
-        name = name or f"plate {len(self.plates) + 1}"
-        self.plates.append(finished_plate(name, force, rate=self.rate, **more))
+        more |= {"name": name or f"plate {len(self.plates) + 1}", "rate": self.rate}
+        self.plates.append(_RawPlate(np.asarray(force, dtype=float), more))
 
-    def length_unit(self, written: str, size: float, unknown: str, of: str) -> float:
-        """Return the factor to m of a unit, or the one that the size of the numbers tells."""
-        unit = si_unit(written)
+    def length_unit(self, written: str, places: np.ndarray, of: str = "the markers") -> float:
+        """Return the factor to m of a unit; without one that which the numbers (...) tell.
+
+        DataError: a unit word that is not known.
+        """
+        stated = self.profile.length_unit
+        unit = si_unit(stated or written)
         if unit and unit[0] == "m":
+            self.metres = unit[1]
             return unit[1]
-        millimetres = size > 20.0
-        self.notes.append(f"{unknown}: taken as {'mm' if millimetres else 'm'} from {of}")
-        return 1e-3 if millimetres else 1.0
+        if written.strip():
+            raise self.error(
+                f'the unit of {of} is "{written}", which is no known length',
+                allowed="m, cm, mm, inch, ft ...",
+                nearest=nearest_match(written, known_units()),
+                remedy=_STATE,
+            )
+        seen = np.abs(places[np.isfinite(places)])
+        millimetres = seen.size > 0 and float(np.percentile(seen, 90)) > 20.0
+        taken = "mm" if millimetres else "m"
+        self.notes.append(f"{of} without a unit: taken as {taken} from the size of the numbers")
+        self.metres = _NAMED[taken]
+        return self.metres
 
     def trial(self, source: str) -> Trial:
-        """Return the trial."""
+        """Return the trial: markers where they were seen, plates in the vertical found once."""
+        self.markers = self._seen_markers()
+        self._check_lengths()
+        raw = [plate for plate in self.plates if isinstance(plate, _RawPlate)]
+        up = found_vertical(
+            self.profile.vertical,
+            corners=[plate.corners for plate in raw if plate.corners is not None],
+            forces=[plate.force for plate in raw],
+            markers=self.markers,
+            stated=self.up,
+        )
         return Trial(
             self.name,
             self.channels,
-            tuple(self.plates),
+            tuple(
+                finished_plate(
+                    force=one.force, up=plate_up(one.corners, np.array(up.axis)), **one.more
+                )
+                if isinstance(one, _RawPlate)
+                else one
+                for one in self.plates
+            ),
             self.markers,
             source,
             notes=tuple(dict.fromkeys(self.notes)),
             events=self.events,
             settings=self.settings,
+            vertical=up,
         )
+
+    def _seen_markers(self) -> dict[str, Marker]:
+        """Markers at the cameras' rate, NaN where they were not seen; what was lost is noted."""
+        markers = dict(self.markers)
+        first = next(iter(markers.values()), None)
+        even = first is not None and all(
+            one.times is None and (one.rate, one.start) == (first.rate, first.start)
+            for one in markers.values()
+        )
+        clock = camera_clock({n: m.positions for n, m in markers.items()}) if even else None
+        if clock is not None and first is not None:
+            rate = first.rate / clock.rows_a_frame
+            start = first.start + clock.first / first.rate
+            self.notes.append(
+                f"markers are held for {clock.rows_a_frame:.3g} rows: cameras at {rate:.4g} Hz"
+            )
+            markers = {
+                name: Marker(clock.seen(one.positions), rate, start)
+                for name, one in markers.items()
+            }
+        seen: dict[str, list[str]] = {}
+        for name, marker in markers.items():
+            lost = unseen(marker.positions, every_repeat=self.every_repeat)
+            if not lost:
+                continue
+            mask = np.any(list(lost.values()), axis=0)
+            words = []
+            for kind, where in lost.items():
+                frames = np.flatnonzero(where)
+                times = marker.time[frames[[0, -1]]]
+                words.append(f"{len(frames)} frames ({times[0]:.2f} to {times[1]:.2f} s)")
+                seen.setdefault(kind, []).append(f"{name} {words[-1]}")
+            note = "; ".join(f"{w} {KINDS[k]}" for w, k in zip(words, lost, strict=True))
+            positions = np.where(mask[:, None], np.nan, marker.positions)
+            markers[name] = replace(marker, positions=positions, note=note)
+        for kind, names in seen.items():
+            more = f" and {len(names) - 6} more markers" if len(names) > 6 else ""
+            self.notes.append(
+                f"taken as not seen, they {KINDS[kind]}: {', '.join(names[:6])}{more}"
+            )
+        return markers
+
+    def _check_lengths(self) -> None:
+        """Refuse markers whose unit can't be: a body of a millimetre, a foot of three metres."""
+        paths = [m.positions[~m.missing] for m in self.markers.values() if (~m.missing).sum() > 2]
+        if not paths:
+            return
+        ends = [np.percentile(path, (1, 99), axis=0) for path in paths]
+        low, high = (
+            np.min([end[0] for end in ends], axis=0),
+            np.max([end[1] for end in ends], axis=0),
+        )
+        sizes = [("the markers", float((high - low).max()), _BODY)] if len(paths) > 1 else []
+        trial = Trial(self.name, markers=self.markers)
+        heels, toes = heel_candidates(trial), toe_candidates(trial)
+        for side in ("left", "right"):
+            if heels[side] and toes[side]:
+                heel, toe = self.markers[heels[side][0]], self.markers[toes[side][0]]
+                if heel.positions.shape == toe.positions.shape:
+                    apart = np.linalg.norm(heel.positions - toe.positions, axis=1)
+                    size = float(np.median(apart[np.isfinite(apart)] if apart.size else 1.0))
+                    sizes.append((f"{heels[side][0]} and {toes[side][0]}", size, _FOOT))
+        for what, size, (least, most) in sizes:
+            if not least <= size <= most:
+                raise self.error(
+                    f"{what} are {_in_words(size)} apart: the unit of length can't be right",
+                    allowed=f"{_in_words(least)} to {_in_words(most)}",
+                    remedy=f"{_fitting(size / self.metres, least, most)}. {_STATE}",
+                )
+
+
+_STATE = 'State the unit: length_unit = "mm" (or "m", "cm" ...) under [file] in a profile'
+
+
+def _in_words(size: float) -> str:
+    return f"{size:.3g} m" if size >= 0.1 else f"{1e3 * size:.3g} mm"
+
+
+def _fitting(number: float, least: float, most: float) -> str:
+    """Which unit makes a length that can be of a number of the file."""
+    usual = (least * most) ** 0.5
+    misfit = {name: abs(np.log(number * unit / usual)) for name, unit in _NAMED.items()}
+    return f"As {min(misfit, key=lambda name: float(misfit[name]))} it would fit"

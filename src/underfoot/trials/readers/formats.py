@@ -58,6 +58,11 @@ TABLE = TrialReader(
 
 
 _EXPORT = "Export the recording as C3D, or as text with column names"
+_MARKERS = "Export the markers as C3D or TRC, and the forces of the plates"
+_INSOLE = "It holds the load of insoles and no shear: RCOF needs a force plate (C3D, text)"
+_SENSORS = (
+    "Turns and accelerations hold no places: export C3D or MVNX, and the forces of the plates"
+)
 _EXPORTS = _HERE + "text_exports:"
 READERS = (
     TrialReader("TRC", _EXPORTS + "read_trc", (r"\Apathfiletype",), suffixes=(".trc",)),
@@ -112,7 +117,21 @@ READERS = (
     TrialReader("NDI N3D", "", suffixes=(".n3d",), remedy=_EXPORT),
     TrialReader("Xsens MVN, not exported,", "", suffixes=(".mvn",), remedy="Export it as MVNX"),
     TrialReader("GAITRite", "", (r"\A.*gaitrite",), remedy="It holds footfalls, no forces"),
-    TrialReader("Delsys EMGworks", "", (r"\A.*(emgworks|x\[s\].*emg)",), remedy=_EXPORT),
+    TrialReader("Delsys", "", (r"\A.*(emgworks|delsys|trigno|x ?\[s\].*emg)",), remedy=_EXPORT),
+    TrialReader("BVH (turns of joints)", "", (r"\A\s*hierarchy\s*$",), remedy=_MARKERS),
+    TrialReader("Motion Analysis analog text (.anc: counts of a converter)", "",
+                (r"\Afile_type:\s*analog r/c ascii",),
+                remedy="In Cortex, export the forces (.forces) or C3D: they are calibrated"),
+    TrialReader("Visual3D text", "", (r"^\s*item\t\s*[xyz0-9]",),
+                remedy="Save the recording from Visual3D as C3D"),
+    TrialReader("Moticon insole text", "", (r"\A.*moticon", r"^#.*moticon"), remedy=_INSOLE),
+    TrialReader("novel loadsol text", "", (r"\A.*loadsol", r"^.*loadsol"), remedy=_INSOLE),
+    TrialReader("Noraxon", "", (r"\A(.*\n){0,3}.*(noraxon|myoresearch|myomotion)",),
+                remedy=_EXPORT),
+    TrialReader("Movella DOT or Xsens sensors", "", (r"^packetcounter[,;\t]",), remedy=_SENSORS),
+    TrialReader("APDM sensors", "", (r"\A.*apdm",), remedy=_SENSORS),
+    TrialReader("Qualisys skeleton", "", (r"\A<\?xml[^>]*>\s*<(skeleton|qtm)",),
+                remedy="Export the markers and forces as C3D or TSV"),
 )  # fmt: skip
 
 

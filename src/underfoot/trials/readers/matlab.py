@@ -153,7 +153,6 @@ def _qualisys(draft: Draft, value: Mapping[str, Any]) -> Trial:
         draft.plate(
             force,
             f"plate {number}",
-            up=np.eye(3)[2],
             centre_of_pressure=1e-3 * place.T if place.shape == force.T.shape else None,
             corners=1e-3 * corners if corners.shape == (4, 3) else None,
             kind="Qualisys MATLAB export, taken as laboratory axes",

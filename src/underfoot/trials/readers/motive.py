@@ -2,9 +2,7 @@
 
 import csv
 
-import numpy as np
-
-from ..recording.trial import Trial
+from ..recording.trial import Trial, Vertical
 from .draft import Draft
 
 _KINDS = ("marker", "bone marker", "rigid body marker", "rigid body", "bone")
@@ -41,9 +39,8 @@ def read_motive(draft: Draft) -> Trial:
         names = heads[place] if place < len(heads) else names
     numbers = draft.table(lines[at:], ",", width, at + 1)
     draft.clock(numbers[:, 1])
-    size = float(np.nanmedian(np.abs(numbers[:, 2:]))) if np.isfinite(numbers[:, 2:]).any() else 0
-    unit = header.get("length units", "")
-    scale = draft.length_unit(unit, size, f'unit "{unit}" is not known', "the size of the numbers")
+    places = [i for i in range(2, width) if what[i].casefold() == "position"]
+    scale = draft.length_unit(header.get("length units", ""), numbers[:, places])
     groups: dict[tuple[str, str], dict[str, int]] = {}
     for i in range(2, width):
         if what[i].casefold() == "position" and kinds[i].casefold() in _KINDS:
@@ -57,5 +54,6 @@ def read_motive(draft: Draft) -> Trial:
     if not draft.markers:
         raise draft.error("no marker has a position", remedy="Export markers with their positions")
     draft.count(header.get("total exported frames", ""), len(numbers), "Total Exported Frames")
+    draft.up = Vertical((0.0, 1.0, 0.0), "y as Motive has it")
     draft.settings["take"] = header.get("take name", "")
     return draft.trial("OptiTrack Motive CSV")

@@ -60,11 +60,8 @@ def read_pose_json(draft: Draft) -> Trial:
             raise draft.error(f"{name} has no three coordinates a frame")
     if len({len(v) for v in places.values()}) != 1:
         raise draft.error("points have different numbers of frames")
-    # Height above the floor is below 3 in m, above it in mm.
-    sizes = [np.nanmax(np.abs(v)) for v in places.values() if np.isfinite(v).any()]
-    size = float(np.median(sizes)) if sizes else 0.0
     written = str(top.get("unit", top.get("units", "")))
-    factor = draft.length_unit(written, size, "no unit of length", "the size")
+    factor = draft.length_unit(written, np.concatenate(list(places.values()) or [np.empty((0, 3))]))
     for name, place in places.items():
         draft.marker(name, place * factor)
     return draft.trial("JSON")

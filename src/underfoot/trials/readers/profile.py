@@ -10,13 +10,15 @@ from underfoot.core import InputError, nearest_match, to_si
 
 from ..recording.tester_calibration import TesterCalibration
 from ..recording.trial import PlateAccuracy
-from .text import known_units, si_unit
+from .text import force_unit, known_units, si_unit
 
 T = TypeVar("T")
 _DIRECTIONS = ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")
 # Tables of a profile with the keys they may have; none: any key, as the laboratory's own names.
 _PARTS: dict[str, tuple[str, ...]] = {
-    "file": tuple("delimiter header_line sheet rate time time_unit subtract_baseline".split()),
+    "file": tuple(
+        "delimiter header_line sheet rate time time_unit length_unit subtract_baseline".split()
+    ),
     "channels": (), "plates": (), "markers": (),
     "axes": ("vertical", "walking"), "heel": ("left", "right"), "subject": ("mass",),
     "sensors": (), "accuracy": ("gain", "crosstalk", "source"),
@@ -52,6 +54,7 @@ class Profile:
     rate: float | None = None
     time: str | None = None
     time_unit: str | None = None
+    length_unit: str | None = None
     subtract_baseline: bool = True
     channels: Mapping[str, tuple[str, str, float]] = field(default_factory=dict)
     plates: Mapping[str, PlateColumns] = field(default_factory=dict)
@@ -102,6 +105,11 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
         sheet=_text(file, "sheet", where),
         time=_text(file, "time", where),
         time_unit=_text(file, "time_unit", where),
+        length_unit=(
+            _unit(file["length_unit"], "m", f"{where}.file.length_unit")
+            if "length_unit" in file
+            else None
+        ),
         header_line=header,
         rate=_quantity(file, "rate", "Hz", f"{where}.file"),
         subtract_baseline=bool(file.get("subtract_baseline", True)),
@@ -147,7 +155,8 @@ def _text(data: Mapping[str, Any], key: str, where: str) -> str | None:
 
 
 def _unit(text: object, dimension: str, where: str) -> str:
-    unit = si_unit(text) if isinstance(text, str) else None
+    read = force_unit if dimension == "N" else si_unit
+    unit = read(text) if isinstance(text, str) else None
     if unit is None or (dimension and unit[0] != dimension):
         raise InputError(
             f"{text!r} is no known unit" + (f" of {dimension}" if dimension else ""),

@@ -5,17 +5,20 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from math import nan
 from pathlib import Path
 
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.numbers_text import NumberForm
 from underfoot.core.text import decoded
 
 from . import text
 from .text import si_unit
 
 _MOST_CELLS = 50_000_000
+_FOOT = 40  # lines below the table
 _HEAD = 300  # lines in which the table must begin
 _NOTHING = (*text.NOTHING, "", "#div/0!", "#value!")
 
@@ -79,17 +82,34 @@ def sheet_from(
     body = lines[len(lines) // 2 :]  # a free header may hold other signs: the body decides
     if delimiter is None:
         delimiter = text.delimiter_of(body)
-    comma = text.uses_decimal_comma(body, delimiter)
-    if comma:
-        notes.append("decimal commas")
-    rows = [_cells(line, delimiter, comma) for line in lines[: max(_HEAD, header_line or 0) + 2]]
+    rows = [text.split(line, delimiter) for line in lines[: max(_HEAD, header_line or 0) + 2]]
     table = _layout(rows, header_line, where)
-    body = [line.replace(",", ".") if comma else line for line in lines[table.first :]]
-    values = text.plain_numbers(body, delimiter)
+    lines = _without_footer(lines, table.first, delimiter, notes)
+    values = text.plain_numbers(lines[table.first :], delimiter, notes)
     if values is not None and (table.head is None or values.shape[1] == len(rows[table.head])):
         return _sheet(rows, table, [], values, where, notes)
-    rest = [_cells(line, delimiter, comma) for line in lines[table.first :]]
+    rest = [text.split(line, delimiter) for line in lines[table.first :]]
     return _sheet(rows, table, rest, None, where, notes)
+
+
+def _without_footer(lines: list[str], first: int, delimiter: str, notes: list[str]) -> list[str]:
+    """Lines up to the last row: what follows begins with no number and is no row of the table."""
+    end = len(lines)
+    if first >= end or not text.is_written_number(text.split(lines[first], delimiter)[0]):
+        return lines  # rows begin with text: it ends no table
+    while end > first + 1 and len(lines) - end < _FOOT:
+        cells = text.split(lines[end - 1], delimiter)
+        filled = [cell for cell in cells if cell]
+        numbers = sum(text.is_written_number(cell) for cell in filled)
+        if filled and (text.is_written_number(cells[0]) or numbers >= 0.5 * len(filled)):
+            break
+        end -= 1
+    else:
+        return lines
+    words = [line.strip() for line in lines[end:] if line.strip(" \t;,")]
+    if words:
+        notes.append(f"below the table, left out: {'; '.join(words)[:80]}")
+    return lines[:end]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,13 +144,14 @@ def _sheet(
     numbers: dict[str, np.ndarray] = {}
     texts: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}
+    forms = text.written_forms(body, width, where, notes) if values is None else []
     for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
         units[name] = pairs[i][1] or (written[i] if i < len(written) else "")
         if values is not None:
             numbers[name] = text.measurable(values[:, i], notes)
             continue
         cells = [row[i] if i < len(row) else "" for row in body]
-        column = _numeric(cells)
+        column = _numeric(cells, forms[i])
         if column is None:
             texts[name] = tuple(cells)
         else:
@@ -140,17 +161,9 @@ def _sheet(
     return Sheet(where, numbers, texts, units, header, tuple(notes))
 
 
-def _cells(line: str, delimiter: str, comma: bool) -> list[str]:
-    """Cells of a line; numbers with a decimal point where the file writes a comma."""
-    cells = text.split(line, delimiter)
-    if not comma:
-        return cells
-    return [point if text.is_number(point := cell.replace(",", ".")) else cell for cell in cells]
-
-
-def _numeric(cells: list[str]) -> np.ndarray | None:
+def _numeric(cells: list[str], form: NumberForm) -> np.ndarray | None:
     try:
-        plain = ["nan" if cell.casefold() in _NOTHING else cell for cell in cells]
+        plain = [nan if cell.casefold() in _NOTHING else form.number(cell) for cell in cells]
         return np.array(plain, dtype=float)
     except ValueError:
         return None
@@ -184,7 +197,7 @@ def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layo
 def _is_row(rows: list[list[str]], i: int) -> bool:
     """A row in which most cells are numbers and that looks like the one after it."""
     pair = rows[i : i + 2]
-    shares = [[text.is_number(cell) for cell in row if cell] for row in pair]
+    shares = [[text.is_written_number(cell) for cell in row if cell] for row in pair]
     if not any(shares[0]) or abs(len(pair[-1]) - len(pair[0])) > 1:
         return False
     return all(sum(numbers) >= 0.5 * len(numbers) for numbers in shares)
@@ -192,7 +205,9 @@ def _is_row(rows: list[list[str]], i: int) -> bool:
 
 def _is_head(row: list[str], width: int) -> bool:
     filled = [cell for cell in row if cell]
-    return len(filled) >= max(1, 0.6 * width) and not any(text.is_number(cell) for cell in filled)
+    return len(filled) >= max(1, 0.6 * width) and not any(
+        text.is_written_number(cell) for cell in filled
+    )
 
 
 def _are_units(row: list[str]) -> bool:
@@ -254,5 +269,11 @@ def _texts(rows: Iterable[Sequence[object]], where: str) -> list[list[str]]:
         cells += len(row)
         if cells > _MOST_CELLS:
             raise DataError("the sheet is larger than any recording", where=where)
-        texts.append(["" if cell is None else str(cell).strip() for cell in row])
+        texts.append(["" if cell is None else _cell_text(cell) for cell in row])
     return texts
+
+
+def _cell_text(cell: object) -> str:
+    """Text of a cell; a number with a last zero, so that its point marks no thousands."""
+    text = str(cell).strip()
+    return f"{text}0" if isinstance(cell, float) and "." in text and "e" not in text else text

@@ -8,11 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.numbers_text import NumberForm, number_forms
+from underfoot.core.text import cells_of
 
-_COMMA_NUMBER = re.compile(r"(?<![\d.,])[+-]?\d+,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
 _WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
 NOTHING = ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
+_WRITTEN = re.compile(r"[+\-−]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+\-−]?\d+)?")
 
 
 def lines_of(text: str) -> list[str]:
@@ -23,6 +25,11 @@ def lines_of(text: str) -> list[str]:
 def is_number(cell: str) -> bool:
     """True when a cell is a plain number with a decimal point."""
     return bool(_NUMBER.match(cell))
+
+
+def is_written_number(cell: str) -> bool:
+    """True when a cell can be a number in some way of writing: "1,075", "1.075,5", "1'075"."""
+    return bool(_WRITTEN.fullmatch(cell))
 
 
 def name_and_unit(label: str) -> tuple[str, str]:
@@ -42,15 +49,7 @@ def delimiter_of(lines: Sequence[str]) -> str:
 
 def split(line: str, delimiter: str) -> list[str]:
     """Return the cells of a line, quotes and blanks around them removed."""
-    cells = line.split(delimiter) if delimiter else line.split()
-    return [cell.strip().strip('"').strip() for cell in cells]
-
-
-def uses_decimal_comma(lines: Sequence[str], delimiter: str) -> bool:
-    """True when numbers are written with a comma (never when the comma is the delimiter)."""
-    if delimiter == ",":
-        return False
-    return any(_COMMA_NUMBER.search(line) for line in lines[:50])
+    return cells_of(line, delimiter or None)
 
 
 def truncated(what: str, where: str) -> DataError:
@@ -76,18 +75,16 @@ def table(
     rows = [line for line in lines if line.strip(" \t;,")]
     if not rows:
         raise DataError("the table has no rows", where=where)
-    if uses_decimal_comma(rows, delimiter):
-        rows = [row.replace(",", ".") for row in rows]
-        notes.append("decimal commas")
-    values = plain_numbers(rows, delimiter)
+    values = plain_numbers(rows, delimiter, notes)
     if values is None or values.shape[1] != columns:
         cells = [split(row, delimiter) for row in rows]
         check_rows(cells, columns, first_line, where)
+        forms = written_forms(cells, columns, where, notes)
         values = np.full((len(rows), columns), np.nan)
         for i, row in enumerate(cells):
             for j, cell in enumerate(row[:columns]):
                 if cell and j not in ignored:
-                    values[i, j] = _number(cell, f"{where}, line {first_line + i}")
+                    values[i, j] = _number(cell, forms[j], f"{where}, line {first_line + i}")
         counts = [min(len(row), columns) for row in cells]
         uneven = sum(count != max(counts) for count in counts)
         if uneven:
@@ -98,6 +95,18 @@ def table(
     if not np.isfinite(values).any():
         raise DataError("the table holds no number", where=where)
     return values
+
+
+def written_forms(
+    cells: Sequence[Sequence[str]], width: int, where: str, notes: list[str]
+) -> list[NumberForm]:
+    """Return how the numbers of each of ``width`` columns are written; what is odd is noted."""
+    forms = number_forms([[row[i] for row in cells if i < len(row)] for i in range(width)], where)
+    if any(form.decimal == "," for form in forms):
+        notes.append(_COMMAS)
+    if any(form.thousands for form in forms):
+        notes.append("signs between thousands")
+    return forms
 
 
 def check_rows(rows: Sequence[Sequence[str]], width: int, first_line: int, where: str) -> None:
@@ -123,17 +132,41 @@ def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
     return values
 
 
-def plain_numbers(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
-    """Return the numbers of a table that holds nothing else, or None."""
+_COMMAS = "decimal commas"
+
+
+def plain_numbers(rows: Sequence[str], delimiter: str, notes: list[str]) -> np.ndarray | None:
+    """Return the numbers of a table that holds nothing else, or None.
+
+    Decimal commas are understood, where nothing but a comma can be the decimal sign. None as well
+    where a mark may stand between thousands: ``written_forms`` tells.
+    """
+    values = _loaded(rows, delimiter)
+    comma = values is None and delimiter != "," and not any("." in row for row in rows)
+    if comma:
+        values = _loaded([row.replace(",", ".") for row in rows], delimiter)
+    if values is None:
+        return None
+    broken = np.abs(values[np.isfinite(values) & (values != np.round(values))])
+    thousandths = 1e3 * broken
+    three = broken.size and (np.abs(thousandths - np.round(thousandths)) < 1e-6).all()
+    if three and (broken >= 1.0).all() and (broken < 1e3).all():
+        return None
+    if comma:
+        notes.append(_COMMAS)
+    return values
+
+
+def _loaded(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
     try:
         return np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
     except (ValueError, OverflowError):
         return None
 
 
-def _number(cell: str, where: str) -> float:
+def _number(cell: str, form: NumberForm, where: str) -> float:
     try:
-        return float(cell)
+        return form.number(cell)
     except ValueError:
         if cell.casefold() in NOTHING:
             return math.nan
@@ -188,63 +221,149 @@ def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | N
     return (1.0 / mean, float(times[0]), None) if even else (1.0 / step, float(times[0]), times)
 
 
+def without_restarts(times: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return times whose clock begins anew with each step of a machine as one clock, and how often.
+
+    A restart goes back to about the first time of all; other steps backward stay as they are.
+    """
+    steps = np.diff(times)
+    forward = steps[steps > 0]
+    usual = float(np.median(forward)) if forward.size else 0.0
+    at = np.flatnonzero((steps <= 0) & (times[1:] <= times[0] + 1.5 * usual)) + 1
+    if not len(at) or len(at) > 0.1 * len(times):
+        return times, 0
+    joined = times.copy()
+    for index in at:
+        joined[index:] += joined[index - 1] + usual - joined[index]
+    return joined, len(at)
+
+
 _GRAVITY = 9.80665
 # A table instead of a unit library: files are read by the hundred, and instruments write few units.
 # Masses used as forces follow standard gravity.
+_POUND = 4.4482216152605  # N
+_FORCES = {
+    "N": 1.0, "kN": 1e3, "mN": 1e-3, "MN": 1e6, "daN": 10.0, "dyn": 1e-5, "gf": _GRAVITY * 1e-3,
+    "kgf": _GRAVITY, "lbf": _POUND, "ozf": _POUND / 16.0, "kip": 1e3 * _POUND,
+}  # fmt: skip
+_LENGTHS = {
+    "m": 1.0, "dm": 0.1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "km": 1e3, "in": 0.0254,
+    "ft": 0.3048, "yd": 0.9144,
+}  # fmt: skip
+_MOMENTS = {
+    f"{force}*{length}": ours * arm
+    for force, ours in _FORCES.items()
+    for length, arm in _LENGTHS.items()
+}
+# One spelling of a unit for each word that instruments write. Plurals are found by their s.
+_WORDS: dict[str, str] = {
+    word: unit
+    for unit, words in {
+        "N": "newton", "kN": "kilonewton", "daN": "dan decanewton dekanewton", "dyn": "dyne",
+        "kgf": "kp kilopond kilogram-force kilogramforce kgforce",
+        "gf": "g pond gram-force gramforce", "lbf": "pound-force poundforce",
+        "m": "meter metre", "dm": "decimeter decimetre dezimeter",
+        "cm": "centimeter centimetre zentimeter", "mm": "millimeter millimetre",
+        "um": "micron micrometer micrometre mikrometer", "nm": "nanometer nanometre",
+        "km": "kilometer kilometre", "in": "inch inche zoll \"", "ft": "foot feet fuss '",
+        "yd": "yard",
+        "s": "sec second sekunde", "ms": "msec millisec millisecond millisekunde",
+        "us": "usec microsecond", "min": "minute", "h": "hr hour std stunde",
+        "m/s": "m/sec meter/s meter/sec", "mm/s": "mm/sec", "cm/s": "cm/sec",
+        "Pa": "pascal", "kPa": "kilopascal", "deg": "degree grad", "rad": "radian",
+        "rpm": "r/min rev/min u/min 1/min", "Hz": "hertz", "V": "volt",
+    }.items()
+    for word in words.split()
+}  # fmt: skip
+_WEIGHTS = {
+    word: unit
+    for unit, words in {
+        "kgf": "kg kilo kilogram kilogramme", "gf": "g gram gramme", "lbf": "lb lbm pound",
+        "ozf": "oz ounce",
+    }.items()
+    for word in words.split()
+}  # fmt: skip
+"""Units of mass that stand for their weight where a force is measured."""
 _FACTORS: dict[str, tuple[str, float]] = {
     name: (si, factor)
-    for si, spellings in {
-        "N": {
-            "n newton newtons": 1.0, "kn": 1e3, "mn": 1e-3, "g gf": _GRAVITY * 1e-3,
-            "kgf": _GRAVITY, "lbf": 4.4482216152605,
-        },
-        "N*m": {"nm n*m": 1.0, "nmm n*mm": 1e-3, "ncm": 1e-2},
-        "m": {
-            "m meter meters": 1.0, "cm": 1e-2, "mm": 1e-3, "um micron": 1e-6, "in inch": 0.0254,
-        },
-        "s": {
-            "s sec second seconds": 1.0, "ms msec": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0,
-        },
-        "m/s": {"m/s m/sec": 1.0, "mm/s mm/sec": 1e-3, "cm/s": 1e-2},
+    for si, units in {
+        "N": _FORCES,
+        "m": _LENGTHS,
+        "N*m": _MOMENTS,
+        "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+        "m/s": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "um/s": 1e-6, "km/h": 1.0 / 3.6},
         "Pa": {
-            "pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "bar": 1e5, "mbar": 1e2,
-            "psi": 6894.757293168361,
+            "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "mPa": 1e-3, "GPa": 1e9, "hPa": 1e2, "bar": 1e5,
+            "mbar": 1e2, "psi": 6894.757293168361, "N/mm2": 1e6, "N/cm2": 1e4, "N/m2": 1.0,
         },
-        "rad": {"deg": math.pi / 180.0, "rad": 1.0},
-        "rad/s": {"rpm": math.pi / 30.0},
-        "Hz": {"hz": 1.0, "khz": 1e3},
-        "V": {"v": 1.0, "mv": 1e-3},
+        "rad": {"deg": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3},
+        "rad/s": {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": math.pi / 180.0},
+        "Hz": {"Hz": 1.0, "kHz": 1e3},
+        "V": {"V": 1.0, "mV": 1e-3},
         "1": {"%": 1e-2, "-": 1.0, "1": 1.0},
-        "K": {"k": 1.0},
+        "K": {"K": 1.0},
     }.items()
-    for names, factor in spellings.items()
-    for name in names.split()
+    for name, factor in units.items()
 }  # fmt: skip
-# Spellings in which capitals decide between two units.
-_EXACT: dict[str, tuple[str, float]] = {
-    "MN": ("N", 1e6),
-    "nm": ("m", 1e-9),
-    "mPa": ("Pa", 1e-3),
-    "Nm": ("N*m", 1.0),
-    "NM": ("N*m", 1.0),
-}
-_CELSIUS = {"degc", "c", "deg c", "celsius"}
+# Without regard to capitals, but where they decide between two units (mN and MN).
+_ANY_CASE: dict[str, str] = {}
+for _name in (*_FACTORS, *_WORDS, *_WEIGHTS):
+    _ANY_CASE.setdefault(_name.casefold(), _name)
+_ANY_CASE |= {"mn": "mN", "mpa": "MPa", "nm": "N*m", "mn*m": "mN*m"}
+_CELSIUS = {"degc", "c", "deg c", "celsius", "degcelsius", "gradcelsius"}
+_SUFFIXES = re.compile(r"[\s*·⋅×x.-]+")
 
 
 def si_unit(text: str) -> tuple[str, float, float] | None:
     """Return (SI unit, factor, offset) of a unit as written in a file, or None if unknown.
 
-    ``si = factor * value + offset``.
+    ``si = factor * value + offset``. A mass is no unit of a recording but as a force
+    (``force_unit``).
     """
-    plain = text.strip().strip("[]()").replace("µ", "u").replace("μ", "u").replace("°", "deg")
-    plain = plain.replace("Â", "").replace("·", "*").replace(".", "*").replace("−", "-")
-    if plain in _EXACT:
-        return (*_EXACT[plain], 0.0)
-    lowered = plain.casefold().replace("^", "").replace(" ", "")
-    if lowered in _CELSIUS:
+    plain = text.strip().strip("[](){}").strip().replace("µ", "u").replace("μ", "u")
+    plain = plain.replace("°", "deg").replace("Â", "").replace("−", "-").replace("²", "2")
+    plain = plain.replace("^", "")
+    if plain.casefold().replace(" ", "") in _CELSIUS:
         return "K", 1.0, 273.15
-    found = _FACTORS.get(lowered)
-    return (*found, 0.0) if found else None
+    name = _unit_name(plain)
+    if name in _WEIGHTS:
+        return None
+    if name is None:  # a moment: a force and an arm, in either order, with any sign between
+        parts = [part for part in _SUFFIXES.split(plain) if part]
+        names = [_WEIGHTS.get(n := _unit_name(part) or "", n) for part in parts]
+        if len(parts) == 1:
+            names = _glued(plain)
+        if len(names) == 2:
+            name = next(
+                (f"{a}*{b}" for a, b in (names, names[::-1]) if f"{a}*{b}" in _MOMENTS), None
+            )
+    return None if name is None else (*_FACTORS[name], 0.0)
+
+
+def _unit_name(word: str) -> str | None:
+    """The one spelling of a unit: as it stands, in other capitals, a word, its plural."""
+    for plain in (word, word.replace(" ", "").replace(".", "")):
+        for one in (plain, re.sub("[sS]$", "", plain) if len(plain) > 2 else plain):
+            known = one in _FACTORS or one in _WORDS or one in _WEIGHTS
+            found = one if known else _ANY_CASE.get(one.casefold())
+            if found is not None:
+                return _WORDS.get(found, found)
+    return None
+
+
+def force_unit(text: str) -> tuple[str, float, float] | None:
+    """Return what ``si_unit`` does of the unit of a force; a mass ("kg", "lb") is its weight."""
+    name = _unit_name(text.strip().strip("[](){}").strip())
+    return ("N", _FORCES[_WEIGHTS[name]], 0.0) if name in _WEIGHTS else si_unit(text)
+
+
+def _glued(word: str) -> list[str]:
+    """Force and arm of a moment written as one word: Nmm, kNm, lbft, kgfcm, inlbf."""
+    parts = ((word[:i], word[i:]) for i in range(len(word) - 1, 0, -1))
+    pairs = ([_WEIGHTS.get(n := _unit_name(p) or "", n) for p in two] for two in parts)
+    return next(
+        (p for p in pairs if f"{p[0]}*{p[1]}" in _MOMENTS or f"{p[1]}*{p[0]}" in _MOMENTS), []
+    )
 
 
 def in_si(text: str) -> tuple[str, float, float]:
@@ -254,4 +373,4 @@ def in_si(text: str) -> tuple[str, float, float]:
 
 def known_units() -> list[str]:
     """Return the spellings understood, for messages."""
-    return sorted({*_FACTORS, *_EXACT, "degC"})
+    return sorted({*_FACTORS, "degC"})

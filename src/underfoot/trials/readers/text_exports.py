@@ -6,9 +6,9 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from ..recording.trial import Trial
+from ..recording.trial import Trial, Vertical
 from .draft import Draft
-from .text import is_number, number_after, si_unit, split
+from .text import is_number, number_after, si_unit, split, truncated
 
 
 def read_trc(draft: Draft) -> Trial:
@@ -33,29 +33,33 @@ def read_trc(draft: Draft) -> Trial:
         raise draft.error("truncated: there are no rows")
     columns = 2 + 3 * len(labels)
     rows = [row for line in lines[first:] if (row := line.rstrip(" \t"))]
+    written = header.get("NumFrames", "")
+    cut = len(rows) > 1 and rows[-1].count("\t") < min(row.count("\t") for row in rows[:-1])
+    if cut and written.isdigit() and len(rows) <= int(written):
+        raise truncated("truncated: the last row is shorter than the others", draft.name)
     rows = [row + "\t" * (columns - 1 - row.count("\t")) for row in rows]
     numbers = draft.table(rows, "\t", columns, first + 1)
-    draft.count(header.get("NumFrames", ""), len(numbers), "NumFrames")
+    draft.count(written, len(numbers), "NumFrames", rows=True)
     draft.clock(numbers[:, 1])
     unit = header.get("Units", "")
-    size, unknown = float(np.nanmedian(np.abs(numbers[:, 2:]))), f'unit "{unit}" is not known'
-    factor = draft.length_unit(unit, size, unknown, "the size of the numbers")
-    positions = numbers[:, 2:].reshape(len(numbers), -1, 3) * factor
-    positions[(positions == 0.0).all(axis=2)] = np.nan
+    positions = numbers[:, 2:].reshape(len(numbers), -1, 3)
+    positions = positions * draft.length_unit(unit, positions)
     for i, name in enumerate(draft.names(labels, "marker")):
         draft.marker(name, positions[:, i])
     return draft.trial("TRC")
 
 
 # ground_force_vx, 1_ground_force_vx, R_ground_force_vx, ground_force_1_vx, FP1_vx ...
-_GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])$")
+# and, where a table with two plates of one name went through pandas, ground_force_vx.1
+_GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])(?:\.(?P<number>\d+))?$")
 _REACTION = re.compile(r"ground|grf|force|fp|plate", re.IGNORECASE)
 
 
 def read_motion(draft: Draft) -> Trial:
     """Return the table of a .mot or .sto file as a trial; ground reactions become plates.
 
-    OpenSim's ground reactions are forces on the body in ground axes, y up, N and m.
+    OpenSim's ground reactions are forces on the body in ground axes, N and m; y is up in its own
+    models, which way it is in a file the load tells.
     """
     lines = draft.lines()
     ends = (i for i, x in enumerate(lines[:200]) if x.strip().casefold().startswith("endheader"))
@@ -66,6 +70,12 @@ def read_motion(draft: Draft) -> Trial:
     at = next((i for i in range(end + 1, len(lines)) if lines[i].strip()), None)
     if at is None:
         raise draft.error("truncated: the column names are missing")
+    if header.get("datatype", "").casefold() == "quaternion":
+        raise draft.error(
+            "orientations of sensors (OpenSense), no forces and no markers",
+            allowed="ground reactions (.mot, .sto) or markers (.trc)",
+            remedy="Record the steps on a force plate, and export its forces and the markers",
+        )
     delimiter = "\t" if "\t" in lines[at] else ""
     labels = split(lines[at].rstrip(), delimiter)
     if labels[0].casefold() not in ("time", "frame", "t"):
@@ -73,9 +83,10 @@ def read_motion(draft: Draft) -> Trial:
     names = draft.names(labels, "column")
     rows = [line.strip() for line in lines[at + 1 :]]
     numbers = draft.table(rows, delimiter, len(labels), at + 2)
-    draft.count(header.get("nrows", ""), len(numbers), "nrows")
+    draft.count(header.get("nrows", ""), len(numbers), "nrows", rows=True)
     draft.count(header.get("ncolumns", ""), len(labels), "ncolumns")
     draft.clock(numbers[:, 0])
+    draft.up = Vertical((0.0, 1.0, 0.0), "y by OpenSim's convention: nobody on a plate")
     degrees = header.get("indegrees", "").casefold() in ("yes", "true", "1")
     for i, name in enumerate(names[1:], start=1):
         draft.channel(name, numbers[:, i], note="angles in degrees" if degrees else "")
@@ -99,11 +110,14 @@ def _header(lines: list[str]) -> dict[str, str]:
 
 
 def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
-    groups: dict[str, dict[str, int]] = {}
+    groups: dict[tuple[str, int], dict[str, int]] = {}
     for i, label in enumerate(labels[1:], start=1):
         match = _GROUND.match(label)
         if match and _REACTION.search(match["base"]):
-            groups.setdefault(match["base"], {}).setdefault(match["kind"], i)
+            number = int(match["number"] or 0)
+            while match["kind"] in groups.setdefault((match["base"], number), {}):
+                number += 1  # columns of one name are those of the next plate
+            groups[match["base"], number][match["kind"]] = i
     for columns in groups.values():
         if not {"vx", "vy", "vz"} <= columns.keys():
             continue
@@ -111,9 +125,8 @@ def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
         place = None
         if {"px", "py", "pz"} <= columns.keys():
             place = numbers[:, [columns["px"], columns["py"], columns["pz"]]]
-            place[force[:, 1] < 20.0] = np.nan
         kind = f"ground reaction ({labels[columns['vx']]})"
-        draft.plate(force, up=np.eye(3)[1], centre_of_pressure=place, kind=kind)
+        draft.plate(force, centre_of_pressure=place, kind=kind)
 
 
 _LENGTH = 1e-3  # Cortex writes positions in mm, moments in N mm
@@ -149,14 +162,11 @@ def read_cortex_forces(draft: Draft) -> Trial:
     complete = [s for s in suffixes if all(name + s in index for name in _COLUMNS)]
     if not complete:
         raise draft.error("no plate has all of FX FY FZ X Y Z MZ")
-    forces = {s: numbers[:, [index[name + s] for name in _COLUMNS[:3]]] for s in complete}
-    load = np.nansum([np.abs(force).sum(axis=0) for force in forces.values()], axis=0)
-    up = np.eye(3)[int(np.argmax(load))]
-    for s, force in forces.items():
+    for s in complete:
+        force = numbers[:, [index[name + s] for name in _COLUMNS[:3]]]
         place = numbers[:, [index[name + s] for name in _COLUMNS[3:6]]] * _LENGTH
-        place[~(np.abs(force @ up) > 20.0)] = np.nan
         kind = "Cortex force and centre of pressure"
-        draft.plate(force, f"plate {s}", up=up, centre_of_pressure=place, kind=kind)
+        draft.plate(force, f"plate {s}", centre_of_pressure=place, kind=kind)
     for i, name in enumerate(names[1:], start=1):
         draft.channel(name, numbers[:, i], unit="N" if name.upper().startswith("F") else "")
     return draft.trial("Cortex forces")
@@ -203,9 +213,9 @@ def read_bioware(draft: Draft) -> Trial:
         if set(_CENTRE) <= set(following):
             x, y = (draft.channels[names[i + 3 + following.index(a)]].values for a in _CENTRE)
             place = np.column_stack((x, y, np.zeros(len(x))))
-            place[~(np.abs(force[:, 2]) > 20.0)] = np.nan
         kind = "BioWare text, force on the plate turned to the foot, plate axes"
-        draft.plate(force, up=np.eye(3)[2], centre_of_pressure=place, kind=kind)
+        draft.plate(force, centre_of_pressure=place, kind=kind)
+    draft.up = Vertical((0.0, 0.0, 1.0), "axes of the plates")
     if not draft.plates:
         raise draft.error("no plate has Fx, Fy and Fz")
     return draft.trial("BioWare text")
@@ -248,7 +258,6 @@ def read_qualisys(draft: Draft) -> Trial:
         if extra == 2:
             draft.clock(numbers[:, 1])
         places = numbers[:, extra:].reshape(len(numbers), -1, 3) * 1e-3
-        places[(places == 0.0).all(axis=2)] = np.nan
         for i, name in enumerate(names):
             draft.marker(name, places[:, i])
         return draft.trial("Qualisys TSV")
@@ -268,7 +277,6 @@ def read_qualisys(draft: Draft) -> Trial:
     draft.plate(
         force,
         name if name.startswith("plate") else f"plate {name}",
-        up=np.eye(3)[2],
         centre_of_pressure=None if place is None else place * 1e-3,
         corners=corners if np.isfinite(corners).all() else None,
         kind="Qualisys TSV, taken as laboratory axes",
@@ -339,7 +347,6 @@ def _devices(
         force = np.column_stack(parts["force"])
         draft.plate(
             force,
-            up=np.eye(3)[int(np.argmax(np.nansum(np.abs(force), axis=0)))],
             centre_of_pressure=np.column_stack(place) if len(place) == 3 else None,
             kind=f"Vicon CSV, {device}",
         )

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..recording.trial import Trial
+from ..recording.trial import Trial, Vertical
 from .draft import Draft
 
 
@@ -44,6 +44,7 @@ def read_mvnx(draft: Draft) -> Trial:
             raise draft.error(f"truncated: {name} of {len(segments)} segments is not in each frame")
         return np.array(rows).reshape(len(rows), len(segments), width)
 
+    draft.up = Vertical((0.0, 0.0, 1.0), "z as MVN has it")
     position = values("position", 3)
     turn = values("orientation", 4) if any(True for _ in every(frames[0], "orientation")) else None
     for i, segment in enumerate(segments):

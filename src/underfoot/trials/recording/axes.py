@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
@@ -13,8 +13,9 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
 
-from .plates import plate_axes
-from .trial import Marker, Plate, Trial
+from .plates import plate_normal
+from .signals import CONTACT_FORCE
+from .trial import Marker, Plate, Trial, Vertical
 
 PLATE_FRAMES = {
     "surface": "plates that measure normal and tangential to the walking surface",
@@ -89,7 +90,11 @@ def _turned(up: np.ndarray, walking: np.ndarray, angle: float) -> tuple[np.ndarr
     return cos * up - sin * walking, cos * walking + sin * up
 
 
+_FIXED = 0.01  # m; any part of a body that walks goes further
+_GOES = 0.3  # m; some part of it goes as far
+_ABOVE = 0.2  # m between the feet and the middle of a body's other markers
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
+_ALONG = 0.7  # cosine of the angle between the way of a foot's pressure and that of the walk
 _NAMES = "xyz"
 _TOE = re.compile(r"toe$|mt[12]$|toe[ _.\-]?[lr]?$", re.IGNORECASE)
 _HEEL = re.compile(r"heel|hee$|cal$|calc|talon|ferse|hiel", re.IGNORECASE)
@@ -161,11 +166,17 @@ def axes_of(
 ) -> Axes:
     """Return the axes of a trial: from overrides, plates, then markers.
 
-    Vertical: the normal of the plates' corners; else the axis that carries the load; else the
-    axis along which the markers spread least over time. Walking: the path of the markers over
-    the whole recording. For one step use ``walking_direction``, which looks at that step.
+    Vertical: the one that the plates were read with (``found_vertical``). Walking: the path of the
+    markers over the whole recording. For one step use ``walking_direction``, which looks at it.
     """
-    up, how = (axis_vector(vertical, "vertical"), "given") if vertical else _up(trial)
+    found = None if vertical else trial.vertical
+    found = found or found_vertical(
+        vertical,
+        corners=[p.corners for p in trial.plates if p.usable and p.corners is not None],
+        forces=[p.force for p in trial.plates if p.usable],
+        markers=trial.markers,
+    )
+    up, how = np.array(found.axis), found.source
     if walking:
         return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp)
     path = marker_velocity(trial, -np.inf, np.inf, up)
@@ -184,10 +195,11 @@ def marker_velocity(
     In the plane of the floor; with its vertical part when ``up`` is None.
 
     The median over the markers of their mean velocities, so that a swinging limb or a few lost
-    markers don't count. None with fewer than three markers seen.
+    markers don't count. Markers that never move (corners of plates, the frame of a treadmill) are
+    no part of a body that does. None with fewer than three markers seen.
     """
     velocities = []
-    for marker in trial.markers.values():
+    for marker in moving_markers(trial.markers).values():
         frames, time = _sightings(marker)
         first, stop = time.searchsorted(begin), time.searchsorted(end, "right")
         if stop - first < 3:
@@ -203,7 +215,28 @@ def marker_velocity(
     return middle if up is None else middle - (middle @ up) * up
 
 
-@lru_cache(maxsize=128)  # asked for by every step of a recording
+def moving_markers(markers: Mapping[str, Marker]) -> Mapping[str, Marker]:
+    """Return the markers of a body that moves: those that never leave their place are left out.
+
+    Where nothing moves as far as somebody who walks, all may be of a body.
+    """
+    spans = {name: _span(marker) for name, marker in markers.items()}
+    if max(spans.values(), default=0.0) < _GOES:
+        return markers
+    return {name: markers[name] for name, span in spans.items() if span > _FIXED}
+
+
+@lru_cache(maxsize=4096)
+def _span(marker: Marker) -> float:
+    """Longest way (m) that a marker goes along an axis, but for a hundredth of its frames."""
+    seen = marker.positions[~marker.missing]
+    if len(seen) < 3:
+        return 0.0
+    low, high = np.percentile(seen, (1, 99), axis=0)
+    return float((high - low).max())
+
+
+@lru_cache(maxsize=4096)  # asked for by every step of a recording
 def _sightings(marker: Marker) -> tuple[np.ndarray, np.ndarray]:
     """Frames (n,) in which a marker was seen and their times (s)."""
     frames = np.flatnonzero(~marker.missing)
@@ -216,7 +249,9 @@ def walking_direction(
     """Return the walking direction during a stance and how it was found.
 
     In this order: the override, the markers during the first half of the stance, the path of
-    the centre of pressure (heel to toe), the shear force (braking first, then driving).
+    the centre of pressure (heel to toe), the shear force (braking first, then driving). Markers
+    that stand still tell of a person who does, unless they walk on in the recording: they may be
+    those of the foot on the plate.
     """
     if walking:
         return Direction(_flat(axis_vector(walking, "walking"), up), DirectionSource.GIVEN, "given")
@@ -229,7 +264,9 @@ def walking_direction(
     step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     if path is not None:
-        return Direction(explanation=f"the markers move at {speed:.2f} m/s only")
+        whole = marker_velocity(trial, -np.inf, np.inf, up)
+        if whole is None or not step @ whole > _ALONG * max(length, 0.05) * WALKING_SPEED:
+            return Direction(explanation=f"the markers move at {speed:.2f} m/s only")
     if length > 0.05:
         text = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
         return Direction(step / length, DirectionSource.PRESSURE, text)
@@ -294,16 +331,52 @@ def _by_side(trial: Trial, pattern: re.Pattern[str]) -> dict[str, list[str]]:
     return names_by_side
 
 
-def _up(trial: Trial) -> tuple[np.ndarray, str]:
-    usable = [plate for plate in trial.plates if plate.usable]
-    framed = [plate_axes(p.corners)[:, 2] for p in usable if p.corners is not None]
+def found_vertical(
+    given: str | None = None,
+    *,
+    corners: Sequence[np.ndarray] = (),
+    forces: Sequence[np.ndarray] = (),
+    markers: Mapping[str, Marker],
+    stated: Vertical | None = None,
+) -> Vertical:
+    """Return which way is up in a laboratory: the one answer for plates, markers and readers.
+
+    Told by, in this order: a person (``given``, as "z" or "-y"); the normal of the plates'
+    ``corners`` (4, 3); the axis along which their ``forces`` (n, 3) change most, if anybody stood
+    on them; the file's format (``stated``); the axis along which the markers differ most and move
+    least. Where nothing else tells, z is assumed. It points away from the feet.
+    """
+    if given:
+        return Vertical(_three(axis_vector(given, "vertical")), "given")
+    axis, source = _vertical_line(corners, forces, markers, stated)
+    if stated is None or axis @ np.array(stated.axis) < 0.5:
+        axis = axis * _away_from_feet(axis, markers)
+    return Vertical(_three(axis), source)
+
+
+def _vertical_line(
+    corners: Sequence[np.ndarray],
+    forces: Sequence[np.ndarray],
+    markers: Mapping[str, Marker],
+    stated: Vertical | None,
+) -> tuple[np.ndarray, str]:
+    normals = (plate_normal(each) for each in corners)
+    framed = [int(np.argmax(np.abs(normal))) for normal in normals if normal is not None]
     if framed:
-        votes = Counter(int(np.argmax(np.abs(normal))) for normal in framed)
-        return np.eye(3)[votes.most_common(1)[0][0]], "normal of the force plates"
-    if usable:
-        loads = [np.nanpercentile(np.abs(plate.force), 99, axis=0) for plate in usable]
-        return np.eye(3)[int(np.argmax(np.sum(loads, axis=0)))], "axis that carries the load"
-    paths = [m.positions[~m.missing] for m in trial.markers.values() if (~m.missing).sum() > 2]
+        return np.eye(3)[Counter(framed).most_common(1)[0][0]], "normal of the force plates"
+    seen = [force[np.isfinite(force).all(axis=1)] for force in forces]
+    seen = [force for force in seen if len(force)]
+    changes = [np.ptp(np.percentile(force, (0.5, 99.5), axis=0), axis=0) for force in seen]
+    change = np.sum(changes, axis=0) if seen else np.zeros(3)
+    if change.max() < CONTACT_FORCE and seen:  # nobody steps on or off: the load that stays
+        change = np.sum([np.abs(np.median(force, axis=0)) for force in seen], axis=0)
+    if change.max() > CONTACT_FORCE:
+        return np.eye(3)[int(np.argmax(change))], "axis that carries the load"
+    if stated is not None:
+        return np.array(stated.axis), stated.source
+    paths = [m.positions[~m.missing] for m in markers.values() if (~m.missing).sum() > 2]
+    if seen and not paths:
+        return np.eye(3)[int(np.argmax(change))], "axis that carries the load"
     if not paths:
         return np.eye(3)[2], "assumed z: neither plates nor markers"
     # Everything moves along the walkway or sways across it, feet most; heights return.
@@ -311,6 +384,26 @@ def _up(trial: Trial) -> tuple[np.ndarray, str]:
     heights = np.ptp([np.median(path, axis=0) for path in paths], axis=0)
     up = np.eye(3)[int(np.argmax(heights / (spans + 0.05)))]
     return up, "axis along which markers differ most and move least"
+
+
+def _away_from_feet(axis: np.ndarray, markers: Mapping[str, Marker]) -> float:
+    """Return -1 where the feet are on the axis' far side of a body's other markers, else 1."""
+    trial = Trial("", markers=moving_markers(markers))
+    found = [*heel_candidates(trial).values(), *toe_candidates(trial).values()]
+    feet = {name for names in found for name in names}
+    heights: dict[bool, list[float]] = {True: [], False: []}
+    for name, marker in trial.markers.items():
+        seen = marker.positions[~marker.missing]
+        if len(seen):
+            heights[name in feet].append(float(np.median(seen @ axis)))
+    if not heights[True] or len(heights[False]) < 2:
+        return 1.0
+    return -1.0 if np.median(heights[True]) - np.median(heights[False]) > _ABOVE else 1.0
+
+
+def _three(axis: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = axis.tolist()
+    return x, y, z
 
 
 def _flat(vector: np.ndarray, up: np.ndarray) -> np.ndarray:

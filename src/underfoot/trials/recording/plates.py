@@ -9,7 +9,7 @@ from underfoot.core import DataError
 
 from .measurement import Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
-from .trial import Plate, Trial
+from .trial import REVERSED, Plate, Trial
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -161,7 +161,8 @@ def finished_plate(
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
         moment = None if moment is None else -moment
-        seen.append(remark("signs reversed: the file holds the force on the plate"))
+        words = "signs reversed: the file holds the force on the plate"
+        seen.append(Flag(REVERSED, words, matters=False))
     baseline, samples = None, 0
     empty = unloaded(vertical, rate)
     if not subtract_baseline:
@@ -190,7 +191,10 @@ def finished_plate(
         seen.append(Flag("size", text, True, peak, _LOADED, "N"))
     elif peak <= 0.05:
         seen.append(remark("never loaded"))
-    if centre_of_pressure is None and moment is not None and corners is not None:
+    if centre_of_pressure is not None:
+        loaded = force @ up > _LOADED
+        centre_of_pressure = np.where(loaded[:, None], centre_of_pressure, np.nan)
+    elif moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
     return Plate(
         name, force, rate, start, moment, centre_of_pressure, corners, baseline, samples, kind,
@@ -223,13 +227,24 @@ def baseline_words(plate: Plate) -> str:
     return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
 
 
-def up_from_normal(normal: np.ndarray) -> np.ndarray:
-    """Return the normal (3,) turned so that its largest component is positive.
+def plate_normal(corners: np.ndarray | None) -> np.ndarray | None:
+    """Return a unit vector (3,) normal to a plate's surface; None without corners that have one."""
+    if corners is None:
+        return None
+    try:
+        return plate_axes(corners)[:, 2]
+    except DataError:
+        return None
 
-    Laboratories have their vertical axis upward; a plate's own z axis points down.
+
+def plate_up(corners: np.ndarray | None, up: np.ndarray) -> np.ndarray:
+    """Return the normal (3,) out of a plate's surface, on the side that is up in the laboratory.
+
+    Without corners, and where they stand across the vertical that a person gave, it is ``up``.
     """
-    largest = int(np.argmax(np.abs(normal)))
-    return normal if normal[largest] > 0 else -normal
+    normal = plate_normal(corners)
+    height = 0.0 if normal is None else float(normal @ up)
+    return up if normal is None or abs(height) < 0.5 else normal * np.sign(height)
 
 
 def _upside_down(vertical: np.ndarray) -> bool:

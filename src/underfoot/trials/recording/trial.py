@@ -134,6 +134,19 @@ class Event:
     source: str = "found"
 
 
+@dataclass(frozen=True, slots=True)
+class Vertical:
+    """The axis that is up in a laboratory, and what told it.
+
+    ``axis`` is a unit vector (3,) out of the floor, ``source`` is in words.
+    """
+
+    axis: tuple[float, float, float]
+    source: str
+
+
+REVERSED = "signs reversed"
+"""Name of the flag of a plate whose file holds the force on the plate."""
 MADE_UP = "underfoot trials simulate"
 """The software that a made-up recording names."""
 EDITS = ("contact", "toe off", "exclude", "side", "plate")
@@ -186,7 +199,8 @@ class Trial(Presentable):
     the SHA-256 of the file's bytes (hex). ``notes`` tell what reading found or did (units
     converted, duplicates renamed, plates refused), ``events`` are those written in the file,
     ``edits`` the changes by hand that ``stances`` applies, ``settings`` facts of the header as text
-    (set load, step type, subject mass in kg ...).
+    (set load, step type, subject mass in kg ...). ``vertical`` is the axis in which the plates were
+    worked out, None where reading found none.
     """
 
     name: str
@@ -199,6 +213,7 @@ class Trial(Presentable):
     events: tuple[Event, ...] = ()
     edits: tuple[Edit, ...] = ()
     settings: Mapping[str, str] = field(default_factory=dict)
+    vertical: Vertical | None = None
 
     def channel(self, *names: str) -> Channel:
         """Return the first channel that has one of ``names`` (capitals and blanks ignored).
@@ -242,14 +257,26 @@ class Trial(Presentable):
 def joined(first: Trial, second: Trial) -> Trial:
     """Return one trial from two files of the same recording, for example .trc and .forces.
 
-    Both must count time from the same instant. Names that both use get the ending `` (2)``.
+    Both must count time from the same instant and be in the same axes. Names that both use get the
+    ending `` (2)``. Which end of the vertical is up the file with the markers tells: their feet.
     """
 
     def both(base: Mapping[str, _T], added: Mapping[str, _T]) -> dict[str, _T]:
         return {**base, **{f"{n} (2)" if n in base else n: value for n, value in added.items()}}
 
+    pair, notes = [first, second], list(second.notes)
+    told = next((one.vertical for one in pair if one.plates), first.vertical)
+    ends = [one.vertical for one in pair if one.vertical]
+    if len(ends) == 2 and not (first.markers and second.markers):
+        along = sum(a * b for a, b in zip(ends[0].axis, ends[1].axis, strict=True))
+        if along < -0.5:
+            told = next((one.vertical for one in pair if one.markers), told)
+            pair = [one if one.vertical == told else _other_end_up(one) for one in pair]
+        elif along < 0.5:
+            notes.append("the two files find another axis vertical: are they in the same axes?")
+    first, second = pair
     return replace(
-        first.with_notes(*second.notes).with_edits(*second.edits),
+        first.with_notes(*notes).with_edits(*second.edits),
         name=f"{first.name} + {second.name}",
         channels=both(first.channels, second.channels),
         plates=(*first.plates, *second.plates),
@@ -258,7 +285,20 @@ def joined(first: Trial, second: Trial) -> Trial:
         checksum=hashlib.sha256(f"{first.checksum}{second.checksum}".encode()).hexdigest(),
         events=(*first.events, *second.events),
         settings={**first.settings, **second.settings},
+        vertical=told,
     )
+
+
+def _other_end_up(trial: Trial) -> Trial:
+    """The trial with forces that point the other way: its plates were read upside down."""
+
+    def other(plate: Plate) -> Plate:
+        moment = None if plate.moment is None else -plate.moment
+        baseline = None if plate.baseline is None else -plate.baseline
+        flags = tuple(flag for flag in plate.flags if flag.name != REVERSED)
+        return replace(plate, force=-plate.force, moment=moment, baseline=baseline, flags=flags)
+
+    return replace(trial, plates=tuple(other(plate) for plate in trial.plates))
 
 
 def file_checksum(path: Path) -> str:

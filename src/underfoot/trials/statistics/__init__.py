@@ -2,6 +2,8 @@
 
 from .agreement import bland_altman as bland_altman
 from .agreement import intraclass_correlation as intraclass_correlation
+from .confounding import Confounded as Confounded
+from .confounding import told_apart as told_apart
 from .curves import paired_curve_test as paired_curve_test
 from .effects import detectable_difference as detectable_difference
 from .effects import effect_size as effect_size
@@ -15,6 +17,7 @@ from .linear import AnovaRow as AnovaRow
 from .linear import AnovaTable as AnovaTable
 from .linear import Comparison as Comparison
 from .linear import LinearModel as LinearModel
+from .linear import Pair as Pair
 from .linear import Predictor as Predictor
 from .linear import Subset as Subset
 from .linear import all_subsets as all_subsets
@@ -45,13 +48,20 @@ from .mixed import repeated_measures as repeated_measures
 from .prediction import person_bootstrap as person_bootstrap
 from .prediction import roc_area as roc_area
 from .prediction import slip_prediction as slip_prediction
+from .ranks import RankTest as RankTest
 from .ranks import rank_test as rank_test
+from .samples import ROUNDING as ROUNDING
 from .samples import Line as Line
 from .samples import OutlierTest as OutlierTest
 from .samples import Precision as Precision
 from .samples import TTest as TTest
+from .samples import corrected_p as corrected_p
+from .samples import drift as drift
 from .samples import mean_interval as mean_interval
 from .samples import precision as precision
 from .samples import regression_line as regression_line
+from .samples import resolved as resolved
 from .samples import share_interval as share_interval
 from .samples import t_test as t_test
+from .shares import ShareDifference as ShareDifference
+from .shares import share_difference as share_difference

@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 
+from .samples import ROUNDING
+
 FORMS = ("ICC(1,1)", "ICC(A,1)", "ICC(C,1)", "ICC(1,k)", "ICC(A,k)", "ICC(C,k)")
 
 
@@ -48,8 +50,11 @@ def intraclass_correlation(
     ``values``: one row a subject, shape (n, k); columns are raters, sessions or machines. Rows of
     unequal length are allowed in one-way forms, where columns have no meaning.
 
+    Raters who agree exactly (of which C asks less than A) have an ICC of 1. An end at or below
+    -1 / (k - 1), which no mean of k values can have, is minus infinity for the mean.
+
     InputError: unknown form. DataError: fewer than two subjects or no repeated values; missing or
-    uneven values in a two-way form; no scatter.
+    uneven values in a two-way form; subjects that do not differ.
 
     Source: K. O. McGraw, S. P. Wong, Psychol. Methods 1 (1996) 30; P. E. Shrout, J. L. Fleiss,
     Psychol. Bull. 86 (1979) 420.
@@ -71,9 +76,9 @@ def intraclass_correlation(
     between = float(((everything - everything.mean()) ** 2).sum()) - within
     mean_rows = between / (n - 1)
     k = (total - float((sizes**2).sum()) / total) / (n - 1)
-    if within <= 1e-14 * between or between <= 0:
-        raise DataError("the values do not scatter", where=form)
-
+    rounding = total * (ROUNDING * float(np.abs(everything).max())) ** 2
+    if between <= rounding:
+        raise DataError("the subjects do not differ", where=form)
     mean_columns = 0.0
 
     def of_ratio(ratio: float) -> float:
@@ -89,9 +94,11 @@ def intraclass_correlation(
         mean_columns = n * float(((columns - columns.mean()) ** 2).sum()) / (k - 1)
         df = int((n - 1) * (k - 1))
         error_ms = max(within - mean_columns * (k - 1), 0.0) / df
-        if error_ms <= 1e-14 * mean_rows:
-            raise DataError("raters differ by a constant alone: no scatter", where=form)
         variance = error_ms
+    agree = within <= rounding
+    if agree or (df * error_ms <= rounding and not form.startswith("ICC(A")):
+        return IntraclassCorrelation(form, 1.0, 1.0, 1.0, 0.0, n, float(k))
+    error_ms = max(error_ms, rounding / df)
     ratio = mean_rows / error_ms
     low = of_ratio(ratio / float(fisher.ppf(level, n - 1, df)))
     high = of_ratio(ratio * float(fisher.ppf(level, df, n - 1)))
@@ -99,7 +106,8 @@ def intraclass_correlation(
     if form.startswith("ICC(A"):
         shift = k * mean_columns + (k * n - k - n) * error_ms
         value = n * (mean_rows - error_ms) / (shift + n * mean_rows)
-        a = k * value / (n * (1.0 - value))
+        held = max(value, 0.0)  # below, the weights of the mean squares would be negative
+        a = k * held / (n * (1.0 - held))
         b = 1.0 + a * (n - 1)
         parts = a * mean_columns, b * error_ms
         freedom = sum(parts) ** 2 / (parts[0] ** 2 / (k - 1) + parts[1] ** 2 / df)
@@ -108,7 +116,9 @@ def intraclass_correlation(
         high = n * (over * mean_rows - error_ms) / (shift + n * over * mean_rows)
         variance += max(mean_columns - error_ms, 0.0) / n
     value, low, high = (
-        k * one / (1.0 + (k - 1.0) * one) if form.endswith("k)") else one
+        (k * one / (1.0 + (k - 1.0) * one) if (k - 1.0) * one > -1.0 else -np.inf)
+        if form.endswith("k)")
+        else one
         for one in (float(value), float(low), float(high))
     )
     return IntraclassCorrelation(form, value, low, high, float(np.sqrt(variance)), n, float(k))
@@ -175,7 +185,7 @@ def bland_altman(
     inside = float(((difference - means[who]) ** 2).sum()) / free if free else 0.0
     parts = ((float(means.var(ddof=1)), n - 1), (share * inside, free))
     variance = sum(part for part, _ in parts)
-    if variance <= 0:
+    if variance <= (ROUNDING * max(np.abs(a).max(), np.abs(b).max())) ** 2:
         raise DataError("the differences do not scatter", where="Bland-Altman")
     tail = 0.5 - confidence / 2
     down = up = 0.0
@@ -190,7 +200,8 @@ def bland_altman(
     near, far = float(np.hypot(reach, low_sd)), float(np.hypot(reach, high_sd))
     lower, upper = bias - 1.96 * sd, bias + 1.96 * sd
     middle = np.bincount(who, (a + b) / 2) / counts
-    line: Any = stats.linregress(middle, means) if np.ptp(middle) > 0 else None
+    moves = np.ptp(middle) > ROUNDING * np.abs(middle).max()
+    line: Any = stats.linregress(middle, means) if moves else None
     slope, p = (0.0, 1.0) if line is None else (float(line.slope), float(line.pvalue))
     spread = float(np.sqrt(inside)) if free else None
     return Agreement(

@@ -8,13 +8,15 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, unknown_name
 
-from .samples import t_test
+from .samples import KINDS, t_test
+from .shares import is_share, score, share_difference
 
 DESIGNS = {
     "paired": "every person in both conditions, paired t test",
     "groups": "different persons in two conditions, two-sample t test",
     "repeated": "every person in all conditions, repeated-measures F test",
     "slips": "shares of slips in two groups of persons, Fisher's exact test",
+    "slips_equivalent": "shares of slips in two groups, equal within the difference, score tests",
 }
 
 
@@ -92,10 +94,11 @@ class Equivalence:
 def equivalence(
     first: ArrayLike, second: ArrayLike, margin: float, *, kind: str = "welch", alpha: float = 0.05
 ) -> Equivalence:
-    """Return two one-sided t tests: no worse than, and equivalent within a margin.
+    """Return two one-sided tests: no worse than, and equivalent within a margin.
 
-    The margin is fixed before the data are seen. A difference that is not significant does not
-    show equality; this does.
+    t tests of measurements; of slips (0 and 1 alone) the score tests of ``share_difference``. The
+    margin is fixed before the data are seen. A difference that is not significant does not show
+    equality; this does.
 
     ``margin``: above 0, in the unit of the values. ``kind``: as ``t_test``.
 
@@ -107,6 +110,11 @@ def equivalence(
 
     if not margin > 0:
         raise InputError(f"margin {margin:g}", where="equivalence", allowed="above 0")
+    both = np.concatenate((np.ravel(np.asarray(first)), np.ravel(np.asarray(second))))
+    if kind in KINDS and len(both) and is_share(both):
+        told = share_difference(first, second, paired=kind == "paired", confidence=1 - 2 * alpha)
+        p = told.beyond(-margin), 1.0 - told.beyond(margin)
+        return Equivalence(told.difference, margin, *p, told.low, told.high, alpha)
     test = t_test(first, second, kind=kind, confidence=1.0 - 2.0 * alpha)
     error = (test.high - test.low) / (2.0 * float(student.isf(alpha, test.df)))
     lower = float(student.sf((test.difference + margin) / error, test.df))
@@ -122,8 +130,9 @@ def power(
 
     ``design``: a key of ``DESIGNS``. ``persons``: in all ("paired", "repeated") or in each group.
     ``difference``: between two means; in "repeated" that of the largest and the smallest mean, the
-    others in the middle. ``sd``: of the differences within persons ("paired"), of a person's mean
-    about its own in one condition ("repeated"), between persons ("groups"). ``shares``: of slips.
+    others in the middle; in "slips_equivalent" the margin. ``sd``: of the differences within
+    persons ("paired"), of a person's mean about its own in one condition ("repeated"), between
+    persons ("groups"). ``shares``: of slips.
 
     InputError: an unknown design, numbers out of range.
     """
@@ -137,6 +146,8 @@ def power(
         raise InputError(words, where="power", allowed=allowed)
     if design == "slips":
         return _fisher_power(persons, shares, alpha)
+    if design == "slips_equivalent":
+        return _equivalent_power(persons, shares, difference, alpha)
     if design == "repeated":
         df = conditions - 1, (conditions - 1) * (persons - 1)
         centre = persons * (difference / sd) ** 2 / 2.0
@@ -148,6 +159,24 @@ def power(
     # the far tail underflows to NaN where it is 0
     far = float(np.nan_to_num(stats.nct.cdf(-limit, df, centre)))
     return float(stats.nct.sf(limit, df, centre)) + far
+
+
+def _equivalent_power(
+    persons: int, shares: tuple[float, float], margin: float, alpha: float
+) -> float:
+    """Sum over all tables that both score tests reject."""
+    from scipy import stats
+
+    if not all(0 <= share <= 1 for share in shares) or not 0 < margin < 1:
+        words = f"shares {shares}, difference {margin:g}"
+        raise InputError(words, where="power", allowed="shares 0 to 1, a difference from 0 to 1")
+    slips = np.arange(persons + 1)
+    a, b = slips[:, None] / persons, slips[None, :] / persons
+    limit = float(stats.norm.isf(alpha))
+    lower = score(a, b, persons, persons, -margin) > limit
+    higher = score(a, b, persons, persons, margin) < -limit
+    chances = [stats.binom.pmf(slips, persons, share) for share in shares]
+    return float(chances[0] @ (lower & higher) @ chances[1])
 
 
 def _fisher_power(persons: int, shares: tuple[float, float], alpha: float) -> float:

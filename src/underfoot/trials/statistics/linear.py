@@ -202,8 +202,8 @@ class FittedModel(ABC):
     warnings: tuple[str, ...]
 
     @abstractmethod
-    def df(self, factor: str) -> float:
-        """Return the degrees of freedom of comparisons between levels of ``factor``."""
+    def df(self, contrast: np.ndarray) -> float:
+        """Return the degrees of freedom of the error of a contrast, shape (p,)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +235,11 @@ class LinearModel(FittedModel):
         return self.residual_sum <= EXACT * largest
 
     @property
+    def dependent(self) -> bool:
+        """True when columns depend on each other, as with empty cells: no means of all levels."""
+        return bool(np.linalg.matrix_rank(self.design.matrix) < self.design.matrix.shape[1])
+
+    @property
     def r_squared(self) -> float:
         """Share of the variation the model describes."""
         return 1.0 - self.residual_sum / self.total_sum
@@ -249,7 +254,7 @@ class LinearModel(FittedModel):
         """Fitted values, shape (n,)."""
         return self.design.matrix @ self.coefficients
 
-    def df(self, factor: str) -> float:
+    def df(self, contrast: np.ndarray) -> float:
         """Return those of the residual."""
         return self.residual_df
 
@@ -272,7 +277,8 @@ def linear_model(
     """
     y, built, warnings = model_data(response, predictors, terms, name)
     rank = int(np.linalg.matrix_rank(built.matrix))
-    if rank < built.matrix.shape[1] and not any("empty cells" in text for text in warnings):
+    gaps = any(empty_cells(built.predictors, term) for term in built.terms)
+    if rank < built.matrix.shape[1] and not gaps:
         warnings.append("predictors depend on each other: single coefficients have no meaning")
     if len(y) - rank < 1:
         raise DataError(
@@ -471,8 +477,8 @@ def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> l
     """Return all pairwise differences of least-squares means, adjusted after Tukey and Kramer.
 
     p = P(Q > sqrt(2) |t|) with Q the studentized range of k means and the degrees of freedom of
-    the model (JMP and R's emmeans do the same; a one-way Tukey test on a factorial experiment
-    uses another mean square). Exact when balanced, conservative otherwise.
+    the difference's own error (JMP and R's emmeans do the same; a one-way Tukey test on a factorial
+    experiment uses another mean square). Exact when balanced, conservative otherwise.
 
     InputError: no such factor; a confidence outside 0 to 1. DataError: the model leaves no scatter.
     """
@@ -483,21 +489,23 @@ def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> l
     if isinstance(model, LinearModel) and model.exact:
         raise DataError("the model fits the data exactly: no scatter", where=factor)
     rows, _, levels = _mean_rows(model.design, factor)
-    k, df = len(levels), model.df(factor)
-    beyond = _studentized_range(k, df)
-    largest = 1.0
-    while beyond(largest) > 1 - confidence:
-        largest *= 2
-    critical = brentq(lambda q: beyond(q) - 1 + confidence, 0, largest) / np.sqrt(2.0)
+    beyond: dict[float, Callable[[float], float]] = {}
+    reach: dict[float, float] = {}
     comparisons = []
-    for i, j in combinations(range(k), 2):
+    for i, j in combinations(range(len(levels)), 2):
         contrast = rows[i] - rows[j]
+        df = model.df(contrast)
+        if df not in beyond:
+            q = beyond[df] = _studentized_range(len(levels), df)
+            largest = 1.0
+            while q(largest) > 1 - confidence:
+                largest *= 2
+            reach[df] = brentq(lambda x, q=q: q(x) - 1 + confidence, 0, largest) / np.sqrt(2.0)
         difference = float(contrast @ model.coefficients)
         error = float(np.sqrt(contrast @ model.covariance @ contrast))
         t = difference / error
-        p = beyond(np.sqrt(2.0) * abs(t))
-        low, high = difference - critical * error, difference + critical * error
-        ends = float(low), float(high)
+        p = beyond[df](np.sqrt(2.0) * abs(t))
+        ends = float(difference - reach[df] * error), float(difference + reach[df] * error)
         comparisons.append(Comparison(levels[i], levels[j], difference, error, t, p, *ends))
     return comparisons
 
@@ -525,7 +533,17 @@ def _studentized_range(k: int, df: float) -> Callable[[float], float]:
     return beyond
 
 
-def letters(comparisons: list[Comparison], *, alpha: float = 0.05) -> dict[str, str]:
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two levels compared: their difference, first - second, and p."""
+
+    first: str
+    second: str
+    difference: float
+    p: float
+
+
+def letters(comparisons: Sequence[Comparison | Pair], *, alpha: float = 0.05) -> dict[str, str]:
     """Return letters for the levels: levels that share one do not differ at ``alpha``.
 
     Insert-and-absorb of Piepho, J. Comput. Graph. Stat. 13 (2004) 456. The first letter goes to

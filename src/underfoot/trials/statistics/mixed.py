@@ -4,17 +4,17 @@ Trials of one person are alike. A test that takes them as independent finds diff
 not there; here every person counts once in each condition.
 """
 
-import warnings as python_warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .linear import AnovaRow, FittedModel, linear_model, model_data, parts
+from .linear import AnovaRow, FittedModel, crossed, model_data, parts
+from .samples import ROUNDING
+from .variance_components import VarianceComponents, variance_components
 
 
 def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
@@ -30,12 +30,16 @@ def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class PersonMeans:
-    """One row for each person in each condition: mean response, number of trials."""
+    """One row for each person in each condition: mean response, number of trials.
+
+    ``squares``: of the trials about their means, summed over all rows.
+    """
 
     person: tuple[str, ...]
     factors: Mapping[str, tuple[str, ...]]
     mean: np.ndarray
     trials: np.ndarray
+    squares: float
 
 
 def person_means(
@@ -60,44 +64,41 @@ def person_means(
         dict(zip(factors, columns[1:], strict=True)),
         np.array([np.mean(values) for values in cells.values()]),
         np.array([len(values) for values in cells.values()]),
+        sum(float(np.sum((np.array(v) - np.mean(v)) ** 2)) for v in cells.values()),
     )
 
 
 @dataclass(frozen=True, slots=True)
 class MixedModel(FittedModel):
-    """Linear model of person means with a random intercept for each person (REML).
+    """Linear model of trials in which persons differ, and react to conditions in their own way.
 
-    ``person_sd`` and ``residual_sd``: standard deviations between persons, and of a person's mean
-    in one condition about it. ``within_df`` and ``between_df``: degrees of freedom of what varies
-    within persons and of what only differs between them. ``within``: factors of which at least one
-    person has several levels.
+    ``variances``: of what is random: "person" (between persons), "person:shoe" (a person's own
+    reaction to the shoe), "trial" (a person's repeats); NaN where the data hold it and a later one
+    as one. One below zero says that trials of a person differ more than those of two.
+    ``within``: factors of which at least one person has several levels.
     """
 
-    person_sd: float
-    residual_sd: float
-    within_df: int
-    between_df: int
+    fit: VarianceComponents
+    variances: Mapping[str, float]
     within: frozenset[str]
     persons: int
     trials: int
 
-    def df(self, factor: str) -> float:
-        """Return those within persons where a person has several levels, else those between."""
-        inside = any(name in self.within for name in parts(factor))
-        return self.within_df if inside else self.between_df
+    def df(self, contrast: np.ndarray) -> float:
+        """Return the degrees of freedom of the variances that the contrast holds."""
+        return round(self.fit.error_df(contrast), 6)  # to which the variances are found
 
     @property
     def tests(self) -> tuple[AnovaRow, ...]:
-        """F tests of the terms (type III, Wald, degrees of freedom between and within persons)."""
+        """F tests of the terms (type III), each with its own error (Kenward and Roger)."""
         from scipy import stats
 
         rows = []
         for term in self.design.terms:
-            at = self.design.slices[term]
-            b, c = self.coefficients[at], self.covariance[at, at]
-            q, df = len(b), self.df(term)
-            f = float(b @ np.linalg.solve(c, b)) / q
-            rows.append(AnovaRow(term, np.nan, q, f, float(stats.f.sf(f, q, df)), df))
+            chosen = np.eye(len(self.coefficients))[self.design.slices[term]]
+            f, df = self.fit.wald_test(chosen)
+            p = float(stats.f.sf(f, len(chosen), df))
+            rows.append(AnovaRow(term, np.nan, len(chosen), f, p, round(df, 6)))
         return tuple(rows)
 
 
@@ -111,20 +112,20 @@ def mixed_model(
 ) -> MixedModel:
     """Return the mixed model of a study in which persons repeat.
 
-    Trials are averaged first for each person and condition, so that repeating trials does not
-    make persons more. The means are modelled with fixed factors and a random intercept for each
-    person; its variance is that of statsmodels' REML fit. In complete data the tests are those
-    of repeated measures (with two levels, the paired t test). Degrees of freedom: persons -
-    parameters for what differs between persons, rows - persons - parameters within.
+    Fixed factors; random are the person, the person's own reaction to each term of which it has
+    several levels and to the whole condition, and the trial (REML). So a factor is tested against
+    how differently persons react to it, and repeating trials does not make persons more. In
+    complete data the tests are those of repeated measures (with two levels, the paired t test),
+    since a variance may be negative.
 
     ``response`` and ``person``: shape (n,), one row a trial. ``factors``: columns of length n, as
     names. ``terms``: all crossed by default.
 
-    DataError: fewer persons than the model needs; no person with two conditions and none repeated;
-    combinations of levels without a person.
+    DataError: fewer persons than the model needs; no scatter; combinations of levels without a
+    trial.
 
-    Source: J. C. Pinheiro, D. M. Bates, Mixed-Effects Models in S and S-PLUS, Springer 2000
-    (degrees of freedom: section 2.4.2).
+    Source: D. J. Barr et al., J. Mem. Lang. 68 (2013) 255 (which effects are random); see
+    ``variance_components``.
     """
     means = person_means(response, factors, person)
     y, built, notes = model_data(means.mean, means.factors, terms, name)
@@ -132,112 +133,99 @@ def mixed_model(
         raise DataError(
             notes[0], where=name, remedy="Name fewer factors, or leave out interactions"
         )
-    people = list(dict.fromkeys(means.person))
-    who = np.array([people.index(p) for p in means.person])
-    x = built.matrix
-    varies = np.array([np.ptp(x[who == i], axis=0) > 0 for i in range(len(people))])
-    inside = int(varies.any(axis=0).sum())
+    if np.linalg.matrix_rank(built.matrix) < built.matrix.shape[1]:
+        text = "conditions that can't be told apart"
+        raise DataError(text, where=name, remedy="Leave one out (told_apart says which)")
+    people = tuple(dict.fromkeys(means.person))
     within = frozenset(
         factor
         for factor, levels in means.factors.items()
         if len(set(zip(means.person, levels, strict=True))) > len(people)
     )
-    between_df = len(people) - (x.shape[1] - inside)
-    within_df = len(y) - len(people) - inside
-    if between_df < 1 or (varies.any() and within_df < 1):
+    shared = dict.fromkeys(
+        tuple(part for part in parts(term) if part in within) for term in ("", *built.terms)
+    )
+    shared |= {tuple(factor for factor in means.factors if factor in within): None}
+    groups = {
+        ":".join(("person", *own)): _numbered(means.person, *(means.factors[part] for part in own))
+        for own in sorted(shared, key=len)
+    }
+    try:
+        fit = variance_components(
+            y, means.trials, means.squares, built.matrix, tuple(groups.values())
+        )
+    except DataError as error:
         raise DataError(
-            f"{len(people)} persons leave nothing to estimate the scatter of {x.shape[1]} "
-            "parameters",
-            where=name,
-            remedy="Measure more persons, or name fewer factors",
-        )
-    counted = within, len(people), int(means.trials.sum())
-    if not varies.any():
-        # Nobody repeats a condition: the means of persons are independent.
-        plain = linear_model(y, means.factors, built.terms, name=name)
-        fixed = plain.coefficients, plain.covariance, plain.warnings
-        spread = float(np.sqrt(plain.residual_mean_square))
-        return MixedModel(name, built, *fixed, spread, 0.0, 0, plain.residual_df, *counted)
-    person_sd, residual_sd = _standard_deviations(y, x, who)
-    share = person_sd**2 / residual_sd**2
-    shrink = share / (1.0 + share * np.bincount(who)[who])
-    inverse = (np.eye(len(y)) - shrink * (who[:, None] == who)) / residual_sd**2
-    covariance = np.linalg.inv(x.T @ inverse @ x)
-    warning = ()
-    if person_sd < 1e-3 * residual_sd:
-        warning = ("persons differ no more than by chance: their variance is estimated as zero",)
-    fixed = covariance @ (x.T @ inverse @ y), covariance, warning
-    return MixedModel(name, built, *fixed, person_sd, residual_sd, within_df, between_df, *counted)
+            error.what, where=name, remedy="Measure more persons, or name fewer factors"
+        ) from error
+    variances = dict(zip((*groups, "trial"), fit.variances.tolist(), strict=True))
+    return MixedModel(
+        name, built, fit.coefficients, fit.covariance, (), fit, variances, within, len(people),
+        int(means.trials.sum()),
+    )  # fmt: skip
 
 
-def _standard_deviations(y: np.ndarray, x: np.ndarray, who: np.ndarray) -> tuple[float, float]:
-    from statsmodels.regression.mixed_linear_model import MixedLM
-
-    scale = float(y.std())
-    with python_warnings.catch_warnings():
-        # A variance of zero is an answer here, said in the model's own warnings.
-        python_warnings.simplefilter("ignore")
-        fit: Any = MixedLM((y - y.mean()) / scale, x, groups=who).fit(
-            reml=True, method=["powell"], ftol=1e-13, xtol=1e-10
-        )
-    person, residual = float(np.asarray(fit.cov_re).ravel()[0]), float(fit.scale)
-    if not np.isfinite([person, residual]).all() or residual <= 1e-18:
-        raise DataError(
-            "persons explain everything: no scatter is left within them", where="mixed model"
-        )
-    return scale * float(np.sqrt(max(person, 0.0))), scale * float(np.sqrt(residual))
+def _numbered(*columns: Sequence[str]) -> np.ndarray:
+    """Return a number for each combination that stands in the columns, shape (n,)."""
+    rows = list(zip(*columns, strict=True))
+    order = {row: i for i, row in enumerate(dict.fromkeys(rows))}
+    return np.array([order[row] for row in rows])
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatedMeasures:
     """Repeated-measures analysis of variance of person means.
 
-    ``epsilon`` is Greenhouse and Geisser's, for one factor: ``rows`` hold p without it,
-    ``p_corrected`` is p with it.
+    ``rows`` hold p without a correction; ``epsilon`` (Greenhouse and Geisser's) and
+    ``p_corrected``, p with it, go with them.
     """
 
     rows: tuple[AnovaRow, ...]
-    epsilon: float | None
-    p_corrected: float | None
+    epsilon: tuple[float, ...]
+    p_corrected: tuple[float, ...]
     persons: int
 
 
 def repeated_measures(
     response: ArrayLike, factors: Mapping[str, Sequence[str]], person: Sequence[object]
 ) -> RepeatedMeasures:
-    """Return the repeated-measures analysis of variance (statsmodels' AnovaRM) of person means.
+    """Return the repeated-measures analysis of variance of person means.
 
-    DataError: a person lacks a combination of levels: use ``mixed_model``.
+    Each term is tested against how differently persons react to it: with the contrasts z of a term
+    (d of them, orthonormal) in n persons, F = n |mean z|^2 / trace S, S the covariance of z;
+    epsilon = (trace S)^2 / (d trace S^2).
+
+    DataError: a person lacks a combination of levels: use ``mixed_model``; no scatter.
 
     Source: S. W. Greenhouse, S. Geisser, Psychometrika 24 (1959) 95.
     """
-    import pandas as pd
     from scipy import stats
-    from statsmodels.stats.anova import AnovaRM
 
     means = person_means(response, factors, person)
-    # Neutral column names: statsmodels builds formulas of them.
-    named = {f"factor{i}": name for i, name in enumerate(means.factors)}
-    levels = {column: means.factors[name] for column, name in named.items()}
-    frame = pd.DataFrame({"person": means.person, "y": means.mean, **levels})
-    cells = int(np.prod([len(set(column)) for column in levels.values()]))
-    persons = len(set(means.person))
-    if len(frame) != cells * persons or persons < 2 or cells < 2:
+    people = list(dict.fromkeys(means.person))
+    levels = [list(dict.fromkeys(column)) for column in means.factors.values()]
+    shape = [len(people), *map(len, levels)]
+    if len(means.mean) != np.prod(shape) or len(people) < 2 or np.prod(shape[1:]) < 2:
         where, remedy = "repeated measures", "Use the mixed model"
         raise DataError("not every person has every condition", where=where, remedy=remedy)
-    table: Any = AnovaRM(frame, "y", "person", within=list(named)).fit().anova_table
-    rows = []
-    for term, row in table.iterrows():
-        name = ":".join(named[part] for part in str(term).split(":"))
-        f, p, error_df = (float(row[key]) for key in ("F Value", "Pr > F", "Den DF"))
-        rows.append(AnovaRow(name, np.nan, int(row["Num DF"]), f, p, error_df))
-    if len(named) > 1:
-        return RepeatedMeasures(tuple(rows), None, None, persons)
-    wide = frame.pivot(index="person", columns="factor0", values="y").to_numpy()
-    k = wide.shape[1]
-    centring = np.eye(k) - 1.0 / k
-    inner = centring @ np.atleast_2d(np.cov(wide.T)) @ centring
-    epsilon = min(float(np.trace(inner) ** 2 / ((k - 1) * np.sum(inner**2))), 1.0)
-    own: Any = rows[0]  # with F and the degrees of freedom of its error
-    p = float(stats.f.sf(own.f, epsilon * own.df, epsilon * own.error_df))
-    return RepeatedMeasures(tuple(rows), epsilon, p, persons)
+    wide = np.empty(shape)
+    columns = zip((means.person, *means.factors.values()), (people, *levels), strict=True)
+    wide[tuple([names.index(one) for one in column] for column, names in columns)] = means.mean
+    rows, epsilon, corrected = [], [], []
+    for term in crossed(*means.factors):
+        z = wide
+        for axis, name in enumerate(means.factors, start=1):
+            k = shape[axis]
+            basis = np.linalg.qr(np.column_stack((np.ones(k), np.eye(k)[:, 1:])))[0]
+            chosen = basis[:, 1:] if name in parts(term) else basis[:, :1]
+            z = np.moveaxis(np.tensordot(z, chosen, (axis, 0)), -1, axis)
+        z = z.reshape(len(people), -1)
+        d, spread = z.shape[1], np.atleast_2d(np.cov(z.T))
+        scatter, error_df = float(np.trace(spread)), (len(people) - 1) * z.shape[1]
+        if scatter <= ROUNDING**2 * float(np.max(wide**2)):
+            raise DataError("persons react all alike: no scatter", where=term)
+        f = len(people) * float(np.sum(z.mean(axis=0) ** 2)) / scatter
+        rows.append(AnovaRow(term, np.nan, d, f, float(stats.f.sf(f, d, error_df)), error_df))
+        epsilon.append(min(scatter**2 / (d * float(np.sum(spread**2))), 1.0))
+        corrected.append(float(stats.f.sf(f, epsilon[-1] * d, epsilon[-1] * error_df)))
+    return RepeatedMeasures(tuple(rows), tuple(epsilon), tuple(corrected), len(people))

@@ -1,6 +1,6 @@
 """Samples: t tests, straight line, repeatability and reproducibility (ISO 5725-2)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
+
+ROUNDING = 1e-12
+"""Differences below this share of the largest value are those of rounding: no instrument reads
+twelve digits."""
 
 KINDS = {
     "welch": "Welch's t test (variances may differ)",
@@ -34,6 +38,27 @@ class TTest:
         return KINDS[self.kind]
 
 
+def resolved(values: ArrayLike) -> np.ndarray:
+    """Return the values, with those that differ by rounding alone made equal (0.3, 0.1 + 0.2)."""
+    x = np.asarray(values, dtype=float)
+    order = np.argsort(x, axis=None)
+    flat = x.ravel()[order]
+    if not len(flat):
+        return x
+    apart = np.diff(flat, prepend=flat[0]) > ROUNDING * np.abs(flat).max()
+    made = np.empty_like(flat)
+    made[order] = flat[np.maximum.accumulate(np.where(apart, np.arange(len(flat)), 0))]
+    return made.reshape(x.shape)
+
+
+def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
+    """Return p corrected for their number: Holm's method, or another of statsmodels."""
+    from statsmodels.stats.multitest import multipletests
+
+    corrected: Any = multipletests(p, method=method)[1] if p else []
+    return [float(each) for each in corrected]
+
+
 def t_test(
     first: ArrayLike, second: ArrayLike, *, kind: str = "welch", confidence: float = 0.95
 ) -> TTest:
@@ -54,7 +79,7 @@ def t_test(
     if kind == "paired" and len(a) != len(b):
         raise DataError(f"{len(a)} against {len(b)} values can't be paired", where=kind)
     scatter = np.ptp(a - b) if kind == "paired" else max(np.ptp(a), np.ptp(b))
-    if scatter == 0:
+    if scatter <= ROUNDING * max(np.abs(a).max(), np.abs(b).max()):
         raise DataError("the samples do not scatter", where=kind)
     test: Any = (
         stats.ttest_rel(a, b)
@@ -64,6 +89,22 @@ def t_test(
     ends = test.confidence_interval(confidence)
     numbers = (test.statistic, test.df, test.pvalue, a.mean() - b.mean(), *ends)
     return TTest(kind, *map(float, numbers))
+
+
+def drift(values: ArrayLike, *, alpha: float = 0.01, least: float = 0.05) -> float | None:
+    """Return the rise over a series of readings as a share of their mean, or None where none is.
+
+    The slope of a straight line over the order, where t calls it significant at ``alpha`` and the
+    rise is ``least`` of the mean and more: a floor that was not cleaned, a fluid that dries.
+
+    ``values``: shape (n,), in the order in which they were read; None from fewer than four.
+    """
+    x = resolved(values)
+    if len(x) < 4 or x.mean() == 0 or np.ptp(x) == 0:
+        return None
+    line = regression_line(np.arange(len(x)), x)
+    rise = line.slope * (len(x) - 1) / abs(float(x.mean()))
+    return rise if line.p < alpha and abs(rise) >= least else None
 
 
 def mean_interval(

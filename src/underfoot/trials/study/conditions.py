@@ -26,10 +26,30 @@ PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id"
 FILE = ("file", "filename", "file name", "datei", "dateiname")
 MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
         "körpergewicht")  # fmt: skip
-_BODIES = {
+QUANTITIES = {
+    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
+    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel"),
+    "cof": (
+        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "µ",
+        "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
+    ),
+}  # fmt: skip
+LARGEST = {"ptv": 150.0, "angle": 45.0, "cof": 3.0}  # no ramp goes beyond 45 deg
+_FRICTIONS = ("acof", "rcof", *QUANTITIES["cof"])
+_RANGES = {
     **dict.fromkeys(MASS, (10.0, 300.0, "kg", "(kg), (lb)")),
     **dict.fromkeys(("height", "body height", "körpergröße"), (0.5, 2.5, "m", "(m), (cm)")),
+    **dict.fromkeys(_FRICTIONS, (0.0, LARGEST["cof"], "", "(%)")),
+    **dict.fromkeys(QUANTITIES["ptv"], (0.0, LARGEST["ptv"], "", "(PTV)")),
 }
+"""Least and largest number, its unit, and headings with a unit, by the name of a column."""
+_ANGLES = QUANTITIES["angle"]
+_SCALE = re.compile(
+    r"(shore|asker)[ -]?(a|am|b|c|d|do|e|m|o|oo|0|00|000)?|irhd|ptv|srv|bpn|hr[a-z]|points?|scores?"
+    r"|count|#|no|nr",
+    re.IGNORECASE,
+)
+"""Scales that have no SI unit: their numbers stay as they are."""
 _EMPTY = ("", "?", "-", "--", "n/a", "#n/a", "nan", "null", "unknown", "unbekannt", "tbd", "k.a.")
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
@@ -434,13 +454,16 @@ def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name:
         return list(cells)
     factor, offset = _to_si(unit, f"{where}, column {name}")
     values = [float(cell) * factor + offset if cell else None for cell in plain]
-    low, high, si, headings = _BODIES.get(name, (-math.inf, math.inf, "", ""))
+    low, high, si, headings = _RANGES.get(name, (-math.inf, math.inf, "", ""))
+    if name in _ANGLES:
+        high = LARGEST["angle"] * factor
+        low, si, headings = -high, "rad" if unit else "deg", "(deg), (rad)"
     for i, value in enumerate(values):
         if value is not None and not low <= value <= high:
             raise InputError(
                 f'line {lines[i]}: {name} is "{cells[i]}"',
                 where=where,
-                allowed=f"{low:g} to {high:g} {si}",
+                allowed=f"{low:g} to {high:g} {si}".strip(),
                 remedy=f"Write the unit in the heading: {headings.replace('(', f'{name} (')}",
             )
     return values
@@ -453,7 +476,7 @@ def body_mass_noted(noted: Mapping[str, Any]) -> float | None:
 
 def _to_si(unit: str, where: str) -> tuple[float, float]:
     """Return factor and offset of a unit written in a heading; none leaves numbers as they are."""
-    if not unit:
+    if not unit or _SCALE.fullmatch(unit):
         return 1.0, 0.0
     known = si_unit(unit)
     # "g" is a force in tribometer logs and a mass here.

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -175,7 +174,9 @@ def equivalence_findings(
             rows.append([*cells, test.not_lower, test.not_higher, p, test.verdict])
         if not rows:
             continue
-        for row, p in zip(rows, corrected_p([float(row[7] or 0.0) for row in rows]), strict=True):
+        for row, p in zip(
+            rows, statistics.corrected_p([float(row[7] or 0.0) for row in rows]), strict=True
+        ):
             row[7] = p
         columns = (
             "first", "second", "difference", "90 % low", "90 % high", "p (lower by the margin)",
@@ -192,24 +193,20 @@ def equivalence_findings(
     return findings
 
 
-def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
-    """Return p corrected for their number: Holm's method, or another of statsmodels."""
-    from statsmodels.stats.multitest import multipletests
-
-    corrected: Any = multipletests(p, method=method)[1] if p else []
-    return [float(each) for each in corrected]
-
-
 def rank_findings(
     response: str,
     values: Sequence[float],
     factors: Mapping[str, Sequence[str]],
     persons: Sequence[object],
 ) -> list[Finding]:
-    """Return rank tests where the scatter of persons' means is not normal (Shapiro and Wilk)."""
+    """Return rank tests where the scatter of persons' means is not normal (Shapiro and Wilk).
+
+    Of three levels and more the pairs follow, with letters.
+    """
     from scipy.stats import shapiro
 
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
+    found: list[Finding] = []
     for factor, levels in factors.items():
         columns = person_columns(values, levels, persons or range(len(values)))
         people = {who: [own[who] for own in columns.values() if who in own]
@@ -220,7 +217,7 @@ def rank_findings(
             for own in columns.values()
             for who, value in own.items()
         ]
-        if len(left) < 2 * _FEWEST or np.ptp(left) == 0:
+        if len(left) < 2 * _FEWEST or np.ptp(left) <= statistics.ROUNDING * max(map(abs, values)):
             continue
         normal = float(shapiro(left).pvalue)
         if normal >= 0.05:
@@ -229,13 +226,67 @@ def rank_findings(
             test = statistics.rank_test(values, levels, persons)
         except DataError:
             continue
-        rows.append((factor, test.name, test.statistic, test.p, test.persons, normal))
+        rows.append(
+            (factor, test.name, test.statistic, test.p, _HOW[test.how], test.persons, normal)
+        )
+        if test.pairs:
+            found.append(_ranked_pairs(response, factor, test.pairs))
     if not rows:
         return []
     title = f"Rank tests of {quantity_name(response)}: the scatter is not normal"
-    columns = ("factor", "test", "statistic", "p", "persons", "p of normality (Shapiro-Wilk)")
+    columns = (
+        "factor", "test", "statistic", "p", "p by", "persons", "p of normality (Shapiro-Wilk)",
+    )  # fmt: skip
     note = "Read beside the tests above, which assume a normal scatter of persons' means."
-    return [finding(f"ranks_{response}", title, columns, rows, note)]
+    return [finding(f"ranks_{response}", title, columns, rows, note), *found]
+
+
+_HOW = {"exact": "all orders", "drawn": "100 000 random orders", "large sample": "large samples"}
+
+
+def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) -> Finding:
+    marks = statistics.letters(pairs)
+    listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
+    title = f"Pairs of {quantity_name(response)} by {factor}: rank tests"
+    columns = ("first", "second", "median difference", "p (Holm)")
+    note = f"Levels that share a letter do not differ at 0.05: {listed}."
+    rows = [(one.first, one.second, one.difference, one.p) for one in pairs]
+    name = f"rank_pairs_{response}_{factor}".replace(" ", "_")
+    return finding(name, title, columns, rows, note)
+
+
+def share_findings(files: Sequence[FileResult], key: str, person: str) -> list[Finding]:
+    """Return the differences of the shares of slips of two levels, with score intervals."""
+    levels: dict[str, tuple[list[int], list[str]]] = {}
+    for f in files:
+        if key in f.conditions:
+            slips, who = levels.setdefault(str(f.conditions[key]), ([], []))
+            slips.append(int(f.main["slip"]))
+            who.append(str(f.conditions.get(person, f.file)))
+    rows: list[list[Cell]] = []
+    for first, second in combinations(levels, 2):
+        (a, a_person), (b, b_person) = levels[first], levels[second]
+        told = statistics.share_difference(a, b, a_person, b_person)
+        rows.append(
+            [first, second, *told.shares, told.difference, told.low, told.high, told.p, None]
+        )
+    if not rows:
+        return []
+    p = statistics.corrected_p([float(row[-2] or 0.0) for row in rows])
+    for row, held in zip(rows, p, strict=True):
+        row[-1] = held
+    columns = (
+        "first", "second", "share of first", "share of second", "difference", "95 % low",
+        "95 % high", "p", "p (Holm)",
+    )  # fmt: skip
+    note = (
+        "Score intervals (Miettinen and Nurminen). Persons who repeat count as many trials as have "
+        "the variance between persons."
+    )
+    title = f"Shares of slips by {key}: differences of two"
+    decimals: dict[str, int] = dict.fromkeys(columns[2:7], 3)
+    name = f"shares_{key}".replace(" ", "_")
+    return [finding(name, title, columns, list(map(tuple, rows)), note, decimals=decimals)]
 
 
 def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
@@ -252,7 +303,7 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     if len({outcome for outcome, *_ in named}) < 2:
         return []
     p = [float(value) for *_, value in named if isinstance(value, float)]
-    both = corrected_p(p), corrected_p(p, "fdr_bh")
+    both = statistics.corrected_p(p), statistics.corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
     columns = ("outcome", "term", "p", "p (Holm)", "p (Benjamini-Hochberg)")
     note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
@@ -287,7 +338,6 @@ def prediction_finding(
     caution = worse if told.brier >= told.constant else ()
     title = f"Prediction of slips from {quantity_name(name)}"
     columns = ("", "value", "95 % low", "95 % high")
-    dict.fromkeys(columns[1:], 3)
     return finding(f"prediction_{name}", title, columns, rows, note, caution, decimals=_THREE)
 
 
@@ -323,24 +373,26 @@ def curve_findings(
                 continue
             percent = PERCENT[known]
             beyond = [
-                f"{percent[c.start]:.0f} to {percent[c.stop]:.0f} % (p {c.p:.2g})"
+                f"{percent[c.start]:.0f} to {percent[c.stop]:.0f} % "
+                f"(p of its length {c.p:.2g}, of its peak {c.p_peak:.2g})"
                 for c in test.clusters
             ]
             wholes.append(test.p)
             where = ", ".join(beyond) or "nowhere"
-            rows.append([first, second, len(both), test.threshold, where, test.p, None])
+            still = ", ".join(f"{percent[i]:.0f} %" for i in test.still)
+            rows.append([first, second, len(both), test.threshold, where, test.p, None, still])
         if not rows:
             continue
-        for row, p in zip(rows, corrected_p(wholes), strict=True):
-            row[-1] = p
+        for row, p in zip(rows, statistics.corrected_p(wholes), strict=True):
+            row[-2] = p
         columns = (
             "first", "second", "persons", "t beyond chance", "differs at (stance)",
-            "p of the curve", "p (Holm)",
+            "p of the curve", "p (Holm)", "left out: no scatter at",
         )  # fmt: skip
         title = f"Shear / normal force over stance by {factor}: paired curves (SPM)"
         note = (
             "Paired t of persons' mean curves at each instant; one threshold for the whole curve "
-            "(random field theory, two-sided, 5 %)."
+            "(random field theory, two-sided, 5 %). p of the curve is that of its highest peak."
         )
         decimals = {"t beyond chance": 2}
         key = f"curves_{factor}".replace(" ", "_")

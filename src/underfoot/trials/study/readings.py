@@ -15,18 +15,11 @@ from ..readers.text import is_number
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import TesterCalibration
-from .conditions import one_spelling, table_columns
+from ..statistics import drift
+from .conditions import LARGEST, QUANTITIES, one_spelling, table_columns
 from .file_result import Draft, FileResult, refer_to
 from .floor_classes import class_scheme
 
-QUANTITIES = {
-    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
-    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel"),
-    "cof": (
-        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "µ",
-        "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
-    ),
-}  # fmt: skip
 NOTED = {
     "slider": ("slider", "rubber", "gleiter"),
     "condition": ("condition", "contaminant", "fluid", "state", "zustand", "gleitmittel"),
@@ -39,7 +32,6 @@ _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
-_LARGEST = {"ptv": 150.0, "angle": 45.0, "cof": 3.0}  # no ramp goes beyond 45 deg
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -103,7 +95,7 @@ def reading_results(
         raise DataError(f'{column} is in "{units[column]}"', where=name, allowed=allowed)
     values = np.array([float(c.replace(",", ".")) if c else np.nan for c in numbers[column]])
     values *= _UNITS[quantity][unit]
-    top = _LARGEST[quantity]
+    top = LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
         text = f"line {lines[wrong[0]]}: {column} is {values[wrong[0]]:g}"
@@ -204,6 +196,11 @@ def _one_sample(
         flags.append(
             caution(f"readings differ by {np.ptp(readings):g}, expected at most {widest:g}")
         )
+    rise = drift(readings)
+    if rise is not None:
+        way = "rise" if rise > 0 else "fall"
+        words = f"readings {way} by {100 * abs(rise):.0f} % from the first to the last"
+        flags.append(caution(f"{words}: is the floor cleaned, does the fluid dry, does it wear?"))
     missing = [
         asked
         for asked in protocol.texts("noted")

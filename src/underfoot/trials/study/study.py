@@ -15,6 +15,7 @@ from ..recording.protocols import Protocol
 from ..statistics import precision
 from . import tables
 from .boundary import alpha_beta, friction_split
+from .circumstances import circumstance_table
 from .conditions import NUMBERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
@@ -318,6 +319,8 @@ def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
         # The table of all trials says nothing that one by conditions does not.
         table = condition_table(files, (), numbers, person=person)
         made = [table] if table else []
+    walked = circumstance_table(files, keys, person)
+    made += [walked] if walked else []
     findings, curves = slip_findings(files, protocol, keys)
     return Study((*made, tables.steps_table(files)), tuple(findings), curves)
 
@@ -345,6 +348,8 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     made = [table] if table else []
     if len(factors) > 1:
         made += _condition_tables(with_rcof, tuple(factors), numbers, person)
+    walked = circumstance_table(with_rcof, tuple(factors), person)
+    made += [walked] if walked else []
     if person:
         made.append(_person_table(with_rcof, tuple(factors), person))
     return Study((*made, tables.steps_table(files)), tuple(findings))
@@ -394,7 +399,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
         if quantity == "ptv":
             cells += cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
-        if "scheme" in f.curves:
+        if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
             scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
             cells += _classes(scheme, m)
         rows.append(tuple(cells))
@@ -412,6 +417,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3, "u of COF": 3}
     title = f"Samples, {quantity_name(quantity)}"
     made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    if quantity == "angle":
+        made += _walkers(files, keys, places)
     made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
     findings: list[Finding] = []
     for by in ("laboratory", "operator", "machine"):
@@ -439,6 +446,34 @@ def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None
     own = scheme.class_of(value)
     others = {scheme.class_of(end) for end in (value - wide, value + wide)} - {own}
     return own, ", ".join(sorted(others)) or None
+
+
+def _walkers(files: Sequence[FileResult], keys: tuple[str, ...], places: int) -> list[Table]:
+    """Return each sample with the angle of all who walked on it, which gives its class."""
+    others = tuple(k for k in keys if k != "operator")
+    rows = []
+    for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
+        angles = {str(f.conditions.get("operator", "")): f.main["angle"] for f in members}
+        mean = float(np.mean(list(angles.values())))
+        inside = [f.measurements[0]["uncertainty"] or 0.0 for f in members]
+        apart = float(np.std(list(angles.values()), ddof=1)) if len(angles) > 1 else 0.0
+        u = max(float(np.hypot.reduce(inside)) / len(inside), apart / np.sqrt(len(angles)))
+        told = "; ".join(f"{name} {value:.{places}f}" for name, value in angles.items())
+        scheme = members[0].curves.get("scheme")
+        number = {"value": mean, "uncertainty": u}
+        classes = _classes(class_scheme(scheme), number) if scheme else (None, None)
+        few = "1 of 2" if len(angles) < 2 else ""
+        rows.append((*level, told, mean, u, *classes, few))
+    if not rows:
+        return []
+    columns = (*others, "walkers", "angle (deg)", "u", "class", "2 u reaches", "walkers measured")
+    notes = (
+        "The class of a sample is that of the mean angle of its walkers, two of them.",
+        "Angles are as read: the walkers' correction by calibration boards is not applied.",
+    )
+    decimals = {"angle (deg)": places, "u": places}
+    title = "Samples, all walkers, angle"
+    return [Table("walkers", title, columns, tuple(rows), notes, decimals)]
 
 
 def _lowest(

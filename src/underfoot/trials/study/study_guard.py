@@ -1,14 +1,18 @@
 """What the files of a study say against each other, told before any statistics."""
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from statistics import median
 from typing import Any
 
 import numpy as np
 
 from ..recording.protocols import Protocol
+from ..statistics import drift, told_apart
+from .circumstances import ORDERS, gone_with, run_numbers
 from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
@@ -27,6 +31,12 @@ _STEP = ("contact", "peak_force")  # what tells one step from all others
 _TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
 """Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
 0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
+_SAME, _APART, _TELLING = 0.002, 0.04, 3
+"""Scatter of a body's measures that is the least (relative), scatter between persons where few are
+measured, and how many measures two bodies must share; assumed."""
+_SIDE = re.compile(
+    r"(.*\w)[ _-]?(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
+)
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 
@@ -135,13 +145,18 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     person = person_condition(usable, protocol.text("subject"))
     tables = protocol.kind == "readings"
     doubts = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
+    doubts += _words_exchanged(usable)
     if not tables:
-        doubts += _single_levels(usable, person)
+        doubts += [*_single_levels(usable, person), *_confounded(usable, person)]
+    if any(one.steps for one in usable):
+        doubts += _circumstances(usable, person)
     if person:
+        doubts += [*_one_body(usable, person), *_sides_as_persons(usable, person)]
+        doubts += [*_levels_exchanged(usable, person), *_trials_mislabelled(usable, person)]
         doubts += [*_bodies_noted(usable, person), *_bodies_measured(usable, person)]
         doubts += [*_crowded_levels(usable, person), *_unlike_trials(usable, person)]
     if protocol.kind == "slip_tester":
-        doubts += _repeats(usable, protocol)
+        doubts += [*_repeats(usable, protocol), *_drifts(usable, protocol)]
     if protocol.kind in ("slip_tester", "readings"):
         doubts += _not_on_record(usable, protocol)
     return doubts
@@ -270,6 +285,161 @@ def _one_slip(a: str, b: str) -> bool:
     return a[1:] == b[1:] or a[1:] == b or a == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
 
 
+def _words_exchanged(files: Sequence[FileResult]) -> Iterator[Doubt]:
+    """Two levels of the same words in another order: "hard wet" beside "wet hard"."""
+    for key, having in _factors(files).items():
+        by_words: dict[tuple[str, ...], dict[str, list[FileResult]]] = {}
+        for one in having:
+            level = str(one.conditions[key])
+            words = tuple(sorted(re.findall(r"\w+", level.casefold())))
+            if len(words) > 1 and not any(word.isdigit() for word in words):
+                by_words.setdefault(words, {}).setdefault(level, []).append(one)
+        for levels in by_words.values():
+            if len(levels) > 1:
+                named = " and ".join(f'"{level}" ({len(own)})' for level, own in levels.items())
+                rare = min(levels.values(), key=len)
+                yield Doubt(f"{key} {named} are the same words: one level?", _names(rare))
+
+
+def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileResult]]:
+    """Return the conditions in words that a study can compare, with the files that have them."""
+    return {
+        key: having
+        for key, having in _factors(files).items()
+        if key != person and 1 < len({one.conditions[key] for one in having}) < len(having)
+    }
+
+
+def _confounded(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    having = _compared(files, person)
+    every = [key for key, own in having.items() if len(own) == len(files)]
+    factors = {key: [str(one.conditions[key]) for one in files] for key in every}
+    if len(factors) > 1:
+        for one in told_apart(factors)[1]:
+            yield Doubt(f"{one}: what is found for one may be of the other", ("all",))
+
+
+def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A condition that was walked faster or slower than another, or always early or late."""
+    for key, having in _compared(files, person).items():
+        if key in ORDERS:
+            continue
+        for what, means in gone_with(having, key, person).items():
+            low, high = min(means, key=means.__getitem__), max(means, key=means.__getitem__)
+            words = f'{key} "{high}" was walked at {means[high]:.2f} m/s, "{low}" at '
+            words += f"{means[low]:.2f} m/s: RCOF changes with speed"
+            if what == "place":
+                words = f'{key} "{low}" was walked early in the session, "{high}" late: order and '
+                words += f"{key} can't be told apart"
+            yield Doubt(words, _names([o for o in having if o.conditions[key] in (low, high)]))
+
+
+def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """Left and right of most persons noted as two: S01L, S01R."""
+    own = grouped(files, (person,))
+    stems: dict[str, set[str]] = defaultdict(set)
+    for (who,) in own:
+        found = _SIDE.fullmatch(who)
+        if found:
+            stems[found[1]].add(found[2][0].casefold().replace("g", "l").replace("d", "r"))
+    both = [stem for stem, sides in stems.items() if len(sides) > 1]
+    if len(both) > 1 and 4 * len(both) > len(own):
+        words = f"{len(both)} persons are noted twice, by side ({both[0]}): left and right of one "
+        words += "person are no two persons; note the side in a column of its own"
+        yield Doubt(words, ("all",))
+
+
+def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """Two persons with one body: weight, height and distances of markers agree as repeats do."""
+    bodies: dict[str, list[Mapping[str, float]]] = {
+        who: [one.curves["person"] for one in own if one.curves.get("person")]
+        for (who,), own in grouped(files, (person,)).items()
+    }
+    usual = {who: {name: median([b[name] for b in own if name in b]) for name in own[0]}
+             for who, own in bodies.items() if own}  # fmt: skip
+    names = dict.fromkeys(name for body in usual.values() for name in body)
+    within, between = {}, {}
+    for name in names:
+        values = [np.log(body[name]) for body in usual.values() if body.get(name, 0.0) > 0.0]
+        off = [
+            np.log(b[name] / usual[who][name])
+            for who, own in bodies.items()
+            for b in own
+            if len(own) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
+        ]
+        if len(off) < 3 or len(values) < 2:
+            continue
+        within[name] = max(1.4826 * float(np.median(np.abs(off))), _SAME)
+        between[name] = float(np.std(values, ddof=1)) if len(values) > 2 else _APART
+    telling = [name for name in within if between[name] > 4.0 * within[name]]
+    for one, other in combinations(sorted(usual), 2):
+        shared = [n for n in telling if n in usual[one] and n in usual[other]]
+        kinds = {_kind(n) for n in shared}
+        if len(shared) < (_TELLING if len(kinds) > 1 else 2 * _TELLING):
+            continue
+        off = [abs(np.log(usual[one][n] / usual[other][n])) for n in shared]
+        if all(d < 3.0 * within[n] for d, n in zip(off, shared, strict=True)):
+            words = f"{one} and {other} have one body: {len(shared)} measures of it agree as those "
+            words += "of one person's trials do; one person under two names?"
+            yield Doubt(words, _names([f for f in files if str(f.conditions.get(person)) == other]))
+
+
+def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A person whose difference of two levels is that of all others with its sign turned."""
+    for key, having in _compared(files, person).items():
+        values = [
+            (str(o.conditions[person]), str(o.conditions[key]), np.log(o.main["rcof"]))
+            for o in having
+            if person in o.conditions and o.main.get("rcof", 0.0) > 0.0
+        ]
+        cells: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
+        for who, level, value in values:
+            cells[who][level].append(float(value))
+        for first, second in combinations(dict.fromkeys(level for _, level, _ in values), 2):
+            apart = {who: float(np.mean(own[first]) - np.mean(own[second]))
+                     for who, own in cells.items() if first in own and second in own}  # fmt: skip
+            for who, difference in apart.items():
+                others = [d for other, d in apart.items() if other != who]
+                if len(others) < 4:
+                    continue
+                mean, spread = float(np.mean(others)), float(np.std(others, ddof=1))
+                turned = abs(difference + mean) < 3.0 * spread < 0.75 * abs(mean)
+                if turned and abs(difference - mean) > _SCATTERS * spread:
+                    words = f'{who} has "{first}" and "{second}" ({key}) the other way round than '
+                    words += "all others: labels exchanged?"
+                    named = [o for o in having if str(o.conditions.get(person)) == who]
+                    yield Doubt(
+                        words, _names([o for o in named if o.conditions[key] in (first, second)])
+                    )
+
+
+def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
+    """A trial far from its person's others with the same label, and as those with another."""
+    for key, having in _compared(files, person).items():
+        having = [o for o in having if person in o.conditions and o.main.get("rcof", 0.0) > 0.0]
+        cells = grouped(having, (person, key))
+        left = [
+            np.log(one.main["rcof"]) - np.median([np.log(o.main["rcof"]) for o in own])
+            for own in cells.values() if len(own) > 2 for one in own
+        ]  # fmt: skip
+        if len(left) < 20:
+            continue
+        scatter = max(1.4826 * float(np.median(np.abs(left))), 1e-3)
+        for (who, level), own in cells.items():
+            for one in own:
+                value = np.log(one.main["rcof"])
+                same = [np.log(o.main["rcof"]) for o in own if o is not one]
+                if len(same) < 2 or abs(value - np.mean(same)) < _SCATTERS * scatter:
+                    continue
+                for (other, label), those in cells.items():
+                    logs = [np.log(o.main["rcof"]) for o in those]
+                    near = abs(value - np.mean(logs)) < 3.0 * scatter
+                    if other == who and label != level and len(logs) > 1 and near:
+                        words = f'noted as {key} "{level}", reads as "{label}" of {who}'
+                        yield Doubt(f"{words}: another label?", (one.file,))
+                        break
+
+
 def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     for key, having in _factors(files).items():
         counts = Counter(str(one.conditions[key]) for one in having)
@@ -361,6 +531,19 @@ def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]
             if away > max(6.0 * usual, 0.15 * middle):
                 words = f"COF {one.main['cof']:.3f} against {middle:.3f} of the other repeats"
                 yield Doubt(f"{', '.join(level)}: {words}: gain or sample?", (one.file,))
+
+
+def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
+    """Repeats of one shoe, floor and fluid that rise or fall from the first to the last."""
+    keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
+    for level, own in grouped([f for f in files if "cof" in f.main], keys).items():
+        places = run_numbers(own)
+        rise = drift([one.main["cof"] for one in sorted(own, key=lambda f: places[f.file])])
+        if rise is not None:
+            way = "rises" if rise > 0 else "falls"
+            words = f"COF {way} by {100 * abs(rise):.0f} % from the first run to the last: is the "
+            words += "floor cleaned, does the fluid dry, does the sole wear?"
+            yield Doubt(f"{', '.join(level) or 'all runs'}: {words}", _names(own))
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:

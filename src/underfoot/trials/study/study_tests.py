@@ -1,6 +1,7 @@
 """The statistical tests of a study, each with its convention and what is doubtful about it."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,7 +13,6 @@ from ..recording.protocols import Protocol
 from ..statistics.logistic import METHODS, risk_curve
 from .conditions import person_condition
 from .field_statistics import (
-    corrected_p,
     curve_findings,
     effect_cells,
     equivalence_findings,
@@ -21,11 +21,14 @@ from .field_statistics import (
     prediction_finding,
     rank_findings,
     reliability_findings,
+    share_findings,
 )
 from .file_result import FileResult
 from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
 
 _Fit = TypeVar("_Fit")
+_LAST = ("date", "day", "time", "session", "visit", "order", "operator")
+"""Columns that give way where they can't be told from another."""
 
 
 def comparison_findings(
@@ -38,12 +41,14 @@ def comparison_findings(
 ) -> list[Finding]:
     """Return tests of factors on a response, and Tukey's comparisons of the levels.
 
-    Where persons repeat, the mixed model of their means comes first (and repeated measures, when
-    every person has every condition); Tukey's comparisons are then its. The analysis of variance
-    that takes trials as independent follows with a warning. Otherwise it stands alone. Rank tests
-    follow where the scatter is not normal, tests of equivalence where there is a ``margin``, and
-    the reliability of repeated trials.
+    Factors that can't be told apart are named, and all but one of them left out. Where persons
+    repeat, repeated measures come first where every person has every condition, then the mixed
+    model; Tukey's comparisons are its. The analysis of variance that takes trials as independent
+    follows with a warning. Otherwise it stands alone. Rank tests follow where the scatter is not
+    normal, tests of equivalence where there is a ``margin``, and the reliability of repeated
+    trials.
     """
+    factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
     if not factors:
         return repeated
@@ -61,21 +66,26 @@ def comparison_findings(
     except UnderfootError as error:
         title = f"Analysis of variance of {name}"
         return [*findings, not_done(f"anova_{response}", title, error), *repeated]
-    if model is None and not any("empty cells" in text for text in table.warnings):
+    if model is None and not warning and not table.model.dependent:
         model = table.model
     tukey = _tukey(response, model, values, factors, persons) if model is not None else []
     anova = Finding.of_anova(table, warning)
-    return [*findings, *tukey, anova, *repeated] if warning else [anova, *tukey, *repeated]
+    found = [*findings, *tukey, anova] if warning else [anova, *tukey]
+    left = tuple(f"{one}; it is left out of this analysis" for one in confounded)
+    first = replace(found[0], cautions=(*left, *found[0].cautions))
+    return [first, *found[1:], *repeated]
 
 
 def _crossed(
     factors: Mapping[str, Sequence[str]], fit: Callable[[tuple[str, ...] | None], _Fit]
 ) -> _Fit:
-    """Return a crossed model; the main effects alone where there are too few values for it."""
-    try:
-        return fit(None)
-    except DataError:
-        return fit(tuple(factors))
+    """Return a crossed model; without the interactions that there are too few values for."""
+    for order in (None, 2):
+        try:
+            return fit(statistics.crossed(*factors, order=order))
+        except DataError:
+            continue
+    return fit(tuple(factors))
 
 
 def _mixed(
@@ -85,7 +95,7 @@ def _mixed(
     persons: Sequence[str],
 ) -> tuple[list[Finding], statistics.MixedModel | None]:
     name = quantity_name(response)
-    title = f"Mixed model of {name}: means of persons, random intercept for each (REML)"
+    title = f"Mixed model of {name}: persons, and how each reacts, at random (REML)"
     key = f"mixed_{response}"
     try:
         model = _crossed(
@@ -94,40 +104,53 @@ def _mixed(
         )
     except UnderfootError as error:
         return [not_done(key, title, error)], None
-    note = (
-        f"{model.persons} persons, {model.trials} trials; standard deviation between persons "
-        f"{model.person_sd:.3g}, within {model.residual_sd:.3g}. Wald F tests, type III, degrees "
-        "of freedom between and within persons."
+    spreads = ", ".join(
+        f"{what} {np.sqrt(max(variance, 0.0)):.3g}"
+        for what, variance in model.variances.items()
+        if np.isfinite(variance)
     )
-    if model.within and model.residual_sd > 0:
-        spread = np.sqrt(2.0) * model.residual_sd
-        least = statistics.detectable_difference("paired", model.persons, spread)
-        half = statistics.persons_needed(
-            lambda n: statistics.power("paired", n, difference=least / 2, sd=spread)
-        )
-        note += (
-            f" So many persons find a difference of {least:.2g} between two conditions with 80 % "
-            f"power (paired t); half of it would take {half}."
-        )
+    note = (
+        f"{model.persons} persons, {model.trials} trials; standard deviations: {spreads}. F tests, "
+        "type III, each against how differently persons react to the factor, degrees of freedom "
+        "after Kenward and Roger."
+    )
+    note += _power_note(model, factors)
     columns = ("term", "df", "df of error", "F", "p")
-
-    def cells(tests: Sequence[statistics.AnovaRow]) -> list[tuple[Cell, ...]]:
-        return [(row.term, row.df, row.error_df, row.f, row.p) for row in tests]
-
-    findings = [finding(key, title, columns, cells(model.tests), note, model.warnings)]
+    rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
+    mixed = finding(key, title, columns, rows, note, model.warnings)
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
-        return findings, model
+        return [mixed], model
     title = f"Repeated-measures analysis of variance of {name}, means of persons"
-    note = ""
-    if repeated.epsilon is not None and repeated.p_corrected is not None:
-        note = (
-            f"Greenhouse-Geisser epsilon {repeated.epsilon:.3f}, p corrected with it "
-            f"{repeated.p_corrected:.4g}."
+    columns = (*columns, "epsilon", "p (Greenhouse-Geisser)")
+    corrected = zip(repeated.rows, repeated.epsilon, repeated.p_corrected, strict=True)
+    rows = [(row.term, row.df, row.error_df, row.f, row.p, *more) for row, *more in corrected]
+    note = (
+        "Every person has every condition. The corrected p holds also where persons' reactions to "
+        "some levels differ more than to others."
+    )
+    return [finding(f"repeated_{response}", title, columns, rows, note), mixed], model
+
+
+def _power_note(model: statistics.MixedModel, factors: Mapping[str, Sequence[str]]) -> str:
+    """Return the difference that so many persons find, by the error of each factor within them."""
+    found, half = [], []
+    for factor in (name for name in factors if name in model.within):
+        errors = [c.standard_error for c in statistics.tukey_hsd(model, factor)]
+        spread = float(np.median(errors)) * np.sqrt(model.persons)
+        least = statistics.detectable_difference("paired", model.persons, spread)
+        count = statistics.persons_needed(
+            lambda n, d=least / 2, sd=spread: statistics.power("paired", n, difference=d, sd=sd)
         )
-    more = finding(f"repeated_{response}", title, columns, cells(repeated.rows), note)
-    return [*findings, more], model
+        found.append(f"{least:.2g} between two levels of {factor}")
+        half.append(str(count))
+    if not found:
+        return ""
+    return (
+        f" So many persons find a difference of {', '.join(found)} with 80 % power (paired t); "
+        f"half of it would take {', '.join(dict.fromkeys(half))}."
+    )
 
 
 def _tukey(
@@ -187,6 +210,7 @@ def slip_findings(
     for key in keys:
         if "fisher" in wanted:
             findings.append(_fisher(judged, key, person))
+            findings += share_findings(judged, key, person)
         levels = {str(f.conditions.get(key)) for f in files if key in f.conditions}
         if "anova" not in wanted and len(levels) == 2:
             findings += _t_tests(files, key, sorted(levels), person)
@@ -276,7 +300,9 @@ def _t_tests(
             rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
     if rows:
         # rows come in pairs: Welch's test, on which the correction stands, then Student's
-        corrected = iter(corrected_p([row[-1] for row in rows if row[1].startswith("Welch")]))
+        corrected = iter(
+            statistics.corrected_p([row[-1] for row in rows if row[1].startswith("Welch")])
+        )
         rows = [(*row, next(corrected) if row[1].startswith("Welch") else None) for row in rows]
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
         columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -204,6 +204,8 @@ def described_file(
         raise unknown_name("RCOF definition", definition, DEFINITIONS, where="definition")
     if profile is not None and not isinstance(profile, Profile):
         profile = read_profile(Path(profile))
+    if vertical:
+        profile = replace(profile or Profile(), vertical=vertical)
     trials = read_trials(path, profile, subtract_baseline=subtract_baseline)
     if companion is not None:
         others = read_trials(companion, profile, subtract_baseline=subtract_baseline)

@@ -11,7 +11,7 @@ from underfoot.core.presentation import Presentable, Table
 
 from ..recording.axes import Axes
 from ..recording.measurement import Flag, Measurement, remark
-from ..recording.plates import baseline_words, plate_axes, up_from_normal
+from ..recording.plates import baseline_words, plate_up
 from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
 from ..recording.trial import Plate, Trial
 from .events import Stance, stances
@@ -269,7 +269,7 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
     """
     if plate.corners is None or stance.walking is None:
         return ()
-    normal = up_from_normal(plate_axes(plate.corners)[:, 2])
+    normal = plate_up(plate.corners, axes.up)
     slope = math.atan2(-float(normal @ stance.walking), float(normal @ axes.up))
     stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
     if abs(slope - stated) <= _TILT:

@@ -333,7 +333,8 @@ def slip(
     if lost.any():
         when = 1e3 * (motion.time[first + int(np.argmax(lost))] - contact)
         if lost[: max(3, round(0.1 * marker.rate))].any():
-            return without(f"the heel marker is missing {when:.0f} ms after contact", motion)
+            why = f" ({marker.note})" if marker.note else ""
+            return without(f"the heel marker is missing {when:.0f} ms after contact{why}", motion)
         last = first + int(np.argmax(lost)) - 1
         ended = f"the marker is lost {when:.0f} ms after contact"
     if last - first < 4:

@@ -1,0 +1,323 @@
+"""glTF and GLB: all of the core that bears on shape, and the extensions of geometry."""
+
+import base64
+import binascii
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+import numpy as np
+
+from underfoot.core import DataError
+from underfoot.core.arrays import Array
+from underfoot.core.optional import optional_module
+
+from .mesh import AGAIN, MOST_UNFOLDED, Body, MeshFile, Unmet
+
+_LONGEST, _SHORTEST = 2.0, 0.02  # m: what glTF may hold when its metres are meant
+_COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_DRACO = "KHR_draco_mesh_compression"
+_INSTANCES = "EXT_mesh_gpu_instancing"
+_HIDDEN = "KHR_node_visibility"
+_PACKED = ("EXT_meshopt_compression", "KHR_meshopt_compression", "MESHOPT_compression")
+_DONE = {_DRACO, _INSTANCES, _HIDDEN, "KHR_mesh_quantization"}
+_LOOKS = ("KHR_materials_", "KHR_texture_", "KHR_lights_", "KHR_xmp", "KHR_animation_",
+          "EXT_texture_", "EXT_lights_", "MSFT_texture_", "KHR_techniques_", "ADOBE_materials_",
+          "EXT_materials_", "EXT_mesh_features", "EXT_structural_metadata", "KHR_audio",
+          "KHR_interactivity", "KHR_node_selectability", "KHR_node_hoverability")  # fmt: skip
+"""Beginnings of extensions that bear on looks, not on shape."""
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+def read_gltf(path: Path) -> MeshFile:
+    """Return the meshes of the scene that a glTF or GLB file shows, a body for each primitive.
+
+    Its metres count where they make a size of a shoe.
+
+    Raises:
+        DataError: Damaged; glTF 1; a file beside it is missing; nodes that hold each other.
+    """
+    return _Asset(path).shown()
+
+
+class _Asset:
+    def __init__(self, path: Path) -> None:
+        self.path, self.where = path, str(path)
+        data = path.read_bytes()
+        self.chunk: bytes | None = None
+        if data[:4] == b"glTF":
+            data = self._chunks(data)
+        try:
+            self.json: dict[str, Any] = json.loads(data)
+        except (ValueError, RecursionError) as error:
+            raise self._error(f"the GLB file's description is no JSON ({error})") from error
+        self.format = "GLB" if self.chunk is not None or path.suffix == ".glb" else "GLTF"
+        self.unmet: dict[Unmet, None] = {}
+        self.faces = 0
+
+    def shown(self) -> MeshFile:
+        """Return the bodies of the scene."""
+        try:
+            self._demands()
+            roots = self._roots()
+            bodies = [body for n in roots for body in self._node(n, np.eye(4), (), True, ())]
+        except KeyError as error:
+            raise self._error(f"the {self.format} file lacks {error}, which it needs") from error
+        except (IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
+            raise self._error(f"the {self.format} file contradicts itself ({error})") from error
+        unit, remarks = self._unit(bodies)
+        return MeshFile(self.format, bodies, unit, tuple(self.unmet), remarks)
+
+    def _chunks(self, data: bytes) -> bytes:
+        version, length = np.frombuffer(data, "<u4", 2, 4) if len(data) >= 20 else (0, 0)
+        if version != 2:
+            raise self._error(
+                f"it is GLB of version {version}", "Export it as glTF 2.0", allowed="version 2"
+            )
+        if length > len(data):
+            raise self._error(f"it is cut short: {len(data)} bytes of {length}")
+        place, text = 12, b""
+        while place + 8 <= length:
+            size, kind = (int(n) for n in np.frombuffer(data, "<u4", 2, place))
+            content = data[place + 8 : place + 8 + size]
+            if len(content) < size:
+                raise self._error("a chunk of the GLB file is cut short")
+            if kind == 0x4E4F534A and not text:
+                text = content
+            elif kind == 0x004E4942 and self.chunk is None:
+                self.chunk = content
+            place += 8 + size
+        self.chunk = self.chunk or b""
+        return text
+
+    def _demands(self) -> None:
+        version = str(self.json.get("asset", {}).get("version", ""))
+        if not version.startswith("2."):
+            raise self._error(
+                f'it is glTF of version "{version}"', "Export it as glTF 2.0", allowed="version 2"
+            )
+        required = set(self.json.get("extensionsRequired", ()))
+        for name in sorted(required | set(self.json.get("extensionsUsed", ()))):
+            if name not in _DONE and not name.startswith(_LOOKS):
+                self._unmet(f"extension {name}", name in required)
+
+    def _unmet(self, what: str, required: bool) -> None:
+        packed = any(name in what for name in _PACKED)
+        remedy = "Export it uncompressed (gltfpack without -c), or as STL" if packed else (
+            "Export the outsole without it, or as STL"
+        )  # fmt: skip
+        self.unmet[Unmet(what, required, remedy)] = None
+
+    def _roots(self) -> list[int]:
+        scenes = self.json.get("scenes", [])
+        if scenes:
+            return list(scenes[self.json.get("scene", 0)].get("nodes", []))
+        nodes = self.json.get("nodes", [])
+        held = {child for node in nodes for child in node.get("children", ())}
+        return [n for n in range(len(nodes)) if n not in held]
+
+    def _node(
+        self, number: int, place: Array, names: tuple[str, ...], shown: bool, above: tuple[int, ...]
+    ) -> Iterator[Body]:
+        if number in above:
+            raise self._error(f"its nodes hold each other: {number} is within itself")
+        node = self.json["nodes"][number]
+        extensions = node.get("extensions", {})
+        place = place @ _local(node)
+        shown = shown and extensions.get(_HIDDEN, {}).get("visible", True)
+        name = str(node.get("name", ""))
+        if "mesh" in node:
+            if "skin" in node:
+                self._unmet("a skin that bends the mesh", required=True)
+            parts = [self._primitive(*each) for each in self._primitives(node)]
+            for instance in self._instances(extensions.get(_INSTANCES)):
+                mesh = self.json["meshes"][node["mesh"]]
+                for vertices, faces in parts:
+                    self.faces += faces.shape[0]
+                    if self.faces > MOST_UNFOLDED:
+                        raise self._error(
+                            f"the {self.format} file unfolds to more than {MOST_UNFOLDED} faces",
+                            "Export the outsole alone, once",
+                        )
+                    own = name or str(mesh.get("name", ""))
+                    layer = "/".join(filter(None, names))
+                    yield Body(vertices, faces, own, layer, shown, "model", place @ instance)
+        for child in node.get("children", ()):
+            yield from self._node(child, place, (*names, name), shown, (*above, number))
+
+    def _primitives(self, node: dict[str, Any]) -> Iterator[tuple[dict[str, Any], list[float]]]:
+        mesh = self.json["meshes"][node["mesh"]]
+        weights = node.get("weights", mesh.get("weights", []))
+        for primitive in mesh["primitives"]:
+            if primitive.get("mode", _TRIANGLES) >= _TRIANGLES:  # else points and lines
+                yield primitive, weights
+
+    def _primitive(self, primitive: dict[str, Any], weights: list[float]) -> tuple[Array, Any]:
+        """Return vertices (n, 3) and faces (m, 3) of a primitive."""
+        attributes = primitive["attributes"]
+        if "POSITION" not in attributes:
+            return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+        packed = primitive.get("extensions", {}).get(_DRACO)
+        if packed is not None:
+            vertices, order = self._unpacked(packed, self.json["accessors"][attributes["POSITION"]])
+        else:
+            vertices = self._accessor(attributes["POSITION"])
+            order = np.arange(vertices.shape[0])
+            if "indices" in primitive:
+                order = self._accessor(primitive["indices"]).astype(np.int64).ravel()
+        for target, weight in zip(primitive.get("targets", ()), weights, strict=False):
+            if weight and "POSITION" in target:
+                vertices = vertices + weight * self._accessor(target["POSITION"])
+        mode = primitive.get("mode", _TRIANGLES)
+        if mode == _TRIANGLES:
+            faces = order[: order.size // 3 * 3].reshape(-1, 3)
+        elif mode == _STRIP:
+            faces = strip_faces(order)
+        elif mode == _FAN:
+            first = np.full(max(0, order.size - 2), order[0] if order.size else 0)
+            faces = np.stack([order[1:-1], order[2:], first], axis=1)
+        else:
+            raise self._error(f"a primitive has the mode {mode}", allowed="0 to 6")
+        return vertices, faces
+
+    def _unpacked(self, packed: dict[str, Any], shape: dict[str, Any]) -> tuple[Array, Any]:
+        """Return vertices and indices that Draco packed, which come as triangles."""
+        draco = optional_module("DracoPy", "cad", f"Reading the extension {_DRACO}")
+        try:
+            mesh = draco.decode(bytes(self._view(packed["bufferView"])[0]))
+            own = mesh.get_attribute_by_unique_id(packed["attributes"]["POSITION"])
+            vertices, faces = np.asarray(own["data"]), np.asarray(mesh.faces)
+        except Exception as error:  # whatever its parser meets
+            raise self._error(f"its mesh packed by Draco is damaged ({error})") from error
+        if vertices.shape[0] != shape["count"]:
+            raise self._error(
+                f"Draco unpacks {vertices.shape[0]} vertices, {shape['count']} are promised"
+            )
+        if shape.get("normalized"):
+            vertices = _normalised(vertices)
+        return vertices, faces.astype(np.int64).ravel()
+
+    def _instances(self, said: dict[str, Any] | None) -> list[Array]:
+        if said is None:
+            return [np.eye(4)]
+        rows = {name: self._accessor(n) for name, n in said["attributes"].items()}
+        count = next(iter(rows.values())).shape[0]
+        words = {"TRANSLATION": "translation", "ROTATION": "rotation", "SCALE": "scale"}
+        return [
+            _local({word: rows[name][n] for name, word in words.items() if name in rows})
+            for n in range(count)
+        ]
+
+    def _accessor(self, number: int) -> Array:
+        """Return the values of an accessor (n, width): strided, sparse, normalised."""
+        said = self.json["accessors"][number]
+        kind = np.dtype(_COMPONENTS[said["componentType"]])
+        width, count = _WIDTHS[said["type"]], said["count"]
+        if not 0 <= count <= 3 * MOST_UNFOLDED:
+            raise self._error(f"an accessor promises {count} values")
+        values = np.zeros((count, width), dtype=kind)
+        if "bufferView" in said:
+            values = self._rows(said, kind, width, count)
+        sparse = said.get("sparse")
+        if sparse:
+            values = values.copy()
+            places = self._rows(
+                sparse["indices"], np.dtype(_COMPONENTS[sparse["indices"]["componentType"]]), 1,
+                sparse["count"],
+            )  # fmt: skip
+            values[places.ravel()] = self._rows(sparse["values"], kind, width, sparse["count"])
+        return _normalised(values) if said.get("normalized") else values
+
+    def _rows(self, said: dict[str, Any], kind: np.dtype, width: int, count: int) -> np.ndarray:
+        data, stride = self._view(said["bufferView"])
+        begin, size = said.get("byteOffset", 0), kind.itemsize * width
+        stride = stride or size
+        if count and (begin < 0 or begin + (count - 1) * stride + size > data.size):
+            raise self._error("an accessor reaches beyond the bytes of its view: it is cut short")
+        data = np.ascontiguousarray(data[begin:])
+        rows = np.lib.stride_tricks.as_strided(data, (count, size), (stride, 1), writeable=False)
+        return np.ascontiguousarray(rows).view(kind)
+
+    def _view(self, number: int) -> tuple[np.ndarray, int]:
+        """Return the bytes of a buffer view and their stride, 0 where they lie close."""
+        said = self.json["bufferViews"][number]
+        for name in _PACKED:
+            if name in said.get("extensions", {}):
+                self._unmet(f"extension {name}", required=True)
+        begin = said.get("byteOffset", 0)
+        data = self._buffer(said["buffer"])
+        if begin < 0 or begin + said["byteLength"] > data.size:
+            if any(each.required for each in self.unmet):  # a packed file's stand-in
+                return np.zeros(said["byteLength"], np.uint8), said.get("byteStride", 0)
+            raise self._error("a buffer view reaches beyond its buffer: it is cut short")
+        return data[begin : begin + said["byteLength"]], said.get("byteStride", 0)
+
+    def _buffer(self, number: int) -> np.ndarray:
+        uri = self.json["buffers"][number].get("uri")
+        if uri is None:
+            return np.frombuffer(self.chunk or b"", dtype=np.uint8)
+        if uri.startswith("data:"):
+            try:
+                data = base64.b64decode(uri.partition(",")[2], validate=True)
+            except binascii.Error as error:
+                raise self._error("a buffer within the file is damaged") from error
+            return np.frombuffer(data, dtype=np.uint8)
+        beside = self.path.parent / unquote(uri)
+        if not beside.is_file():
+            raise self._error(
+                f'the file of its numbers "{uri}" is not there',
+                "Put it beside the file, or export GLB, which holds all in one",
+            )
+        return np.fromfile(beside, dtype=np.uint8)
+
+    def _unit(self, bodies: list[Body]) -> tuple[float | None, tuple[str, ...]]:
+        with np.errstate(invalid="ignore"):
+            corners = [
+                body.vertices.astype(np.float64) @ body.placement[:3, :3].T + body.placement[:3, 3]
+                for body in bodies
+                if body.visible and body.vertices.size
+            ]
+            if not corners:
+                return None, ()
+            size = float(np.ptp(np.concatenate(corners), axis=0).max())
+        if _SHORTEST <= size <= _LONGEST:
+            return 1.0, ()
+        return None, (f"glTF is in metres, which would make this file {size:.4g} m long.",)
+
+    def _error(self, what: str, remedy: str = AGAIN, allowed: str | None = None) -> DataError:
+        return DataError(what, where=self.where, allowed=allowed, remedy=remedy)
+
+
+def strip_faces(order: np.ndarray) -> np.ndarray:
+    """Return the triangles (n, 3) of a strip, every other one turned; flat joints left out."""
+    faces = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
+    faces[1::2] = faces[1::2, ::-1]
+    a, b, c = faces.T
+    return faces[(a != b) & (b != c) & (c != a)]
+
+
+def _normalised(values: np.ndarray) -> Array:
+    if values.dtype.kind == "f":
+        return values
+    return np.maximum(values / float(np.iinfo(values.dtype).max), -1.0)
+
+
+def _local(node: dict[str, Any]) -> Array:
+    """Return the matrix (4, 4) of a node or an instance."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+    x, y, z, w = np.asarray(node.get("rotation", (0, 0, 0, 1)), dtype=np.float64)
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn * np.asarray(node.get("scale", (1, 1, 1)), dtype=np.float64)
+    matrix[:3, 3] = np.asarray(node.get("translation", (0, 0, 0)), dtype=np.float64)
+    return matrix

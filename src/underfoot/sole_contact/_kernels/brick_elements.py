@@ -1,0 +1,164 @@
+"""Twenty-node bricks on a plan of squares, condensed to what they rise under loads of their floor.
+
+A square that the plan form covers in part has that share of the rubber's stiffness (finite cells:
+Parvizian, Düster and Rank 2007), so that nothing is meshed and all moves smoothly with the form.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from underfoot.core.arrays import Array
+from underfoot.core.sparse import factorization
+
+EMPTY = 1e-3
+"""Share of the rubber's stiffness that stands for air, so that no node is loose."""
+GAUSS = 1 / np.sqrt(3.0)
+
+
+def _corners_and_edges() -> NDArray[np.int64]:
+    """Return the places of the 20 nodes in the cube of 0, 1, 2."""
+    grid = np.array([(i, j, k) for i in range(3) for j in range(3) for k in range(3)])
+    return grid[(grid == 1).sum(axis=1) <= 1]
+
+
+PLACES = _corners_and_edges()
+
+
+def shape_functions(points: Array) -> tuple[Array, Array]:
+    """Return values (n, 20) and gradients (n, 20, 3) of the serendipity functions in [-1, 1]^3."""
+    node = PLACES - 1.0
+    along = 1 + points[:, None, :] * node  # (n, 20, 3); 1 where the node lies in the middle
+    middle = node == 0
+    corner = ~middle.any(axis=1)
+    factor = np.where(middle, 1 - points[:, None, :] ** 2, along)
+    slope = np.where(middle, -2 * points[:, None, :], np.broadcast_to(node, along.shape))
+    others = (points[:, None, :] * node).sum(axis=2) - 2
+    scale = np.where(corner, 0.125, 0.25)
+    product = factor.prod(axis=2)
+    value = scale * product * np.where(corner, others, 1.0)
+    gradient = np.empty(along.shape)
+    for axis in range(3):
+        rest = np.delete(factor, axis, axis=2).prod(axis=2)
+        by = slope[:, :, axis] * rest
+        gradient[:, :, axis] = scale * np.where(corner, by * others + product * node[:, axis], by)
+    return value, gradient
+
+
+@dataclass(frozen=True, slots=True)
+class Bricks:
+    """Bodies over squares of side ``side`` (m), bonded to a rigid foot at their top.
+
+    ``nodes`` (2 nx + 1, 2 ny + 1, 2 nz + 1, 3) are places in the floor's frame, corners at even
+    indices; ``cover`` (2 nx, 2 ny) is the share of each quarter of a square that the body covers,
+    ``loaded`` that of what presses on it; ``modulus`` and ``poisson_ratio`` (nz,) are those of the
+    layers, from the floor up.
+    """
+
+    side: float
+    nodes: Array
+    cover: Array
+    loaded: Array
+    modulus: Array
+    poisson_ratio: Array
+
+
+def work_of_hats(bricks: Bricks, hats: NDArray[np.int64]) -> Array:
+    """Return the work of hats on the floor of the bricks, (n, n), m^3/Pa.
+
+    ``hats`` are numbers of corners of the plan, i (ny + 1) + j: bilinear, 1 at a corner and 0 at
+    the others, 0 outside the body. [a, b] is the integral of hat a times the rise under a pressure
+    that is hat b. Small strain; reduced integration (2 x 2 x 2), so that nothing locks.
+    """
+    number, elements = _numbering(bricks)
+    stiffness = _stiffness(bricks, elements, number)
+    load = _hat_loads(bricks, elements, number)
+    right = np.ascontiguousarray(load[:, hats].toarray())
+    factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
+    work = right.T @ factors.solve(right)
+    return 0.5 * (work + work.T)
+
+
+def _numbering(bricks: Bricks) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the number of each node, -1 at the foot, and the elements (i, j, k) that are there."""
+    nx, ny = (n // 2 for n in bricks.cover.shape)
+    nz = bricks.modulus.size
+    filled = bricks.cover.reshape(nx, 2, ny, 2).sum(axis=(1, 3)) > 0
+    i, j = np.nonzero(filled)
+    elements = np.array([(a, b, k) for k in range(nz) for a, b in zip(i, j, strict=True)])
+    used = np.zeros(bricks.nodes.shape[:3], dtype=bool)
+    for a, b, c in PLACES:
+        used[2 * elements[:, 0] + a, 2 * elements[:, 1] + b, 2 * elements[:, 2] + c] = True
+    used[:, :, -1] = False
+    number = np.full(used.shape, -1)
+    number[used] = np.arange(used.sum())
+    return number, elements
+
+
+def _element_nodes(elements: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
+    """Return the indices of the nodes of each element, three arrays (n, 20)."""
+    i, j, k = (2 * elements[:, None, :] + PLACES[None]).transpose(2, 0, 1)
+    return i, j, k
+
+
+def _stiffness(
+    bricks: Bricks, elements: NDArray[np.int64], number: NDArray[np.int64]
+) -> sp.csr_matrix:
+    at = _element_nodes(elements)
+    places, numbers = bricks.nodes[at], number[at]
+    modulus, ratio = (v[elements[:, 2]] for v in (bricks.modulus, bricks.poisson_ratio))
+    shear = modulus / (2 * (1 + ratio))
+    lame = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio))
+    total = np.zeros((len(elements), 20, 3, 20, 3))
+    corners = np.array([(a, b, c) for a in (0, 1) for b in (0, 1) for c in (0, 1)])
+    _, slopes = shape_functions(GAUSS * (2.0 * corners - 1))
+    for (a, b, _), slope in zip(corners, slopes, strict=True):
+        cover = bricks.cover[2 * elements[:, 0] + a, 2 * elements[:, 1] + b]
+        jacobian = np.einsum("enx,nr->exr", places, slope)
+        share = np.abs(np.linalg.det(jacobian)) * np.maximum(cover, EMPTY)
+        gradient = slope @ np.linalg.inv(jacobian)  # (e, 20, 3)
+        flat = gradient.reshape(len(elements), 60)
+        dilation = (share * lame)[:, None, None] * flat[:, :, None] @ flat[:, None, :]
+        scaled = (share * shear)[:, None, None] * gradient
+        dot = scaled @ gradient.transpose(0, 2, 1)
+        total += dilation.reshape(total.shape)
+        total += np.einsum("emy,enx->emxny", scaled, gradient)
+        for axis in range(3):
+            total[:, :, axis, :, axis] += dot
+    unknowns = (3 * numbers[:, :, None] + np.arange(3)).reshape(len(elements), 60)
+    free = np.repeat(numbers >= 0, 3, axis=1)
+    rows = np.repeat(unknowns, 60, axis=1).ravel()
+    columns = np.tile(unknowns, (1, 60)).ravel()
+    kept = (free[:, :, None] & free[:, None, :]).ravel()
+    size = 3 * (int(number.max()) + 1)
+    values = total.reshape(-1)[kept]
+    matrix = sp.csr_matrix((values, (rows[kept], columns[kept])), (size, size))
+    matrix.sort_indices()
+    return matrix
+
+
+def _hat_loads(
+    bricks: Bricks, elements: NDArray[np.int64], number: NDArray[np.int64]
+) -> sp.csr_matrix:
+    """Return the loads of all hats on the unknowns."""
+    ny = bricks.cover.shape[1] // 2
+    count = (bricks.cover.shape[0] // 2 + 1) * (ny + 1)
+    low = elements[elements[:, 2] == 0]
+    numbers = number[_element_nodes(low)]
+    steps = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+    hats = (low[:, None, 0] + steps[:, 0]) * (ny + 1) + low[:, None, 1] + steps[:, 1]
+    load = np.zeros((len(low), 20, 4))
+    inner = np.array([(a, b) for a in (-1, 1) for b in (-1, 1)]) * GAUSS
+    for a, b in steps:  # the quarters of a square
+        area = 0.0625 * bricks.side**2 * bricks.loaded[2 * low[:, 0] + a, 2 * low[:, 1] + b]
+        for point in 0.5 * inner + (np.array([a, b]) - 0.5):
+            value, _ = shape_functions(np.array([[*point, -1.0]]))
+            bilinear = 0.25 * (1 + (2 * steps - 1) * point).prod(axis=1)
+            load += area[:, None, None] * np.outer(value[0], bilinear)
+    size = 3 * (int(number.max()) + 1)
+    rows = np.repeat(3 * numbers + 2, 4, axis=1).ravel()
+    columns = np.tile(hats, (1, 20)).ravel()
+    kept = rows >= 2
+    return sp.csr_matrix((load.reshape(-1)[kept], (rows[kept], columns[kept])), (size, count))

@@ -1,0 +1,157 @@
+"""How fast and when in a session each condition was walked: what goes with it and is not it."""
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from underfoot.core import DataError
+
+from ..statistics import mixed_model, person_means
+from .conditions import NUMBERS
+from .file_result import FileResult
+from .tables import Cell, Table, grouped, mean_and_interval
+
+ORDERS = (*NUMBERS, "order", "sequence", "reihenfolge")
+_SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
+"""p below which, relative difference of speed from which, and share of the variance of the places
+in the session from which a condition goes with it; assumed."""
+
+
+def walking_speed(result: FileResult) -> float | None:
+    """Return the mean speed (m/s) of the steps of a file that count, or None."""
+    speeds = [
+        float(step["walking_speed"])
+        for step in result.steps
+        if step.get("rcof") is not None and step.get("walking_speed") is not None
+    ]
+    return float(np.mean(speeds)) if speeds else None
+
+
+def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, float]:
+    """Return the place of each file among those of its person: 0 the first, 1 the last.
+
+    By a column that numbers a person's trials through (trial, run, order), else by the number at
+    the end of file names; nobody's where numbers repeat.
+    """
+    places: dict[str, float] = {}
+    for own in grouped(files, (person,)).values():
+        for key in (*ORDERS, ""):
+            numbers = [_number(one, key) for one in own]
+            known = [number for number in numbers if number is not None]
+            if len(own) < 3 or len(known) < len(own) or len(set(known)) < len(own):
+                continue
+            ranks = np.argsort(np.argsort(known)) / (len(own) - 1.0)
+            places |= {one.file: float(rank) for one, rank in zip(own, ranks, strict=True)}
+            break
+    return places
+
+
+def run_numbers(files: Sequence[FileResult]) -> dict[str, float]:
+    """Return the place of each file in the order of runs: by a column, else by its name."""
+    for key in (*ORDERS, ""):
+        numbers = [_number(one, key) for one in files]
+        known = [number for number in numbers if number is not None]
+        if len(known) == len(files) == len(set(known)):
+            return {one.file: number for one, number in zip(files, known, strict=True)}
+    names = sorted(one.file for one in files)
+    return {one.file: float(names.index(one.file)) for one in files}
+
+
+def _number(result: FileResult, key: str) -> float | None:
+    text = str(result.conditions.get(key, "")) if key else result.file.rsplit(".", 1)[0]
+    found = re.search(r"(\d+)(\.0+)?$", text)
+    return float(found[1]) if found else None
+
+
+def circumstances(
+    files: Sequence[FileResult], person: str
+) -> dict[str, tuple[list[FileResult], list[float]]]:
+    """Return the files and their numbers for "speed" (m/s) and "place" in the session (0 to 1)."""
+    speeds = [(one, walking_speed(one)) for one in files]
+    places = places_in_session(files, person) if person else {}
+    both = {
+        "speed": [(one, speed) for one, speed in speeds if speed is not None],
+        "place": [(one, places[one.file]) for one in files if one.file in places],
+    }
+    return {
+        name: ([one for one, _ in pairs], [value for _, value in pairs])
+        for name, pairs in both.items()
+        if len(pairs) > 1
+    }
+
+
+def circumstance_table(
+    files: Sequence[FileResult], keys: Sequence[str], person: str
+) -> Table | None:
+    """Return speed and place in the session by level of each condition, persons as units."""
+    found = circumstances(files, person)
+    if not found or not keys:
+        return None
+    levels = dict.fromkeys(
+        (key, str(one.conditions[key])) for key in keys for one in files if key in one.conditions
+    )
+    rows: list[tuple[Cell, ...]] = []
+    for key, level in levels:
+        cells: list[Cell] = [key, level]
+        for name in ("speed", "place"):
+            own: dict[str, list[float]] = {}
+            for one, value in zip(*found.get(name, ([], [])), strict=True):
+                if str(one.conditions.get(key)) == level:
+                    own.setdefault(str(one.conditions.get(person, one.file)), []).append(value)
+            means = [float(np.mean(values)) for values in own.values()]
+            cells += mean_and_interval(means, name)[:2] if name == "speed" else [
+                100.0 * float(np.mean(means)) if means else None
+            ]  # fmt: skip
+        rows.append(tuple(cells))
+    columns = ("condition", "level", "walking speed (m/s)", "SD", "mean place in the session (%)")
+    note = (
+        "A condition that was walked faster or slower, or always early or late, can't be told from "
+        "speed, habit or fatigue. Place: 0 % the first trial of a person, 100 % the last."
+    )
+    title = "Speed and order by condition"
+    decimals = {columns[2]: 2, columns[3]: 2, columns[4]: 0}
+    table = Table("speed_and_order", title, columns, tuple(rows), (note,), decimals)
+    return table.only(table.filled(columns[:2]))
+
+
+def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, Mapping[str, float]]:
+    """Return the mean speed or place of each level where a condition goes with it.
+
+    Speed: levels differ by 5 % and more, at p below 0.01 with persons as units. Place: levels
+    explain a quarter and more of it, at p below 0.01.
+    """
+    from scipy.stats import f_oneway
+
+    told: dict[str, Mapping[str, float]] = {}
+    for name, (having, values) in circumstances(files, person).items():
+        rows = [
+            (str(one.conditions[key]), str(one.conditions.get(person, one.file)), value)
+            for one, value in zip(having, values, strict=True)
+            if key in one.conditions
+        ]
+        levels = list(dict.fromkeys(level for level, _, _ in rows))
+        if not 1 < len(levels) < len(rows):
+            continue
+        column, who, numbers = (list(one) for one in zip(*rows, strict=True))
+        own = person_means(numbers, {key: column}, who)
+        of = np.array(own.factors[key])
+        groups = [own.mean[of == level] for level in levels]
+        means = {level: float(np.mean(one)) for level, one in zip(levels, groups, strict=True)}
+        try:
+            if name == "speed":
+                (test,) = mixed_model(numbers, {key: column}, who).tests
+                apart = max(means.values()) / min(means.values()) - 1.0 >= _SPEED
+                p = test.p
+            else:
+                if len(own.mean) - len(levels) < 3:
+                    continue
+                spread = sum(len(one) * (one.mean() - own.mean.mean()) ** 2 for one in groups)
+                apart = spread >= _SHARE * float(((own.mean - own.mean.mean()) ** 2).sum())
+                # the same order in all: no scatter, and F is infinite
+                p = float(np.nan_to_num(f_oneway(*groups).pvalue))
+        except DataError:
+            continue
+        if apart and p is not None and p < _SURE:
+            told[name] = means
+    return told

@@ -1,0 +1,166 @@
+"""Steady sliding is what a case answers; a result at an instant says what it becomes."""
+
+import numpy as np
+import pytest
+
+from underfoot import Case, run
+from underfoot.case import CaseError
+from underfoot.compute.positions import place_numbers
+from underfoot.compute.prepare import prepared
+from underfoot.compute.solve import solved_motion
+from underfoot.compute.summary import headline
+from underfoot.core import SourcedValue, Status
+
+LONG_DRAINING = {
+    "shoe.tread": {
+        "pattern": "bars",
+        "lug_width": "10 mm",
+        "channel_width": "5 mm",
+        "depth": "3 mm",
+    },
+    "contaminant.viscosity": "44 cP",
+    "motion.speed": "0.2 m/s",
+    "motion.normal_force": "1100 N",
+    "numerics.tread_positions": 1,
+}
+
+
+def treaded(**changes):
+    case = Case(
+        shoe="work_shoe_full_tread",
+        floor="vinyl_g4",
+        contaminant="glycerol_75pct",
+        motion="slip_tester_g4",
+    )
+    return case.replace(LONG_DRAINING | changes)
+
+
+def untreaded(**changes):
+    case = Case(
+        shoe="work_shoe_untreaded",
+        floor="vinyl_g4",
+        contaminant="glycerol_90pct",
+        motion="slip_tester_g4",
+    )
+    return case.replace(changes)
+
+
+def numbers(case):
+    parts = prepared(case, 1e-3)
+    contact = solved_motion(parts)
+    assert contact.status is Status.CONVERGED
+    return place_numbers(parts, contact), contact
+
+
+def test_a_default_answer_forgets_the_film_at_touch_down():
+    (thin, _), (thick, contact) = (
+        numbers(treaded(**{"motion.start_film": film})) for film in ("15 um", "200 um")
+    )
+    assert thick["cof"] == pytest.approx(thin["cof"], rel=5e-3)
+    assert thick["fluid_load"] == pytest.approx(thin["fluid_load"], rel=5e-3)
+    early, instant = numbers(treaded(**{"motion.duration": "0.12 s"}))
+    assert early["fluid_load"] > 1.5 * thin["fluid_load"]
+    assert early["fluid_load"] > early["later_fluid_load"] > thin["fluid_load"]
+    assert early["later_cof"] > early["cof"]
+    assert instant.time == pytest.approx(0.12)
+    assert contact.later is None
+
+
+@pytest.mark.slow
+def test_a_plain_heel_forgets_it_too():
+    heel = {"motion.shoe_angle": "10.71 deg"}
+    found = [
+        numbers(untreaded(**heel, **{"motion.start_film": film}))[0]
+        for film in ("15 um", "50 um", "200 um")
+    ]
+    for other in found[1:]:
+        assert other["cof"] == pytest.approx(found[0]["cof"], rel=5e-3)
+    late, _ = numbers(untreaded(**heel, **{"motion.duration": "10 s"}))
+    assert late["cof"] == pytest.approx(found[1]["cof"], rel=0.01)
+
+
+def test_a_result_at_an_instant_says_in_numbers_that_it_moves_on():
+    early = run(treaded(**{"motion.duration": "0.12 s"}), quick=True)
+    later = early.value("later_cof")
+    assert later > 1.01 * early.value("cof")
+    assert early.value("later_time") > 0.24 - 1e-9
+    assert early.headline()[1].startswith("Not steady")
+    assert f"{later:.3f}" in early.headline()[1]
+    settled = run(treaded(**{"motion.duration": "60 s"}), quick=True)
+    steady = run(treaded(), quick=True)
+    for result in (settled, steady):
+        assert "later_cof" not in result.scalars
+        assert not any(line.startswith("Not steady") for line in result.headline())
+    assert settled.value("cof") == pytest.approx(steady.value("cof"), rel=0.01)
+    assert steady.value("steady_slide") > 0.05
+
+
+def test_the_headline_says_where_a_steady_film_takes_longer_than_a_tester_slides():
+    scalars = {
+        "cof": SourcedValue(0.2, "1"),
+        "fluid_load": SourcedValue(100.0, "N"),
+        "normal_force": SourcedValue(500.0, "N"),
+        "cof_viscous": SourcedValue(0.01, "1"),
+        "minimum_film_thickness": SourcedValue(1e-5, "m"),
+    }
+    near, far = (
+        headline(Status.CONVERGED, scalars | {"steady_slide": SourcedValue(way, "m")}, {})
+        for way in (0.2, 3.0)
+    )
+    assert len(far) == len(near) + 1
+    assert "3 m" in far[1]
+
+
+def test_a_march_with_steps_beyond_the_memory_of_the_film_does_not_swing():
+    case = treaded(
+        **{
+            "contaminant.viscosity": "5.54 cP",
+            "motion.speed": "0.3 m/s",
+            "motion.normal_force": "510 N",
+            "motion.start_film": "15 um",
+            "shoe.heel.profile": {"model": "facet", "angle": "4.7 deg", "length": "30 mm"},
+            "motion.shoe_angle": "3 deg",
+            "shoe.tread.lug_width": "9 mm",
+            "shoe.tread.channel_width": "4 mm",
+        }
+    )
+    _, contact = numbers(case)
+    assert contact.counts.time_steps < 25
+    assert np.ptp(contact.history.fluid_load[-2:]) < 3e-4 * contact.normal_force
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", ["20 um", "100 um"])
+def test_a_pool_thinner_than_the_film_at_touch_down_has_an_answer(start):
+    thin, _ = numbers(
+        untreaded(**{"contaminant.pool_depth": "0.05 mm", "motion.start_film": start})
+    )
+    deep, _ = numbers(untreaded())
+    assert thin["cof"] == pytest.approx(deep["cof"], rel=0.15)
+
+
+def test_channels_that_summits_fill_are_named():
+    shallow = run(treaded(**{"shoe.tread.depth": "0.02 mm"}), quick=True)
+    assert any(line.startswith("tread: ") for line in shallow.breaches)
+    deep = run(treaded(), quick=True)
+    assert not any(line.startswith("tread: ") for line in deep.breaches)
+
+
+def test_a_motion_that_ends_at_rest_says_what_its_friction_is():
+    points = [
+        {"time": f"{time} ms", "normal_force": f"{force} N", "speed": f"{speed} m/s"}
+        for time, force, speed in ((0, 0, 0.3), (30, 500, 0.3), (100, 500, 0.0))
+    ]
+    case = treaded(motion={"history_points": points, "shoe_angle": "7 deg"})
+    result = run(case, quick=True)
+    assert "at rest" in result.labels["instant"]
+    assert result.value("later_time") == pytest.approx(0.2)
+
+
+def test_no_speed_and_no_duration_are_refused_with_the_reason():
+    with pytest.raises(CaseError, match="sliding off"):
+        treaded(**{"motion.speed": "0 m/s"})
+    with pytest.raises(CaseError, match="before the force has risen"):
+        treaded(**{"motion.duration": "1 ms"})
+    with pytest.raises(CaseError, match="no duration"):
+        treaded(**{"motion.steady": False})

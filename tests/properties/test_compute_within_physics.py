@@ -1,0 +1,65 @@
+"""No number of a result lies beyond the load or what draws of its law allow."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from underfoot import Case, run
+from underfoot.core import UnderfootError
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from random_cases import beyond_physics, drawn_case, drawn_pad
+
+PAD = """
+file_version = 2
+[shoe]
+material.shore_a = 95
+roughness = {ra = "2 um", cutoff = "0.8 mm"}
+tread.pattern = "none"
+[shoe.heel]
+length = "76 mm"
+width = "76 mm"
+rear_radius = "0 mm"
+profile.model = "flat"
+edge_radius = "0 mm"
+[shoe.sole]
+outsole_thickness = "10 mm"
+[floor]
+roughness = {rq = "3 um", cutoff = "0.8 mm"}
+[contaminant]
+viscosity = "50 cP"
+[motion]
+speed = "0.3 m/s"
+normal_force = "44.5 N"
+shoe_angle = "0 deg"
+"""
+
+
+def test_a_flat_pad_that_floats_at_its_own_angle_has_an_answer():
+    """Its contact beside that angle was drawn as a factor of nearly nothing: COF of 32."""
+    case = Case.from_text(PAD).replace("numerics.quick_grid_spacing", "2 mm")
+    result = run(case, quick=True)
+    film = result.data["position_fluid_load"].values
+    assert film.max() > 0.98 * 44.5
+    assert film.min() < 0.5 * 44.5
+    assert beyond_physics(case, result) == []
+
+
+@pytest.mark.slow
+def test_cases_drawn_at_random_stay_within_physics():
+    """``python tests/random_cases.py`` has as many as are asked for."""
+    rng, answers = np.random.default_rng(41), 0
+    for number in range(12):
+        case = drawn_pad(rng) if number % 2 else drawn_case(rng)
+        try:
+            coarse = {"numerics.quick_grid_spacing": "3 mm" if number % 2 else "1.6 mm"}
+            case = case.replace(coarse)
+            result = run(case, quick=True)
+        except UnderfootError:
+            continue
+        if result.usable:
+            answers += 1
+            assert beyond_physics(case, result) == [], case.to_toml()
+    assert answers > 6

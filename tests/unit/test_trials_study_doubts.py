@@ -1,0 +1,230 @@
+"""What a study says against itself: speed, order, bodies, names, labels; sound studies say none."""
+
+import numpy as np
+import pytest
+
+from underfoot.core import InputError
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.statistics import drift
+from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.conditions import conditions_of
+from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.person_measures import FORCE, HEIGHT
+from underfoot.trials.study.study import study_of
+from underfoot.trials.study.study_guard import study_doubts
+from underfoot.trials.study.study_tests import comparison_findings
+
+PERSONS, SHOES, TRIALS = 8, {"hard": 0.20, "medium": 0.22, "soft": 0.25}, 4
+
+
+def study(change=lambda conditions, speed: (conditions, speed), seed=1, bodies=None):
+    """A sound study of eight persons in three shoes, blocks in a random order, then changed."""
+    rng = np.random.default_rng(seed)
+    files = []
+    for person in range(PERSONS):
+        level, body = rng.normal(0, 0.02), rng.normal(0, 0.06, 5)
+        body = body if bodies is None else bodies(person, body)
+        for block, shoe in enumerate(rng.permutation(list(SHOES))):
+            own = SHOES[shoe] + level + rng.normal(0, 0.003)
+            for trial in range(TRIALS):
+                rcof = own + rng.normal(0, 0.004)
+                place = block * TRIALS + trial + 1
+                conditions = {"subject": f"S{person:02d}", "shoe": str(shoe), "trial": float(place)}
+                conditions, speed = change(conditions, 1.3 + rng.normal(0, 0.05))
+                sizes = np.array([600, 1.0, 0.2, 0.25, 0.3]) * np.exp(body)
+                sizes *= np.exp(rng.normal(0, [0.02, 0.004, 0.004, 0.004, 0.004]))
+                names = (FORCE, HEIGHT, "A to B (m)", "A to C (m)", "B to D (m)")
+                step = {"rcof": rcof, "walking_speed": speed, "contact": 0.1, "peak_force": 700.0}
+                files.append(
+                    FileResult(
+                        f"S{person:02d}_{place:02d}.c3d",
+                        main={"rcof": rcof},
+                        conditions=conditions,
+                        steps=(step,),
+                        curves={"person": dict(zip(names, map(float, sizes), strict=True))},
+                    )
+                )
+    return files
+
+
+def doubts(files):
+    return [str(one) for one in study_doubts(files, protocol("level_walking"))]
+
+
+def test_sound_studies_raise_no_doubt():
+    said = [doubts(study(seed=seed)) for seed in range(12)]
+    assert sum(map(len, said)) <= 1, said
+
+
+def slower(conditions, speed):
+    return conditions, speed * (0.8 if conditions["shoe"] == "soft" else 1.0)
+
+
+def in_order(conditions, speed):
+    first = list(SHOES).index(conditions["shoe"]) * TRIALS
+    return {**conditions, "trial": first + 1 + (conditions["trial"] - 1) % TRIALS}, speed
+
+
+def by_side(conditions, speed):
+    side = "LR"[int(conditions["trial"]) % 2]
+    return {**conditions, "subject": conditions["subject"] + side}, speed
+
+
+def words(conditions, speed):
+    floor = "hard wet" if conditions["subject"] != "S03" else "wet hard"
+    return {**conditions, "floor": floor}, speed
+
+
+def exchanged(conditions, speed):
+    if conditions["subject"] == "S03":
+        other = {"hard": "soft", "soft": "hard"}
+        conditions = {**conditions, "shoe": other.get(conditions["shoe"], "medium")}
+    return conditions, speed
+
+
+def mislabelled(conditions, speed):
+    if (
+        conditions["subject"] == "S02"
+        and conditions["shoe"] == "soft"
+        and conditions["trial"] % 4 == 1
+    ):
+        conditions = {**conditions, "shoe": "hard"}
+    return conditions, speed
+
+
+def dated(conditions, speed):
+    return {**conditions, "date": "2026-03-" + {"hard": "01", "medium": "02", "soft": "03"}[
+        conditions["shoe"]]}, speed  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (slower, '"soft" at 1.0'), (in_order, '"hard" was walked early'),
+        (by_side, "noted twice, by side"), (words, "are the same words"),
+        (exchanged, "S03 has"), (mislabelled, 'reads as "soft" of S02'),
+        (dated, '"date" can\'t be told from "shoe"'),
+    ],
+)  # fmt: skip
+def test_what_goes_with_a_condition_is_a_doubt(change, told):
+    assert any(told in text for text in doubts(study(change))), doubts(study(change))
+
+
+def test_one_body_under_two_names_is_a_doubt():
+    first = {}
+
+    def twice(person, body):
+        first.setdefault("body", body)
+        return first["body"] if person == 5 else body
+
+    said = doubts(study(bodies=twice))
+    assert any("S00 and S05 have one body" in text for text in said), said
+
+
+def test_speed_and_order_stand_in_a_table():
+    tables = {
+        table.name: table for table in study_of(study(slower), protocol("level_walking")).tables
+    }
+    rows = {row[1]: row for row in tables["speed_and_order"].rows}
+    assert rows["soft"][2] == pytest.approx(0.8 * 1.3, abs=0.03)
+    assert rows["hard"][2] == pytest.approx(1.3, abs=0.03)
+    assert np.mean([row[4] for row in rows.values()]) == pytest.approx(50, abs=1)
+
+
+def test_a_column_that_says_the_same_ends_nothing():
+    """A date a shoe, a brand, a group that wore some shoes, initials of the persons."""
+    files = study()
+    values = [one.main["rcof"] for one in files]
+    persons = [one.conditions["subject"] for one in files]
+    shoe = [one.conditions["shoe"] for one in files]
+    alone = comparison_findings("rcof", values, {"shoe": shoe}, persons)
+    for column in (
+        [dict(zip(SHOES, "123", strict=True))[one] for one in shoe],
+        [dict(zip(SHOES, "xxy", strict=True))[one] for one in shoe],
+        persons,
+    ):
+        found = comparison_findings("rcof", values, {"shoe": shoe, "other": column}, persons)
+        assert [one.name for one in found] == [one.name for one in alone]
+        assert found[0].table.rows == alone[0].table.rows
+        assert any('"other"' in text for text in found[0].cautions)
+    group = ["m" if who < "S04" else "w" for who in persons]
+    some = [
+        i for i, one in enumerate(shoe) if one == "medium" or (one == "hard") == (group[i] == "m")
+    ]
+    found = comparison_findings(
+        "rcof", [values[i] for i in some],
+        {"shoe": [shoe[i] for i in some], "group": [group[i] for i in some]},
+        [persons[i] for i in some],
+    )  # fmt: skip
+    mixed = next(one for one in found if one.name == "mixed_rcof")
+    assert {row[0] for row in mixed.table.rows} == {"shoe", "group"}
+
+
+@pytest.mark.parametrize(
+    ("heading", "cells", "allowed"),
+    [
+        ("acof", ("21", "24"), "0 to 3"), ("rcof", ("0.2", "-0.2"), "0 to 3"),
+        ("PTV", ("36", "360"), "0 to 150"), ("ramp angle", ("12", "120"), "-45 to 45 deg"),
+    ],
+)  # fmt: skip
+def test_impossible_friction_in_a_table_of_conditions_is_refused(tmp_path, heading, cells, allowed):
+    table = tmp_path / "conditions.csv"
+    table.write_text(f"file,{heading}\na.c3d,{cells[0]}\nb.c3d,{cells[1]}\n")
+    with pytest.raises(InputError) as error:
+        conditions_of(tmp_path)
+    assert allowed in str(error.value)
+
+
+def test_units_of_friction_and_scales_are_known(tmp_path):
+    table = tmp_path / "conditions.csv"
+    table.write_text("file,acof (%),hardness (Shore A),ramp angle (deg)\na.c3d,21,67,18\n")
+    noted = conditions_of(tmp_path)["a.c3d"]
+    assert noted["acof"] == pytest.approx(0.21)
+    assert noted["hardness"] == 67
+    assert noted["ramp angle"] == pytest.approx(np.radians(18))
+
+
+def readings(tmp_path, name, text):
+    (tmp_path / "table.csv").write_text(text)
+    return analyse_folder(tmp_path, protocol(name), processes=1)
+
+
+def test_a_tile_has_one_class_of_all_who_walked_on_it(tmp_path):
+    rows = "".join(
+        f"tile,{who},{a}\n" for who, a in (("A", 19.2), ("A", 18.9), ("B", 18.9), ("B", 18.8))
+    )
+    found = readings(tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\n" + rows)
+    tables = {table.name: table for table in found.study.tables}
+    assert "class" not in tables["samples"].columns
+    (row,) = tables["walkers"].rows
+    told = dict(zip(tables["walkers"].columns, row, strict=True))
+    assert (told["class"], told["2 u reaches"]) == ("R10", "R11")
+    assert told["angle (deg)"] == pytest.approx(18.95)
+    alone = readings(
+        tmp_path, "en_16165_shod_ramp", "sample,operator,angle (deg)\ntile,A,20\ntile,A,21\n"
+    )
+    (row,) = next(table for table in alone.study.tables if table.name == "walkers").rows
+    assert "1 of 2" in row
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ((0.120, 0.108, 0.096, 0.084), True), ((0.120, 0.132, 0.144, 0.1561), True),
+        ((0.120, 0.119, 0.121, 0.120), False), ((0.12, 0.12, 0.12, 0.12), False),
+        ((0.120, 0.1203, 0.1206, 0.1209), False),
+    ],
+)  # fmt: skip
+def test_readings_that_rise_or_fall_are_said(values, told):
+    assert (drift(values) is not None) == told
+    files = [
+        FileResult(f"run_{i}.csv", main={"cof": value}, conditions={"shoe": "A", "floor": "tile"})
+        for i, value in enumerate(values)
+    ]
+    said = [str(one) for one in study_doubts(files[::-1], protocol("en_iso_13287"))]
+    assert any("from the first run to the last" in text for text in said) == told
+
+
+def test_scatter_is_no_drift():
+    rng = np.random.default_rng(3)
+    assert np.mean([drift(rng.normal(0.2, 0.02, 5)) is not None for _ in range(2000)]) < 0.02
