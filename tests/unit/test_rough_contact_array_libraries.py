@@ -149,10 +149,10 @@ def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, sh
     np.testing.assert_array_equal(on_host(part.spread(part.constant())), inside)
 
 
-def refusal(call: Any) -> tuple[str, str]:
+def refused_input(call: Any) -> str | None:
     with pytest.raises(InputError) as refused:
         call()
-    return refused.value.where, refused.value.allowed
+    return refused.value.where
 
 
 @pytest.mark.parametrize("device", DEVICES)
@@ -177,7 +177,7 @@ def test_heights_of_any_library_are_refused_like_numpy_s(device, wrong):
 @pytest.mark.parametrize("name", ["spacing", "speed", "pressure", "poisson_ratio", "modulus"])
 def test_an_array_of_another_device_in_place_of_a_number_is_refused(device, name):
     two = on_device(np.array([0.1, 0.2]), device)
-    assert refusal(lambda: steady_sliding(waves(), **{**GIVEN, name: two}))[0] == name
+    assert refused_input(lambda: steady_sliding(waves(), **{**GIVEN, name: two})) == name
 
 
 def test_what_lies_on_another_device_is_refused_where_numpy_computes():
@@ -193,7 +193,7 @@ def test_what_lies_on_another_device_is_refused_where_numpy_computes():
             **{**GIVEN, "modulus": lambda w: on_device(1e6 + 0.0 * w, "strict device1")},
         ),
     }
-    assert {name: refusal(call)[0] for name, call in calls.items()} == {
+    assert {name: refused_input(call) for name, call in calls.items()} == {
         name: name for name in calls
     }
 
@@ -215,4 +215,4 @@ def test_heights_that_ask_for_a_gradient_or_hold_nothing_are_refused():
     torch = pytest.importorskip("torch", reason="torch, an extra, is not installed")
     asked = torch.asarray(waves()).requires_grad_()
     for height in (asked, asked.detach().to_sparse(), asked.detach().to("meta")):
-        assert refusal(lambda height=height: steady_sliding(height, **GIVEN))[0] == "height"
+        assert refused_input(lambda height=height: steady_sliding(height, **GIVEN)) == "height"
