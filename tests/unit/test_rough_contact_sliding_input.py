@@ -3,7 +3,6 @@
 import importlib
 from pathlib import Path
 
-import array_api_strict
 import numpy as np
 import pytest
 
@@ -14,6 +13,7 @@ from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, steady_sliding
 from underfoot.rough_contact._kernels.nested import low_pass, repeated
 from underfoot.rough_contact._kernels.periodic import boundary_length, contact_fractions
+from underfoot.rough_contact.sliding_input import slow_transform
 from underfoot.studies.transient import TransientSettings, transient_sliding
 
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
@@ -53,6 +53,7 @@ def negative_term(w):
         ({"height": waves()[:, 0]}, "1 dimension.*np.repeat"),
         ({"height": np.zeros((4, 8, 8))}, "3 dimension"),
         ({"height": "rough"}, "an array of heights"),
+        ({"height": waves() + 0j}, "complex"),
         ({"spacing": 0.0}, "above 0 m"),
         ({"spacing": (1e-5, 1e-5, 1e-5)}, "one length or two"),
         ({"pressure": 0.0}, "above 0 Pa"),
@@ -156,28 +157,37 @@ def test_single_maxwell_term_over_a_thousandfold_rise():
         assert result.complementarity_error <= 1e-6
 
 
-def on_device(height: np.ndarray, device: str):
-    """Return the heights as an array of another library where it and its device are there."""
-    if device == "strict":
-        return array_api_strict.asarray(height)
-    library, _, place = device.partition(" ")
-    module = pytest.importorskip(library, reason=f"{library}, an extra, is not installed")
-    if place == "cuda" and not module.cuda.is_available():
-        pytest.skip("no CUDA device on this machine")
-    return module.asarray(height, **({"device": place} if library == "torch" else {}))
+@pytest.mark.parametrize(
+    ("shape", "better"),
+    [
+        ((131, 128), (144, 128)),  # a prime
+        ((130, 130), (144, 144)),  # 2 x 5 x 13
+        ((4096, 17), (4096, 32)),  # the side across alone
+        ((8193, 8191), (8400, 8192)),
+        ((8190, 8192), (8192, 8192)),
+        ((8192, 8000), None),
+        ((135, 125), None),  # odd, yet quick
+        ((1001, 16), None),  # too small a grid to matter
+    ],
+)
+def test_sizes_whose_transform_is_slow_are_named_with_the_next_good_one(shape, better):
+    slow = slow_transform(shape)
+    assert (slow and slow.better) == better
+    if slow is not None:
+        assert slow.shape == shape
+        assert slow_transform(slow.better) is None
 
 
-@pytest.mark.parametrize("device", ["strict", "torch cpu", "torch cuda", "cupy"])
-@pytest.mark.parametrize("pressure", [2e4, 2e5])  # partial contact and full
-def test_any_array_library_and_device_gives_the_same_contact(device, pressure):
-    other = on_device(waves(64), device)
-    one = steady_sliding(**{**GOOD, "height": waves(64), "pressure": pressure})
-    two = steady_sliding(**{**GOOD, "height": other, "pressure": pressure})
-    assert isinstance(two.pressure, type(other))
-    assert two.cof_hysteresis == pytest.approx(one.cof_hysteresis, rel=1e-6)
-    back = two.pressure.get() if device == "cupy" else two.pressure
-    back = back.cpu() if device.startswith("torch") else back
-    np.testing.assert_allclose(np.asarray(back), one.pressure, atol=1e-3 * pressure)
+def test_the_result_says_that_its_size_is_slow():
+    quick, slow = (
+        steady_sliding(**{**GOOD, "height": waves(nodes), "spacing": 3.2e-4 / nodes})
+        for nodes in (128, 129)
+    )
+    assert quick.slow_transform is None
+    assert slow.slow_transform == slow_transform((129, 129))
+    assert str(slow.slow_transform) in slow.notes
+    assert "144 x 144" in str(slow.slow_transform)
+    assert slow.status is quick.status
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +42,19 @@ def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Arra
             f"{shown} is not a finite number {bound}", where=where, allowed=f"{bound}, in SI"
         )
     return array
+
+
+def host_array(values: Any, where: str, allowed: str, remedy: str = "") -> Any:
+    """Return ``values`` as an array of NumPy; refuse what it can't read, such as a device's."""
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise InputError(
+            f"{where} is a {type(values).__name__} that NumPy can't read ({error})",
+            where=where,
+            allowed=allowed,
+            remedy=remedy or "Bring it to the processor first, for example numpy.asarray(x.cpu())",
+        ) from error
 
 
 def choice(value: str, allowed: Iterable[str], where: str) -> str:

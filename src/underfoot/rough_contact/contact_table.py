@@ -22,7 +22,7 @@ from ._kernels.monotone import interpolated_grid
 from .composite import RESTING, composite_surface
 from .flow_factor import flow_factors
 from .pressure_gap_law import TabulatedLaw
-from .sliding_input import Modulus, modulus_function
+from .sliding_input import Modulus, modulus_function, slow_transform
 from .steady import SteadySliding, steady_sliding
 
 QUANTITIES = {
@@ -141,6 +141,8 @@ class ContactTable(Presentable):
             done += 1
             progress("contact table", done / len(parts))
         about = [_about(surfaces), *([RESTING] if shoe_surfaces is not None else [])]
+        slow = {slow_transform(surface.heights.shape) for surface in surfaces} - {None}
+        about += sorted(map(str, slow))
         if finer is not None:
             about = [f"{about[0].replace(BELONG, '')}; in it {finer.notes[0]}", *about[1:]]
         finished = [column for column in columns if column is not None]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import ConvergenceError, InputError
+from underfoot.core.checks import host_array
 
 _SEALED = 1e-12
 """Factors below this are rounding of a cell that does not percolate."""
@@ -177,7 +178,7 @@ def _linear_gap_face(gap: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _checked(gap: ArrayLike) -> np.ndarray:
-    g = np.asarray(gap, dtype=float)
+    g = host_array(gap, "gap", "an array of NumPy, m").astype(float, copy=False)
     if g.ndim != 2 or min(g.shape) < 3:
         raise InputError(
             f"gap has shape {g.shape}", where="flow_factors", allowed="a map of at least 3 x 3"

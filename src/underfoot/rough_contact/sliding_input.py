@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, Range, breaches, display
 from underfoot.core.arrays import AnyArray
+from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
-from underfoot.core.checks import positive
 from underfoot.core.threads import namespace
 
 
@@ -33,6 +34,9 @@ _RANGES = {
 FEWEST_NODES = 30
 """Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
+_SMALL = 128 * 128
+"""Points below which a contact takes a few hundredths of a second on a grid of any size."""
+_HALVED = 16
 
 
 def checked_contact_input(
@@ -44,7 +48,8 @@ def checked_contact_input(
     layer_thickness: float | None,
 ) -> tuple[AnyArray, tuple[float, float]]:
     """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
-    h = _as_floats(height)
+    h, finite = _as_floats(height)
+    shape = tuple(h.shape)
     if h.ndim != 2:
         raise InputError(
             f"height has {h.ndim} dimension(s)",
@@ -52,25 +57,26 @@ def checked_contact_input(
             allowed="a map (nx, ny)",
             remedy="Give a profile as (n, 4) equal columns: np.repeat(profile[:, None], 4, axis=1)",
         )
-    if min(h.shape) < 4 or max(h.shape) < 8:
+    if min(shape) < 4 or max(shape) < 8:
         raise InputError(
-            f"height has shape {h.shape}", where="height", allowed="at least 8 x 4 nodes"
+            f"height has shape {shape}", where="height", allowed="at least 8 x 4 nodes"
         )
     xp = namespace(h)
-    if not bool(xp.all(xp.isfinite(h))):
-        bad = np.argwhere(~np.isfinite(np.asarray(h)))
-        first = tuple(int(i) for i in bad[0])
+    if not finite:
+        rows, columns = xp.nonzero(~xp.isfinite(h))
+        first = int(rows[0]), int(columns[0])
         raise InputError(
-            f"{len(bad)} of {h.shape[0] * h.shape[1]} heights are missing or infinite, "
+            f"{rows.shape[0]} of {shape[0] * shape[1]} heights are missing or infinite, "
             f"the first at {first}",
             where="height",
             allowed="a finite height at every node",
             remedy="Fill or cut them away first (underfoot.surface.filled)",
         )
-    steps: Any = (spacing, spacing) if np.ndim(spacing) == 0 else spacing
-    if len(steps) != 2:
+    pair = isinstance(spacing, tuple | list) or np.ndim(spacing) > 0
+    steps: Any = spacing if pair else (spacing, spacing)
+    if (steps.shape[0] if hasattr(steps, "shape") else len(steps)) != 2:
         raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
-    dx, dy = (_positive("spacing", value, "m") for value in steps)
+    dx, dy = (_positive("spacing", steps[axis], "m") for axis in (0, 1))
     _positive("pressure", pressure, "Pa")
     _single_number("speed", speed)
     _single_number("poisson_ratio", poisson_ratio)
@@ -96,7 +102,8 @@ def modulus_function(modulus: Modulus, frequencies: AnyArray) -> Callable[[AnyAr
         )
 
     def young(w: AnyArray) -> AnyArray:
-        values = np.asarray(call(np.asarray(w, dtype=float)), dtype=complex)
+        answer = call(np.asarray(w, dtype=float))
+        values = host_array(answer, "modulus", "E* as an array of NumPy").astype(complex)
         return np.broadcast_to(values, np.shape(w))
 
     values = young(frequencies)
@@ -140,6 +147,39 @@ def loss_reason(moduli: AnyArray, frequencies: AnyArray) -> str:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class SlowTransform:
+    """A grid whose Fourier transform is slow: a side has a prime factor of 13 or more.
+
+    ``better`` is the next grid whose sides have none and halve four times, for the coarser grids
+    on which a contact starts.
+    """
+
+    shape: tuple[int, int]
+    better: tuple[int, int]
+
+    def __str__(self) -> str:
+        given, better = ("{} x {}".format(*sides) for sides in (self.shape, self.better))
+        return (
+            f"the Fourier transform of {given} points is slow (a prime factor of 13 or more): the "
+            f"next good size is {better}"
+        )
+
+
+def slow_transform(shape: tuple[int, int]) -> SlowTransform | None:
+    """Return that the transform of a grid is slow, None where it isn't or the grid is small."""
+    from scipy.fft import next_fast_len
+
+    def good(n: int) -> int:
+        if next_fast_len(n) == n:
+            return n
+        return _HALVED * cast(int, next_fast_len(-(-n // _HALVED)))
+
+    better = good(shape[0]), good(shape[1])
+    small = shape[0] * shape[1] < _SMALL
+    return None if small or better == shape else SlowTransform(shape, better)
+
+
 def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> list[Breach]:
     """Return whether slopes are too steep for the theory or too short for the grid, and whether
     the contact (``nodes`` in contact) is too small for it.
@@ -152,20 +192,27 @@ def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> lis
     ]
 
 
-def _as_floats(height: Any) -> Any:
-    """Return heights in double precision, left on their device if not NumPy's."""
-    if type(height).__module__.partition(".")[0] in ("torch", "cupy", "array_api_strict"):
-        xp = namespace(height)
-        return xp.astype(height, xp.float64)
+def _as_floats(height: Any) -> tuple[Any, bool]:
+    """Return heights in double precision, left on their device if not NumPy's; are all finite?"""
+    refused = {
+        "where": "height",
+        "allowed": "an array of heights, m",
+        "remedy": "Give the heights of a map: map.heights",
+    }
+    if type(height).__module__.partition(".")[0] not in ("torch", "cupy", "array_api_strict"):
+        height = host_array(height, **refused)
+    xp = namespace(height)
+    if xp.isdtype(height.dtype, "complex floating"):
+        raise InputError(f"the heights are complex ({height.dtype})", **refused)
+    if getattr(height, "requires_grad", False):
+        refused["remedy"] = "Give height.detach(): a contact has no derivative by its heights"
+        raise InputError("the heights ask for their gradient", **refused)
     try:
-        return np.asarray(height, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"height is a {type(height).__name__}",
-            where="height",
-            allowed="an array of heights, m",
-            remedy="Give the heights of a map: map.heights",
-        ) from error
+        floats = xp.astype(height, xp.float64, copy=False)
+        return floats, bool(xp.all(xp.isfinite(floats)))
+    except (TypeError, ValueError, RuntimeError) as error:
+        what = f"the heights ({type(height).__name__} of {height.dtype}) can't be read as doubles"
+        raise InputError(f"{what} ({error})", **refused) from error
 
 
 def _single_number(name: str, value: Any) -> None:
@@ -173,7 +220,9 @@ def _single_number(name: str, value: Any) -> None:
         return
     several = np.ndim(value) > 0
     raise InputError(
-        f"{np.size(value)} values" if several else f"{value!r} is a {type(value).__name__}",
+        f"{math.prod(np.shape(value))} values"
+        if several
+        else f"{value!r} is a {type(value).__name__}",
         where=name,
         allowed="one number",
         remedy="Call it once for each; ContactTable.from_surfaces makes a table over pressures "

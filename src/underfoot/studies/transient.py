@@ -14,7 +14,7 @@ from underfoot.block.prony_march import (
     relaxed_memory,
 )
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
-from underfoot.core.checks import choice
+from underfoot.core.checks import choice, host_array
 from underfoot.core.threads import threads_limited
 from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contact
 from underfoot.rough_contact._kernels.krylov import Workspace
@@ -269,12 +269,22 @@ def transient_sliding(
         )
     load = 1.0 if pressure is None else pressure
     floor, steps = checked_contact_input(
-        floor_height, spacing, speed, load, poisson_ratio, layer_thickness
+        host_array(floor_height, "floor_height", "a map of NumPy, m"),
+        spacing,
+        speed,
+        load,
+        poisson_ratio,
+        layer_thickness,
     )
     shoe = np.zeros_like(floor)
     if shoe_height is not None:
         shoe, _ = checked_contact_input(
-            shoe_height, spacing, speed, load, poisson_ratio, layer_thickness
+            host_array(shoe_height, "shoe_height", "a map of NumPy, m"),
+            spacing,
+            speed,
+            load,
+            poisson_ratio,
+            layer_thickness,
         )
     if shoe.shape != floor.shape:
         raise InputError(

@@ -203,7 +203,7 @@ def _clipped(
     """Return (pressure, gap, error) with the negative pressures of ``p`` taken out."""
     xp = operators.xp
     p = xp.clip(p, 0.0, None)
-    p *= xp.asarray(load / max(float(xp.sum(p)), 1e-300), dtype=p.dtype)
+    p *= load / max(float(xp.sum(p)), 1e-300)
     gap = _gap(operators, p, height, double)
     gap -= float(xp.sum(gap * p)) / load
     error = max(-float(xp.min(gap)), _absolute_product(xp, gap, p) / load)

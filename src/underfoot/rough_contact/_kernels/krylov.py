@@ -13,30 +13,37 @@ _DEPENDENT = 1e-5
 """Share of an image left after orthogonalisation below which it is rounding."""
 _GATHER_BELOW = 0.7
 """Share of the grid below which gathering costs less than masked fields (measured, NumPy)."""
+_LARGEST_INT32 = 2**31 - 1
 
 
 class Restriction:
     """Single-precision vectors on the nodes where ``inside`` is true.
 
-    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. Arrays that
-    are not NumPy's are always masked: assignment by index is no part of the array API.
+    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. NumPy puts
+    a gathered vector back by assignment into ``work``; the array API has none by index, so that
+    other arrays take each point from the vector by its number there, a zero behind it elsewhere.
     """
 
     def __init__(self, inside: AnyArray, xp: Any, work: AnyArray) -> None:
         self.xp = xp
-        self._flat = xp.reshape(inside, (-1,))
-        self.points = self._flat.shape[0]
-        self.nodes = int(xp.count_nonzero(self._flat))
-        self.gathered = xp is np and self.nodes < _GATHER_BELOW * self.points
+        flat = xp.reshape(inside, (-1,))
+        self.points = flat.shape[0]
+        self.nodes = int(xp.count_nonzero(flat))
+        self.gathered = self.nodes < _GATHER_BELOW * self.points
         self._shape = inside.shape
-        if self.gathered:
-            self._index = xp.nonzero(self._flat)[0]
+        if not self.gathered:
+            self._mask = xp.astype(flat, xp.float32)
+            self.size = self.points
+            return
+        self.size = self.nodes
+        self._index = xp.nonzero(flat)[0]
+        if xp is np:
             self._work = work
             work[...] = 0.0
-            self.size = self.nodes
         else:
-            self._mask = xp.astype(self._flat, xp.float32)
-            self.size = self.points
+            integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
+            number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
+            self._number = xp.where(flat, number - 1, xp.full_like(number, self.nodes))
 
     def take(self, field: AnyArray) -> AnyArray:
         """Return a new vector with the values of ``field`` on the nodes."""
@@ -47,24 +54,24 @@ class Restriction:
 
     def spread(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
+        xp = self.xp
         if not self.gathered:
-            return self.xp.reshape(vector, self._shape)
-        flat = self.xp.reshape(self._work, (-1,))
-        flat[self._index] = vector
-        return self._work
+            return xp.reshape(vector, self._shape)
+        if xp is np:
+            xp.reshape(self._work, (-1,))[self._index] = vector
+            return self._work
+        zero = xp.zeros_like(vector[:1])
+        return xp.reshape(xp.take(xp.concat((vector, zero)), self._number, axis=0), self._shape)
 
     def constant(self) -> AnyArray:
         """Return the vector of ones."""
         if self.gathered:
-            return self.xp.ones(self.size, dtype=self.xp.float32)
+            return self.xp.ones_like(self._index, dtype=self.xp.float32)
         return self._mask
 
     def shift(self, vector: AnyArray, value: float) -> None:
         """Add ``value`` to the vector on its nodes, in place."""
-        if self.gathered:
-            vector += value
-        else:
-            vector += self._mask * self.xp.asarray(value, dtype=self.xp.float32)
+        vector += value if self.gathered else self._mask * value
 
 
 class Workspace:
@@ -125,7 +132,7 @@ def residual_correction(
     step = 0
     while left > goal and step < steps:
         z = part.take(operators.pressure(part.spread(r)))
-        z -= response * _scalar(xp, float(xp.sum(z)) / total)
+        z -= response * (float(xp.sum(z)) / total)
         w = part.take(operators.displacement(part.spread(z)))
         part.shift(w, -float(xp.sum(w)) / part.nodes)
         raw = _norm(w)
@@ -138,10 +145,10 @@ def residual_correction(
             break
         triangle[step, step] = length
         weight = float(w @ r) / length
-        images[step, :] = w * _scalar(xp, 1.0 / length)
+        images[step, :] = w * (1.0 / length)
         directions[step, :] = z
         weights[step] = weight
-        w *= _scalar(xp, weight / length)
+        w *= weight / length
         r -= w
         left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
@@ -153,7 +160,3 @@ def residual_correction(
 
 def _norm(vector: AnyArray) -> float:
     return float(vector @ vector) ** 0.5
-
-
-def _scalar(xp: Any, value: float) -> AnyArray:
-    return xp.asarray(value, dtype=xp.float32)

@@ -77,7 +77,7 @@ class Operators:
         iteration can't stagnate (the operator is positive in that inner product).
         """
         kept = self.compliance, self.stiffness
-        softened = self.compliance + self.xp.asarray(softness, dtype=self.compliance.dtype)
+        softened = self.compliance + softness
         in_phase = self.xp.real(softened) if self._lossy else softened
         in_phase[0, 0] = 1.0
         self.compliance, self.stiffness = softened, 1.0 / in_phase

@@ -1,0 +1,218 @@
+"""Rough contact on arrays of other libraries and devices: NumPy's numbers, cost and refusals."""
+
+import importlib
+from pathlib import Path
+from typing import Any
+
+import array_api_strict
+import numpy as np
+import pytest
+
+from underfoot.core import InputError
+from underfoot.core.fourier import ArrayTransform
+from underfoot.core.threads import namespace
+from underfoot.material import RelaxationSpectrum
+from underfoot.rough_contact import flow_factors, steady_sliding
+from underfoot.rough_contact._kernels import nested, operators
+from underfoot.rough_contact._kernels.krylov import Restriction
+from underfoot.studies.transient import transient_sliding
+
+MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
+CASES = [(0.02, 0.1), (0.1, 1.0), (0.3, 0.0), (0.1, 0.01)]
+GIVEN = {"spacing": 1e-5, "modulus": MATERIAL, "speed": 0.1, "pressure": 2e4}
+ANOTHER_DEVICE = array_api_strict.Device("device1")
+
+
+def waves(nodes: int = 32) -> np.ndarray:
+    c = np.cos(2 * np.pi * np.arange(nodes) / nodes)
+    return 1e-5 * c[:, None] * c[None, :]
+
+
+def on_device(height: np.ndarray, device: str) -> Any:
+    """Return the heights as an array of another library where it and its device are there."""
+    if device == "strict":
+        return array_api_strict.asarray(height)
+    if device == "strict device1":
+        return array_api_strict.asarray(height, device=ANOTHER_DEVICE)
+    library, _, place = device.partition(" ")
+    module = pytest.importorskip(library, reason=f"{library}, an extra, is not installed")
+    if place == "cuda" and not module.cuda.is_available():
+        pytest.skip("no CUDA device on this machine")
+    return module.asarray(height, **({"device": place} if library == "torch" else {}))
+
+
+def on_host(array: Any) -> np.ndarray:
+    if isinstance(array, array_api_strict._array_object.Array):
+        array = array.to_device(array_api_strict.Device("CPU_DEVICE"))
+    array = array.get() if hasattr(array, "get") else array
+    return np.asarray(array.cpu() if hasattr(array, "cpu") else array)
+
+
+DEVICES = ["strict", "strict device1", "torch cpu", "torch cuda", "cupy"]
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("pressure", [2e4, 2e5])  # partial contact and full
+def test_any_array_library_and_device_gives_the_same_contact(device, pressure):
+    other = on_device(waves(64), device)
+    one = steady_sliding(waves(64), **{**GIVEN, "pressure": pressure})
+    two = steady_sliding(other, **{**GIVEN, "pressure": pressure})
+    assert isinstance(two.pressure, type(other))
+    assert two.pressure.device == other.device
+    assert two.cof_hysteresis == pytest.approx(one.cof_hysteresis, rel=1e-6)
+    np.testing.assert_allclose(on_host(two.pressure), one.pressure, atol=1e-3 * pressure)
+
+
+@pytest.fixture
+def cost(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return the function (heights, pressure, speed) -> (steps, products) of the benchmark.
+
+    With the room for search directions that large grids have, three arrays, on small ones.
+    """
+    monkeypatch.syspath_prepend(Path(__file__).parents[2])
+    benchmark = importlib.import_module("benchmarks.rough_contact")
+    monkeypatch.setattr(nested, "_SMALL", 0.0)
+
+    def counted(nodes: int, pressure: float, speed: float, device: str) -> tuple[int, float]:
+        height = benchmark.self_affine(nodes)
+        height = height if device == "numpy" else on_device(height, device)
+        result = benchmark.ours(height, pressure, speed, "scipy")
+        assert result.complementarity_error <= 1e-6
+        return result.iterations, result.operator_applications
+
+    return counted
+
+
+def same_transform(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give NumPy's arrays NumPy's transform: rounding of another decides the last step at times."""
+
+    class Module:
+        @staticmethod
+        def rfftn(field, axes):
+            return np.fft.rfftn(field, axes=axes).astype(np.result_type(field, np.complex64))
+
+        @staticmethod
+        def irfftn(spectrum, s, axes):
+            field = np.fft.irfftn(spectrum, s=s, axes=axes)
+            return field.astype(np.float32 if spectrum.dtype == np.complex64 else np.float64)
+
+    monkeypatch.setattr(
+        operators, "transform", lambda shape, *_, **__: ArrayTransform(shape, Module)
+    )
+
+
+SIZES = [256, pytest.param(512, marks=pytest.mark.slow), pytest.param(1024, marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("nodes", SIZES)
+@pytest.mark.parametrize(("pressure", "speed"), CASES)
+def test_another_library_takes_the_same_steps_and_products(
+    monkeypatch, cost, nodes, pressure, speed
+):
+    other = cost(nodes, pressure, speed, "strict")
+    same_transform(monkeypatch)
+    steps, products = cost(nodes, pressure, speed, "numpy")
+    assert other[0] == steps
+    assert other[1] == pytest.approx(products, rel=0.1)
+
+
+@pytest.mark.parametrize("nodes", SIZES)
+@pytest.mark.parametrize(("pressure", "speed"), CASES)
+def test_torch_takes_the_steps_and_products_of_numpy(monkeypatch, cost, nodes, pressure, speed):
+    # torch's transform rounds in its own way: NumPy's arrays with two transforms differ alike
+    steps, products = cost(nodes, pressure, speed, "torch cpu")
+    numpys = [cost(nodes, pressure, speed, "numpy")]
+    same_transform(monkeypatch)
+    numpys.append(cost(nodes, pressure, speed, "numpy"))
+    assert steps in [one for one, _ in numpys]
+    least, most = (pick(one for _, one in numpys) for pick in (min, max))
+    assert 0.9 * least <= products <= 1.1 * most
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("share", [0.02, 0.5, 0.9, 1.0])
+def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, share):
+    generator = np.random.default_rng(2)
+    inside = generator.permutation(35 * 24).reshape(35, 24) < share * 35 * 24
+    field = generator.standard_normal((35, 24)).astype(np.float32)
+    xp_mask, xp_field = on_device(inside, device), on_device(field, device)
+    xp = namespace(xp_field)
+    part = Restriction(xp_mask, xp, xp.zeros_like(xp_field))
+    reference = Restriction(inside, np, np.zeros_like(field))
+    assert part.size == reference.size
+    assert part.nodes == reference.nodes == np.count_nonzero(inside)
+    vector = part.take(xp_field)
+    part.shift(vector, 0.5)
+    np.testing.assert_array_equal(
+        on_host(part.spread(vector)), np.where(inside, field + np.float32(0.5), 0)
+    )
+    np.testing.assert_array_equal(on_host(part.spread(part.constant())), inside)
+
+
+def refused_input(call: Any) -> str | None:
+    with pytest.raises(InputError) as refused:
+        call()
+    return refused.value.where
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("wrong", ["missing", "infinite", "thin", "line", "cube", "complex"])
+def test_heights_of_any_library_are_refused_like_numpy_s(device, wrong):
+    height: Any = waves()
+    height[3, 7] = {"missing": np.nan, "infinite": np.inf}.get(wrong, 0.0)
+    height = {"thin": height[:, :1], "line": height[0], "cube": height[None]}.get(wrong, height)
+    height = height + 0j if wrong == "complex" else height
+    other = on_device(np.ascontiguousarray(height), device)
+    texts = []
+    for given in (height, other):
+        with pytest.raises(InputError) as refused:
+            steady_sliding(given, **GIVEN)
+        texts.append(
+            str(refused.value).partition("(")[0] if wrong == "complex" else str(refused.value)
+        )
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("name", ["spacing", "speed", "pressure", "poisson_ratio", "modulus"])
+def test_an_array_of_another_device_in_place_of_a_number_is_refused(device, name):
+    two = on_device(np.array([0.1, 0.2]), device)
+    assert refused_input(lambda: steady_sliding(waves(), **{**GIVEN, name: two})) == name
+
+
+def test_what_lies_on_another_device_is_refused_where_numpy_computes():
+    there = on_device(waves(), "strict device1")
+    calls = {
+        "gap": lambda: flow_factors(there),
+        "floor_height": lambda: transient_sliding(there, 1e-5, MATERIAL, 0.1, pressure=1e4),
+        "shoe_height": lambda: transient_sliding(
+            waves(), 1e-5, MATERIAL, 0.1, pressure=1e4, shoe_height=there
+        ),
+        "modulus": lambda: steady_sliding(
+            waves(),
+            **{**GIVEN, "modulus": lambda w: on_device(1e6 + 0.0 * w, "strict device1")},
+        ),
+    }
+    assert {name: refused_input(call) for name, call in calls.items()} == {
+        name: name for name in calls
+    }
+
+
+@pytest.mark.parametrize("device", DEVICES)
+@pytest.mark.parametrize("shape", [(31, 29), (45, 8), (9, 64)])
+def test_single_precision_and_odd_sizes_solve_like_numpy_s(device, shape):
+    x, y = (np.arange(n) / n for n in shape)
+    height = 1e-6 * np.cos(2 * np.pi * x)[:, None] * np.cos(2 * np.pi * y)[None, :]
+    height = height.astype(np.float32)
+    one = steady_sliding(height, **GIVEN)
+    two = steady_sliding(on_device(height, device), **GIVEN)
+    assert two.cof_hysteresis == pytest.approx(one.cof_hysteresis, rel=1e-5)
+    assert two.status is one.status
+
+
+@pytest.mark.slow
+def test_heights_that_ask_for_a_gradient_or_hold_nothing_are_refused():
+    torch = pytest.importorskip("torch", reason="torch, an extra, is not installed")
+    asked = torch.asarray(waves()).requires_grad_()
+    for height in (asked, asked.detach().to_sparse(), asked.detach().to("meta")):
+        assert refused_input(lambda height=height: steady_sliding(height, **GIVEN)) == "height"
