@@ -57,7 +57,7 @@ def strip(spacing, columns, corner=30e-3):
         viscosity=0.219,
         speed=0.7,
         normal_force=spacing * LOAD,
-        settings=SolverSettings(steady=True),
+        settings=SolverSettings(end_time=None),
     )
     assert solved.status.usable
     return solved

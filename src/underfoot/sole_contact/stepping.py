@@ -29,6 +29,7 @@ FAR = 1.0  # m, clearance that stands for "outside the plan form"
 FIRST_STEP = 1 / 30  # of the rise time
 PASSED = (10.0, 1e-3)  # times the tolerance, at most the second: a balance that is only passed
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
+LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
 STEADY_CHANGE = 3e-4  # share of the load by which that on the film may change over such a step
@@ -229,14 +230,16 @@ class SlidingSole:
             moved = abs(load(after.fluid - before.fluid))
             return (
                 self._time > loading
-                and step > max(STEADY_STEP * self._time, passing)
+                and step > max(min(STEADY_STEP * self._time, 0.5 * longest_step), passing)
                 and moved < STEADY_CHANGE * normal_force
                 and change < STEADY_MOVE * normal_force
             )
 
         longest = max(LONGEST_TIME, 100 * passing)
+        # what a step takes from its start (faces that lean, edges that let in) needs several steps
+        longest_step = longest / LEAST_STEPS
         ramp = self._ramp(longest, normal_force, speed, None)
-        done = self._loop(ramp, longest, math.inf, most_steps, settled)
+        done = self._loop(ramp, longest, longest_step, most_steps, settled)
         return self._state(done)
 
     def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
@@ -340,7 +343,8 @@ class SlidingSole:
                     clearance = self._clearance(angle)
                 now = self._load, self._speed, self._angle
                 settles = settled is not None
-                if (load, speed, angle) == now:  # steps longer than the memory of the film swing
+                if speed and (load, speed, angle) == now:
+                    # steps longer than the memory of the film swing
                     settles |= duration > MEMORY * self.sliding_time(speed)
                 last = settled is not None or self._time + duration > end * (1 - 1e-12)
                 leaps = self._leaps or settles
