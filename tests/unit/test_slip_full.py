@@ -77,7 +77,7 @@ def test_faster_means_more_load_on_the_film_and_less_friction(wet):
         instant = foot.settled(normal_force=500.0, speed=speed)
         fluid.append(instant.fluid_load)
         friction.append(instant.friction(speed))
-    assert (np.diff(fluid) > 5.0).all()
+    assert (np.diff(fluid) > 1.0).all()
     assert (np.diff(friction) < -1.0).all()
 
 

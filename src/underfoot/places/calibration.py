@@ -134,7 +134,7 @@ def floor_calibration(
         error = joint.pair_error(pair, pair.compound_and_floor, FLOOR)
         known[pair.compound_and_floor] = joint.constants.sd_pair * error
     machines = {one.machine.name for one in readings}
-    known |= joint.kept(
+    known |= joint.values_of(
         f"floor {FLOOR} beyond",
         *(f"{what} of {name}" for name in machines for what in ("factor", "reader", "walker")),
         *(f"{name} on {FLOOR}" for name in machines),

@@ -79,7 +79,7 @@ class JointDraws:
         self._shares: dict[str, Array] = {}
         self._errors = {name: values[rows] for name, values in begin.errors.items()}
 
-    def kept(self, *heads: str) -> dict[str, Array]:
+    def values_of(self, *heads: str) -> dict[str, Array]:
         """Return the shares of what begins with one of ``heads``, by the name kept for them."""
         return {
             f"{KEPT_AS}{name}": share

@@ -125,7 +125,7 @@ class ConvolutionCompliance:
         """Return the compliance with one more correction of its long waves."""
         result = copy(self)
         result._long_waves = (*self._long_waves, long_waves)
-        own = self._self + long_waves.own(self._self.shape)
+        own = self._self + long_waves.self_compliance(self._self.shape)
         result._self = np.maximum(own, LEAST_OWN * self._self)
         return result
 

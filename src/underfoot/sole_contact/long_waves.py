@@ -52,7 +52,7 @@ class LongWaves:
         weight = self.hats.T @ pressure.ravel()
         return (self.hats @ (self.matrix @ weight)).reshape(pressure.shape)
 
-    def own(self, shape: tuple[int, int]) -> Array:
+    def self_compliance(self, shape: tuple[int, int]) -> Array:
         """Return what is added to the deflection of a cell under its own unit pressure."""
         product = self.hats.multiply(sp.csr_matrix(self.hats @ sp.csr_matrix(self.matrix)))
         return np.asarray(product.sum(axis=1)).reshape(shape)

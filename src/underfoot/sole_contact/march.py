@@ -130,7 +130,7 @@ class March:
             gap = self.state.gap
             if demand.clearance is not self.problem.clearance:
                 gap = gap + (demand.clearance - self.problem.clearance)
-            film = low = _film_mask(problem, gap, self._pool_depth, self._kept)
+            film = low = _film_mask(problem, gap, self._pool_depth, self._film_that_stays)
             if problem.drained is not None:  # no film, but they touch the floor
                 low = film | (problem.drained & (gap < self._pool_depth))
             low = low | (gap < 1.5 * TOUCHES * problem.decay)  # out of a thin pool
@@ -176,7 +176,7 @@ class March:
                 return 0.0
 
     @property
-    def _kept(self) -> Mask:
+    def _film_that_stays(self) -> Mask:
         """Cells that keep their film a little longer; ones that bear keep it however high."""
         brink = self.state.gap < LETS_GO * self._pool_depth
         return self.film & (brink | (self.state.fluid > BEARS))

@@ -200,10 +200,10 @@ class _Asset:
             vertices = _normalised(vertices)
         return vertices, faces.astype(np.int64).ravel()
 
-    def _instances(self, said: dict[str, Any] | None) -> list[Array]:
-        if said is None:
+    def _instances(self, accessor: dict[str, Any] | None) -> list[Array]:
+        if accessor is None:
             return [np.eye(4)]
-        rows = {name: self._accessor(n) for name, n in said["attributes"].items()}
+        rows = {name: self._accessor(n) for name, n in accessor["attributes"].items()}
         count = next(iter(rows.values())).shape[0]
         words = {"TRANSLATION": "translation", "ROTATION": "rotation", "SCALE": "scale"}
         return [
@@ -213,15 +213,15 @@ class _Asset:
 
     def _accessor(self, number: int) -> Array:
         """Return the values of an accessor (n, width): strided, sparse, normalised."""
-        said = self.json["accessors"][number]
-        kind = np.dtype(_COMPONENTS[said["componentType"]])
-        width, count = _WIDTHS[said["type"]], said["count"]
+        accessor = self.json["accessors"][number]
+        kind = np.dtype(_COMPONENTS[accessor["componentType"]])
+        width, count = _WIDTHS[accessor["type"]], accessor["count"]
         if not 0 <= count <= 3 * MOST_UNFOLDED:
             raise self._error(f"an accessor promises {count} values")
         values = np.zeros((count, width), dtype=kind)
-        if "bufferView" in said:
-            values = self._rows(said, kind, width, count)
-        sparse = said.get("sparse")
+        if "bufferView" in accessor:
+            values = self._rows(accessor, kind, width, count)
+        sparse = accessor.get("sparse")
         if sparse:
             values = values.copy()
             places = self._rows(
@@ -229,11 +229,11 @@ class _Asset:
                 sparse["count"],
             )  # fmt: skip
             values[places.ravel()] = self._rows(sparse["values"], kind, width, sparse["count"])
-        return _normalised(values) if said.get("normalized") else values
+        return _normalised(values) if accessor.get("normalized") else values
 
-    def _rows(self, said: dict[str, Any], kind: np.dtype, width: int, count: int) -> np.ndarray:
-        data, stride = self._view(said["bufferView"])
-        begin, size = said.get("byteOffset", 0), kind.itemsize * width
+    def _rows(self, accessor: dict[str, Any], kind: np.dtype, width: int, count: int) -> np.ndarray:
+        data, stride = self._view(accessor["bufferView"])
+        begin, size = accessor.get("byteOffset", 0), kind.itemsize * width
         stride = stride or size
         if count and (begin < 0 or begin + (count - 1) * stride + size > data.size):
             raise self._error("an accessor reaches beyond the bytes of its view: it is cut short")
@@ -243,17 +243,17 @@ class _Asset:
 
     def _view(self, number: int) -> tuple[np.ndarray, int]:
         """Return the bytes of a buffer view and their stride, 0 where they lie close."""
-        said = self.json["bufferViews"][number]
+        accessor = self.json["bufferViews"][number]
         for name in _PACKED:
-            if name in said.get("extensions", {}):
+            if name in accessor.get("extensions", {}):
                 self._unmet(f"extension {name}", required=True)
-        begin = said.get("byteOffset", 0)
-        data = self._buffer(said["buffer"])
-        if begin < 0 or begin + said["byteLength"] > data.size:
+        begin = accessor.get("byteOffset", 0)
+        data = self._buffer(accessor["buffer"])
+        if begin < 0 or begin + accessor["byteLength"] > data.size:
             if any(each.required for each in self.unmet):  # a packed file's stand-in
-                return np.zeros(said["byteLength"], np.uint8), said.get("byteStride", 0)
+                return np.zeros(accessor["byteLength"], np.uint8), accessor.get("byteStride", 0)
             raise self._error("a buffer view reaches beyond its buffer: it is cut short")
-        return data[begin : begin + said["byteLength"]], said.get("byteStride", 0)
+        return data[begin : begin + accessor["byteLength"]], accessor.get("byteStride", 0)
 
     def _buffer(self, number: int) -> np.ndarray:
         uri = self.json["buffers"][number].get("uri")
