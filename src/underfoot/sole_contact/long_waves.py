@@ -28,6 +28,9 @@ from ._kernels.brick_elements import Bricks, work_of_hats
 Box = tuple[slice, slice]
 SIDE = 6e-3
 """Side of a brick and of a hat, m; larger where ``MOST_SQUARES`` do not cover the plan."""
+LEAST_SIDES = 5
+"""Hats along and across what is near the floor, below which the layers stay as they are: they were
+set by blocks of that size."""
 MOST_SQUARES = 200
 REACH = 6e-3
 """Land higher above the floor than this (m) keeps the layers alone."""
@@ -115,7 +118,9 @@ def body_correction(
     sole, near = body.sole, body.plan & (body.sole.clearance < REACH)
     if known is not None and known.spacing == sole.spacing:
         return known
-    if not near.any():
+    if not near.any() or min(map(_length, (near.any(axis=1), near.any(axis=0)))) < (
+        LEAST_SIDES * SIDE / sole.spacing
+    ):
         return None
     if known is None:
         bricks, x, y = _bricks(body, near)
@@ -132,6 +137,12 @@ def body_correction(
     return BodyCorrection(x, y, chosen, work, sole.spacing, 0.5 * (matrix + matrix.T))
 
 
+def _length(reached: NDArray[np.bool_]) -> int:
+    """Return how many cells lie from the first that is reached to the last."""
+    places = np.flatnonzero(reached)
+    return int(places[-1] - places[0] + 1)
+
+
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
     """Return the bricks and the places of their corners along x and across y."""
     sole = body.sole
@@ -146,7 +157,7 @@ def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
     (x0, x1), (y0, y1) = ends
     side = max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
     nx, ny = (max(1, math.ceil(length / side - 1e-9)) for length in (x1 - x0, y1 - y0))
-    corner_x = x0 + side * np.arange(nx + 1)
+    corner_x = x0 + side * np.arange(nx + 1)  # from the rear, where a heel lands
     corner_y = 0.5 * (y0 + y1) + side * (np.arange(ny + 1) - 0.5 * ny)  # as its mirror image
     boxes = _halves(corner_x), _halves(corner_y)
     cover, loaded = _covered(whole, whole.inside, *boxes), _covered(sole, body.plan, *boxes)
