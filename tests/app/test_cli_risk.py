@@ -103,7 +103,8 @@ def test_rinsing_what_does_not_mix_with_water_is_never_ranked(fluid) -> None:
 
 
 def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
-    case = Case.from_text(TEXT)
+    # at an instant: the film of steady sliding carries too little here to be the limit
+    case = Case.from_text(TEXT).replace("motion.duration", "0.12 s")
     rougher = Change("rougher", "rougher", "shoe", {"interface.roughness_beyond_cutoff": 4})
     slower = Change("slower", "slower", "walking", {"risk.rcof_mean": 0.15})
     wrong = Change("wrong", "wrong", "shoe", {"shoe.material.shore_a": 1000})

@@ -221,12 +221,12 @@ def test_no_logistic_where_everybody_or_nobody_slips(outcome):
 
 
 @pytest.mark.parametrize(
-    ("viscosity", "low", "high"), [(1.89e-3, 0.0, 10.0), (219e-3, 60.0, 100.0)]
+    ("viscosity", "low", "high"), [(1.89e-3, 0.0, 20.0), (219e-3, 60.0, 100.0)]
 )
 def test_fig_35_is_of_the_full_model(viscosity, low, high):
     """A detergent carries next to nothing after 200 ms at 0.5 m/s; 90 % glycerol nearly all.
 
-    `underfoot run` of the same shoe in detergent: 4 %.
+    With the facet of 45 mm the detergent carries 15 %; with 30 mm it was 4 %.
     """
     held = g5.held_item((True, viscosity, 0.5))
     after = np.interp(0.2, held["time"], held["share"])

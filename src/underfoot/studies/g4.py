@@ -60,7 +60,7 @@ DECIDING = (
 ROUGHNESS_BEYOND_CUTOFF = {
     "value": 1.5,
     "assumed": True,
-    "source": "chosen on load and peak of the untreaded work shoe in glycerol, G.4.2",
+    "source": "chosen on G.4.2: 201 N and 234 kPa",
 }
 LOAD, TRUE_LOAD, PEAK = "fluid_load_sensor", "fluid_load", "peak_fluid_pressure_sensor"
 LEAST = {LOAD: 0.01, TRUE_LOAD: 0.01, PEAK: 100.0}

@@ -23,6 +23,7 @@ from underfoot.slip.dynamics.full_model import Setting, SoleFoot
 from underfoot.trials.statistics.linear import all_subsets
 
 from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
+from .g4 import ROUGHNESS_BEYOND_CUTOFF
 from .g6 import PRINTED_ACOF, SOLES, sole_case
 from .runner import Computed, Options, Table, cached_arrays, named, part
 from .verdict import Quantity
@@ -61,6 +62,7 @@ def slip_case(name: str, *, grid: str = EXAMPLE_GRID, quick: bool = False) -> Ca
         "floor": {"from": "vinyl_g4"},
         "contaminant": {"from": "glycerol_90pct"},
         "motion": {"from": "slip_tester_g4"},
+        "interface": {"roughness_beyond_cutoff": ROUGHNESS_BEYOND_CUTOFF},
         "sensor": {"from": "human_slip_g5"},
         "slip": people,
     }
