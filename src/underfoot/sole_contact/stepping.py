@@ -32,7 +32,7 @@ LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still
 LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
-STEADY_CHANGE = 3e-4  # share of the load by which that on the film may change over such a step
+STEADY_CHANGE = 1e-4  # share of the load by which that on the film may change over such a step
 STEADY_MOVE = 3e-3  # share of the load that may change its place then
 MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
 CREEPING = 100.0  # s in which a sole slides its length, from which half the elapsed time counts
@@ -204,7 +204,7 @@ class SlidingSole:
         """Carry on at constant load and speed until nothing moves, and return that.
 
         At rest: over a step of a quarter of the elapsed time, in which the sole slides its own
-        length, the load on the film changes by less than 3e-4 of the whole, and less than 3e-3 of
+        length, the load on the film changes by less than 1e-4 of the whole, and less than 3e-3 of
         it moves to another place. Where long steps keep failing, a film is at rest that changes by
         less than 1 % while the sole slides twice its length.
         """

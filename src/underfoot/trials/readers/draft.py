@@ -285,6 +285,8 @@ def _in_words(size: float) -> str:
 
 def _fitting(number: float, least: float, most: float) -> str:
     """Which unit makes a length that can be of a number of the file."""
+    if not number > 0:
+        return "Check the markers"
     usual = (least * most) ** 0.5
     misfit = {name: abs(np.log(number * unit / usual)) for name, unit in _NAMED.items()}
     return f"As {min(misfit, key=lambda name: float(misfit[name]))} it would fit"
