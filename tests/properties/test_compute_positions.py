@@ -527,7 +527,7 @@ def test_a_turned_shoe_that_can_t_go_on_is_marched_and_one_without_answer_is_sai
     marched = run(coarse, quick=True)
     assert marched.value("cof") == going_on.value("cof")
     assert marched.value("cof_shoe_angle") == pytest.approx(
-        going_on.value("cof_shoe_angle"), abs=0.003
+        going_on.value("cof_shoe_angle"), abs=0.008
     )
     numbers_at = solve._numbers_at
     monkeypatch.setattr(
