@@ -420,7 +420,7 @@ DEFAULTS = {
     "| `walk` (default of a series)": lambda: MODES[0] == "walk",
     "Its default is the abrasive sheet of ISO 4649": abrasive_sheet,
     "| choice | default | others |": definition_of_rcof,
-    "layers in closed form (milliseconds, the default)": lambda: usual("compliance") == "layered",
+    "layers in closed form (the default)": lambda: usual("compliance") == "layered",
     "`sensor.compliance` is $C$; 0 by default": lambda: float(
         default("sensor.compliance").split()[0]) == 0,
     "| | default | from |": walkers,
