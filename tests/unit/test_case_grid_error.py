@@ -95,7 +95,7 @@ def test_a_grid_is_not_compared_with_itself(quick_grid):
     for name in ("cof", "fluid_load"):
         assert found[name].numerical == pytest.approx(alone[name].numerical), name
         off = abs(found.value(name) - finer.value(name))
-        assert off < 1.96 * found[name].numerical, name
+        assert off < 3 * found[name].numerical, name  # a heel that nearly floats
     assert "difference" not in found.labels["grid_error"]
 
 
