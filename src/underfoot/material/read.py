@@ -271,7 +271,7 @@ def _series(
             where=where,
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )
-    values = table.si(fraction or term)  # type: ignore[arg-type]
+    values = table.si(fraction or term)  # type: ignore[arg-type]  # one of them is there
     wrong = np.flatnonzero(values < 0.0)
     if wrong.size and fraction is None:
         raise InputError(
