@@ -38,7 +38,8 @@ from .row_compliance import RowCompliance
 
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
-CYCLE = 0.05  # relative difference of balances two Newton steps apart that counts as none
+CYCLES = (2, 3, 4)  # Newton steps after which a balance may come again
+CYCLE = 0.05  # relative difference of such balances that counts as none
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -284,11 +285,13 @@ def _hopeless(residuals: list[float]) -> bool:
 
 
 def _cycling(balances: list[float]) -> bool:
-    """Return whether cells leave and join the film in turn: every second balance is the same."""
-    if len(balances) < 5:
-        return False
-    before, now = np.array(balances[-5:-2]), np.array(balances[-3:])
-    return bool((np.abs(now - before) < CYCLE * now).all())
+    """Return whether cells leave and join the film in turn, so that balances come again."""
+    now = np.array(balances[-3:])
+    return any(
+        len(balances) >= period + 3
+        and bool((np.abs(now - balances[-3 - period : -period]) < CYCLE * now).all())
+        for period in CYCLES
+    )
 
 
 def _step_share(problem: Problem, gap: Array, rise: Array) -> float:
