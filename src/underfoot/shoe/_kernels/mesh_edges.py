@@ -217,5 +217,5 @@ def overlap_lines(
         flaps[lone + 1] += int(flap and not even)
         # a line that ends within the body grazed an edge or a hole
         crossed += int(overlaps and whole)
-    first = -1 if down >= 0 else 1
-    return crossed, doubled + flaps[1 + first], firsts[1 - first], odd, met
+    outer = -1 if down >= 0 else 1
+    return crossed, doubled + flaps[1 + outer], firsts[1 - outer], odd, met
