@@ -31,6 +31,29 @@ def test_one_walk_in_every_form(form, tmp_path):
     assert values == pytest.approx(sorted(RCOF.values()), abs=0.002)
 
 
+def test_a_clock_goes_on_after_midnight(tmp_path):
+    lines = ["Time,Fx1 (N),Fy1 (N),Fz1 (N)"]
+    stamps = ["23:59:59.98", "23:59:59.99", "00:00:00.00", "00:00:00.01", "00:00:00.02"]
+    lines += [f"2.1.2026 {stamp},1,2,{900 + n}" for n, stamp in enumerate(stamps)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(lines))
+    assert read_trial(path).plates[0].rate == pytest.approx(100.0)
+    path.write_text("\n".join(lines).replace("00:00:00.00", "late"))
+    with pytest.raises(DataError, match=r'"2\.1\.2026 late" in the column "Time" is no time'):
+        read_trial(path)
+
+
+def test_vectors_are_places_of_markers_where_their_unit_is_a_length(tmp_path):
+    rows = [f"{n / 100}\t{n},800,20\t{n + 180},805,{20 + n}" for n in range(9)]
+    head = ["DataType=Vec3", "Units=mm", "endheader", "time\tRHEE\tRTOE"]
+    path = tmp_path / "a.sto"
+    path.write_text("\n".join([*head, *rows]))
+    markers = read_trial(path).markers
+    assert markers["RTOE"].positions[4] == pytest.approx([0.184, 0.805, 0.024])
+    path.write_text("\n".join([head[0], *head[2:], *rows]))
+    assert not read_trial(path).markers
+
+
 def test_counts_that_contradict_the_bytes_are_told():
     notes = [note for note in read_trial(SHORT).notes if "frames are counted" in note]
     assert notes == ["frames are counted in two ways (the header 100): the data hold 195, all read"]
