@@ -67,6 +67,13 @@ def test_a_unit_that_is_not_known_stops_the_plate(word, tmp_path):
         assert f'"{word}", which is no known N' in plate.problem
 
 
+@pytest.mark.parametrize("word", ["ells", "N"])
+def test_a_unit_that_is_no_length_stops_the_markers_of_nexus(word, tmp_path):
+    (tmp_path / "a.csv").write_text(walk_forms.vicon(unit=word))
+    with pytest.raises(DataError, match=f'"{word}", which is no known length'):
+        read_trial(tmp_path / "a.csv")
+
+
 @pytest.mark.parametrize(
     ("words", "unit", "factor"),
     [

@@ -106,6 +106,11 @@ def packed(asset):
     asset.json["extensionsRequired"] = ["EXT_meshopt_compression"]
 
 
+def of_two_numbers(asset):
+    position = asset.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+    asset.json["accessors"][position]["type"] = "VEC2"
+
+
 def cut_short(asset):
     asset.json["bufferViews"][0]["byteLength"] += 100_000
 
@@ -151,6 +156,12 @@ BAD = {
     "nodes in a circle": ("glb", lambda: a_glb(node_circle), "its nodes hold each other"),
     "a skin": ("glb", lambda: a_glb(skinned), "a skin that bends the mesh"),
     "a view beyond its buffer": ("glb", lambda: a_glb(cut_short), "reaches beyond its buffer"),
+    "corners of two numbers": ("glb", lambda: a_glb(of_two_numbers), "no vectors of three"),
+    "a property of no type": (
+        "ply",
+        lambda: made.ply("ascii").replace(b"property float y", b"property"),
+        'the PLY heading has "property"',
+    ),
     "numbers that are not there": ("gltf", lambda: made.plain().gltf("a.bin"), '"a.bin" is not'),
     "free-form surfaces": (
         "obj",

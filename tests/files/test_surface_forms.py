@@ -262,6 +262,25 @@ def ridges(degrees, nx=256, ny=160, sides=(1e-5, 1e-5)):
     return HeightMap(5e-6 * np.sin(2 * np.pi * u / 320e-6), sides[0], spacing_y=sides[1])
 
 
+@pytest.mark.parametrize(
+    ("heading", "along", "up"),
+    [
+        ("x (inch),z (mil)", 0.0254, 25.4e-6),
+        ("x (inches),z (µin)", 0.0254, 25.4e-9),
+        ("Lateral (mm),Raw (Å)", 1e-3, 1e-10),
+        ("Lateral [mm],Height [Angstrom]", 1e-3, 1e-10),
+    ],
+)
+def test_units_of_other_workshops(tmp_path, heading, along, up):
+    x = np.arange(200) * 5e-6
+    z = 3e-6 * np.sin(2 * np.pi * x / 1e-4)
+    rows = "\n".join(f"{a / along:.9f},{b / up:.9f}" for a, b in zip(x, z, strict=True))
+    (tmp_path / "a.csv").write_text(f"{heading}\n{rows}\n")
+    profile = read_surface(tmp_path / "a.csv")
+    assert profile.spacing == pytest.approx(5e-6, rel=1e-4)
+    assert profile.heights.std() == pytest.approx(3e-6 / np.sqrt(2), rel=1e-4)
+
+
 @pytest.mark.parametrize("degrees", [0, 30, 45, 90, 135, 160])
 @pytest.mark.parametrize("sides", [(1e-5, 1e-5), (1e-5, 1.6e-5)])
 def test_a_lay_is_named_and_numbers_are_across_it(tmp_path, degrees, sides):

@@ -39,8 +39,9 @@ def length_factor(unit: str, where: str) -> float:
     name = unit.strip().replace("µ", "u").replace("μ", "u")
     if re.fullmatch(r"micro(n|meter|metre)s?", name, re.I):
         name = "um"
-    if name.casefold() in ("um", "nm", "mm", "cm"):
-        name = name.casefold()
+    if name.casefold() in ("um", "nm", "mm", "cm", "uin", "inch", "inches", "mil", "mils", "å",
+                           "angstrom", "angstroms"):  # fmt: skip
+        name = name.casefold().removesuffix("es").removesuffix("s").replace("å", "angstrom")
     try:
         return to_si(f"1 {name}", "m", where=where)
     except InputError as error:

@@ -330,8 +330,8 @@ def read_vicon_csv(draft: Draft) -> Trial:
             for name in dict.fromkeys(names):
                 at = [i for i, n in enumerate(names) if n == name]
                 if name and len(at) == 3:
-                    unit = si_unit(units[at[0]]) or ("m", 1e-3, 0.0)
-                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * unit[1])
+                    metres = draft.length_unit(units[at[0]] or "mm", numbers[:, at])
+                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * metres)
         else:
             draft.notes.append(f"the block of {kinds[start]} was left out")
     return draft.trial("Vicon CSV")
