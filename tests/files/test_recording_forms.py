@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import walk_forms
+from commands import called
 from underfoot.core import DataError
 from underfoot.trials import Channel, Trial, read_trial, read_trials
 from underfoot.trials.machines.pin_on_disk import friction_point
@@ -29,6 +30,26 @@ def test_one_walk_in_every_form(form, tmp_path):
     found = described_file(path, companion=beside)[0]
     values = sorted(step.measurement.value or np.nan for step in found.steps)
     assert values == pytest.approx(sorted(RCOF.values()), abs=0.002)
+
+
+@pytest.mark.parametrize("axes", ["+x +y +z", "+z +x +y", "+x -y -z"])
+def test_a_walk_written_for_opensim_is_the_same_walk(tmp_path, axes):
+    given = tmp_path / "given.c3d"
+    given.write_bytes(walk_forms._c3d(("N", 1.0), ("Nmm", 1e-3), axes=axes))
+    for name in ("a.trc", "b.mot"):
+        done = called("trials", "export", given, "--out", tmp_path / name)
+        assert done.returncode == 0, done.stderr
+        again = called("trials", "export", given, "--out", tmp_path / name)
+        assert "is there already" in again.stderr
+    markers, forces = read_trial(tmp_path / "a.trc"), read_trial(tmp_path / "b.mot")
+    assert forces.vertical.axis == (0.0, 1.0, 0.0)
+    assert forces.plates[0].force[:, 1].max() > 400.0
+    found = described_file(tmp_path / "a.trc", companion=tmp_path / "b.mot")[0]
+    values = sorted(step.measurement.value or np.nan for step in found.steps)
+    assert values == pytest.approx(sorted(RCOF.values()), abs=0.002)
+    first, trial = markers.markers["RHEE"].positions, read_trial(given)
+    steps = np.linalg.norm(np.diff(trial.markers["RHEE"].positions, axis=0), axis=1)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(first, axis=0), axis=1), steps, atol=1e-6)
 
 
 def test_a_clock_goes_on_after_midnight(tmp_path):
