@@ -52,6 +52,22 @@ def test_a_walk_written_for_opensim_is_the_same_walk(tmp_path, axes):
     np.testing.assert_allclose(np.linalg.norm(np.diff(first, axis=0), axis=1), steps, atol=1e-6)
 
 
+@pytest.mark.parametrize("columns", [range(1, 7), [3], [3, 6]])
+@pytest.mark.parametrize("code", ["-9999", "9999999"])
+def test_codes_for_lost_forces_are_no_forces(tmp_path, columns, code):
+    lines = walk_forms.table().splitlines()
+    for i in range(701, 705):  # within a step
+        cells = lines[i].split(",")
+        lines[i] = ",".join(code if k in columns else cell for k, cell in enumerate(cells))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(lines))
+    values = [step.measurement.value for step in described_file(path)[0].steps]
+    assert sum(value is None for value in values) >= 1
+    right = list(RCOF.values())
+    assert all(np.isclose(value, right, atol=0.002).any() for value in values if value is not None)
+    assert np.isnan(read_trial(path).plates[0].force[700:704]).all()
+
+
 def test_a_clock_goes_on_after_midnight(tmp_path):
     lines = ["Time,Fx1 (N),Fy1 (N),Fz1 (N)"]
     stamps = ["23:59:59.98", "23:59:59.99", "00:00:00.00", "00:00:00.01", "00:00:00.02"]

@@ -13,7 +13,7 @@ from ..recording.axes import found_vertical, heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
-from .seen import KINDS, camera_clock, unseen
+from .seen import KINDS, camera_clock, coded_forces, unseen
 from .text import (
     in_si,
     known_units,
@@ -149,7 +149,15 @@ class Draft:
         """Add a force plate (n, 3), N; ``more`` as ``finished_plate`` takes it but ``up``."""
         more = {"start": self.start, "subtract_baseline": self.subtract_baseline, **more}
         more |= {"name": name or f"plate {len(self.plates) + 1}", "rate": self.rate}
-        self.plates.append(_RawPlate(np.asarray(force, dtype=float), more))
+        force = np.asarray(force, dtype=float)
+        coded = coded_forces(force)
+        if coded.any():
+            force = np.where(coded[:, None], np.nan, force)
+            self.notes.append(
+                f"{more['name']}: {int(coded.sum())} samples hold a number that stands for a lost "
+                "one: taken as not measured"
+            )
+        self.plates.append(_RawPlate(force, more))
 
     def length_unit(self, written: str, places: np.ndarray, of: str = "the markers") -> float:
         """Return the factor to m of a unit; without one that which the numbers (...) tell.
