@@ -68,6 +68,21 @@ def test_codes_for_lost_forces_are_no_forces(tmp_path, columns, code):
     assert np.isnan(read_trial(path).plates[0].force[700:704]).all()
 
 
+@pytest.mark.parametrize("column", [1, 2])
+def test_codes_of_a_tribometer_are_no_forces(tmp_path, column):
+    generator, time = np.random.default_rng(1), np.arange(0.0, 60.0, 0.02)
+    load = np.where((time > 10) & (time < 50), 20.0, 0.0)
+    values = np.column_stack([time, load, 0.35 * load])
+    values[:, 1:] += generator.normal(0.0, 0.05, (len(time), 2))
+    values[1500:1504, column] = -9999.0
+    head = "Time (s),Normal Force (N),Friction Force (N)\n"
+    path = tmp_path / "a.csv"
+    path.write_text(head + "\n".join(",".join(f"{v:.4f}" for v in row) for row in values))
+    trial = read_trial(path)
+    assert any("hold a code" in note for note in trial.notes)
+    assert friction_point(trial).cof.value == pytest.approx(0.35, abs=0.002)
+
+
 def test_a_clock_goes_on_after_midnight(tmp_path):
     lines = ["Time,Fx1 (N),Fy1 (N),Fz1 (N)"]
     stamps = ["23:59:59.98", "23:59:59.99", "00:00:00.00", "00:00:00.01", "00:00:00.02"]

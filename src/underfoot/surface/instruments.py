@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, text, to_si
+from underfoot.core.missing import coded
 from underfoot.core.optional import optional_module
 from underfoot.core.units import metres
 
@@ -66,7 +67,7 @@ def complete(
     heights: np.ndarray, fill_missing: bool, where: str, first_line: int | None = None
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the heights without gaps and what was done, if anything."""
-    missing = ~np.isfinite(heights)
+    missing = ~np.isfinite(heights) | coded(heights)
     if not missing.any():
         return heights, ()
     if not fill_missing:
@@ -78,7 +79,7 @@ def complete(
             where=where,
             remedy="Ask for interpolation (fill_missing=True); the result then says so",
         )
-    whole, note = filled(heights)
+    whole, note = filled(np.where(missing, np.nan, heights))
     return whole, (note,)
 
 

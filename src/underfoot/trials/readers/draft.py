@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+from underfoot.core.missing import coded
 from underfoot.core.text import decoded
 
 from ..recording.axes import found_vertical, heel_candidates, toe_candidates
@@ -137,6 +138,9 @@ class Draft:
             note = "" if unit else "no unit in the file"
             note = f'in "{written}" in the file' if written else note
         values = values * (scale * factor) + offset
+        if si == "N" and (lost := coded(values, least=1.0)).any():
+            values = np.where(lost, np.nan, values)
+            self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:

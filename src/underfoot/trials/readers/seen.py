@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.missing import coded
+
 from ..recording.signals import runs
 
 HELD, STRAIGHT, SIGN = "held", "straight", "sign"
@@ -113,20 +115,10 @@ def coded_forces(force: np.ndarray) -> np.ndarray:
     number that lies farther from all others than these from each other.
     """
     one = (force[:, 0] == force[:, 1]) & (force[:, 1] == force[:, 2])
-    coded = one & (np.abs(force[:, 0]) >= _NO_FORCE)
-    for values in force.T:
-        known = values[np.isfinite(values) & ~coded]
-        if known.size == 0:
-            continue
-        for end, away in ((known.min(), 1.0), (known.max(), -1.0)):
-            others, count = known[known != end], int((known == end).sum())
-            if abs(end) < _NO_FORCE or not 2 <= count <= _FEW * known.size:
-                continue
-            spread = float(np.ptp(others))
-            nearest = others.min() if away > 0 else others.max()
-            if 0.0 < spread < away * (nearest - end):
-                coded |= values == end
-    return coded
+    lost = one & (np.abs(force[:, 0]) >= _NO_FORCE)
+    for values in np.where(lost[:, None], np.nan, force).T:
+        lost |= coded(values, apart=1.0, least=_NO_FORCE, most=_FEW)
+    return lost
 
 
 def _signs(path: np.ndarray) -> np.ndarray:
