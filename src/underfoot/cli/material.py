@@ -92,11 +92,11 @@ def material(
 
     form = None if out is None else FORMS.get(out.suffix.casefold())
 
-    def deck_of(found: Compound) -> str:
-        if found.spectrum is None:
+    def deck_of(compound: Compound) -> str:
+        if compound.spectrum is None:
             raise InputError("no relaxation was measured: a deck needs its terms", where="--out")
         return deck_text(
-            found.spectrum, form or "", poisson_ratio=found.poisson_ratio, unit=unit or "MPa"
+            compound.spectrum, form or "", poisson_ratio=compound.poisson_ratio, unit=unit or "MPa"
         )
 
     answer(
