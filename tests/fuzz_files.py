@@ -53,6 +53,7 @@ def main(count: int, seed: int) -> int:
             try:
                 with warnings.catch_warnings(record=True) as told:
                     warnings.simplefilter("always")
+                    warnings.simplefilter("ignore", ImportWarning)  # of a library's own choices
                     ending = "read" if refusal(read, path) is None else "refused"
                 if told:
                     source = Path(told[0].filename)

@@ -91,6 +91,29 @@ def mot(
     return "\n".join(lines) + "\n"
 
 
+def vectors(names: Callable[[int], tuple[str, ...]], comma: str = ",", metres: float = 1.0) -> str:
+    """OpenSim's forces, three numbers in a cell; ``names`` of the force and place of a plate."""
+    cells = [f"{i / 1000.0:.3f}" for i in range(1950)]
+    labels = ["time"]
+    for number, plate in enumerate(walk().plates, start=1):
+        labels += names(number)
+        for part in (plate.force, np.nan_to_num(plate.centre_of_pressure) / metres):
+            for i, values in enumerate(part):
+                cells[i] += "\t" + comma.join(f"{v:.6f}" for v in values)
+    head = ["DataRate=1000.000000", "DataType=Vec3", "version=3", "endheader", "\t".join(labels)]
+    return "\n".join([*head, *cells]) + "\n"
+
+
+def clocked(date: str = "", hour: int = 10) -> str:
+    """The table with the time of day of each row; the second minute begins within."""
+    lines = table().replace("Time (ms)", "Time").splitlines()
+    for i in range(1, len(lines)):
+        at = 58_500 + i
+        stamp = f"{date}{hour % 24}:{15 + at // 60_000}:{at % 60_000 / 1000:06.3f}"
+        lines[i] = stamp + lines[i][lines[i].index(",") :]
+    return "\n".join(lines) + "\n"
+
+
 def trc(
     unit: str = "mm",
     metres: float = 1e-3,
@@ -297,6 +320,25 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
         "a.mot", lambda: mot(names=("ground_force_", "ground_force_"), pandas=True), None),
     "MOT, rows announced": ("a.mot", lambda: mot(rows=5), None),
     "MOT, more rows": ("a.sto", lambda: mot(rows=-5), None),
+    "STO of vectors": ("a.sto", lambda: vectors(lambda n: (f"f{n}", f"p{n}")), None),
+    "STO of vectors, mm, blanks": (
+        "a.sto", lambda: vectors(lambda n: (f"f{n}", f"p{n}"), ", ", 1e-3), None),
+    "STO of vectors by OpenSim's names": (
+        "a.sto", lambda: vectors(lambda n: (f"ground_force_{n}_v", f"ground_force_{n}_p")), None),
+    "STO of vectors, flat": (
+        "a.sto",
+        lambda: vectors(
+            lambda n: tuple("\t".join(f"{k}{n}_{i}" for i in (1, 2, 3)) for k in "fp"), "\t"
+        ).replace("DataType=Vec3\n", ""),
+        None,
+    ),
+    "times of day": ("a.csv", clocked, None),
+    "dates": ("a.csv", lambda: clocked("2026-11-27T"), None),
+    "the number before the axis": (
+        "a.csv", lambda: table(heads=lambda plate, axis: f"F{plate}{axis.upper()}"), None),
+    "GRF": ("a.csv", lambda: table(heads=lambda plate, axis: f"GRF{plate}{axis}"), None),
+    "OpenSim's names in a table": (
+        "a.csv", lambda: table(heads=lambda plate, axis: f"ground_force_{plate}_v{axis}"), None),
     "TRC": ("a.trc", trc, ("b.mot", mot)),
     "TRC, z up": ("a.trc", lambda: trc(axes="+x +y +z"), ("b.mot", lambda: mot("+x +y +z"))),
     "TRC, Centimeters": ("a.trc", lambda: trc("Centimeters", 0.01), ("b.mot", mot)),

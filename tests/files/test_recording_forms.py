@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import walk_forms
+from commands import called
 from underfoot.core import DataError
 from underfoot.trials import Channel, Trial, read_trial, read_trials
 from underfoot.trials.machines.pin_on_disk import friction_point
@@ -31,6 +32,80 @@ def test_one_walk_in_every_form(form, tmp_path):
     assert values == pytest.approx(sorted(RCOF.values()), abs=0.002)
 
 
+@pytest.mark.parametrize("axes", ["+x +y +z", "+z +x +y", "+x -y -z"])
+def test_a_walk_written_for_opensim_is_the_same_walk(tmp_path, axes):
+    given = tmp_path / "given.c3d"
+    given.write_bytes(walk_forms._c3d(("N", 1.0), ("Nmm", 1e-3), axes=axes))
+    for name in ("a.trc", "b.mot"):
+        done = called("trials", "export", given, "--out", tmp_path / name)
+        assert done.returncode == 0, done.stderr
+        again = called("trials", "export", given, "--out", tmp_path / name)
+        assert "is there already" in again.stderr
+    markers, forces = read_trial(tmp_path / "a.trc"), read_trial(tmp_path / "b.mot")
+    assert forces.vertical.axis == (0.0, 1.0, 0.0)
+    assert forces.plates[0].force[:, 1].max() > 400.0
+    found = described_file(tmp_path / "a.trc", companion=tmp_path / "b.mot")[0]
+    values = sorted(step.measurement.value or np.nan for step in found.steps)
+    assert values == pytest.approx(sorted(RCOF.values()), abs=0.002)
+    first, trial = markers.markers["RHEE"].positions, read_trial(given)
+    steps = np.linalg.norm(np.diff(trial.markers["RHEE"].positions, axis=0), axis=1)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(first, axis=0), axis=1), steps, atol=1e-6)
+
+
+@pytest.mark.parametrize("columns", [range(1, 7), [3], [3, 6]])
+@pytest.mark.parametrize("code", ["-9999", "9999999"])
+def test_codes_for_lost_forces_are_no_forces(tmp_path, columns, code):
+    lines = walk_forms.table().splitlines()
+    for i in range(701, 705):  # within a step
+        cells = lines[i].split(",")
+        lines[i] = ",".join(code if k in columns else cell for k, cell in enumerate(cells))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(lines))
+    values = [step.measurement.value for step in described_file(path)[0].steps]
+    assert sum(value is None for value in values) >= 1
+    right = list(RCOF.values())
+    assert all(np.isclose(value, right, atol=0.002).any() for value in values if value is not None)
+    assert np.isnan(read_trial(path).plates[0].force[700:704]).all()
+
+
+@pytest.mark.parametrize("column", [1, 2])
+def test_codes_of_a_tribometer_are_no_forces(tmp_path, column):
+    generator, time = np.random.default_rng(1), np.arange(0.0, 60.0, 0.02)
+    load = np.where((time > 10) & (time < 50), 20.0, 0.0)
+    values = np.column_stack([time, load, 0.35 * load])
+    values[:, 1:] += generator.normal(0.0, 0.05, (len(time), 2))
+    values[1500:1504, column] = -9999.0
+    head = "Time (s),Normal Force (N),Friction Force (N)\n"
+    path = tmp_path / "a.csv"
+    path.write_text(head + "\n".join(",".join(f"{v:.4f}" for v in row) for row in values))
+    trial = read_trial(path)
+    assert any("hold a code" in note for note in trial.notes)
+    assert friction_point(trial).cof.value == pytest.approx(0.35, abs=0.002)
+
+
+def test_a_clock_goes_on_after_midnight(tmp_path):
+    lines = ["Time,Fx1 (N),Fy1 (N),Fz1 (N)"]
+    stamps = ["23:59:59.98", "23:59:59.99", "00:00:00.00", "00:00:00.01", "00:00:00.02"]
+    lines += [f"2.1.2026 {stamp},1,2,{900 + n}" for n, stamp in enumerate(stamps)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(lines))
+    assert read_trial(path).plates[0].rate == pytest.approx(100.0)
+    path.write_text("\n".join(lines).replace("00:00:00.00", "late"))
+    with pytest.raises(DataError, match=r'"2\.1\.2026 late" in the column "Time" is no time'):
+        read_trial(path)
+
+
+def test_vectors_are_places_of_markers_where_their_unit_is_a_length(tmp_path):
+    rows = [f"{n / 100}\t{n},800,20\t{n + 180},805,{20 + n}" for n in range(9)]
+    head = ["DataType=Vec3", "Units=mm", "endheader", "time\tRHEE\tRTOE"]
+    path = tmp_path / "a.sto"
+    path.write_text("\n".join([*head, *rows]))
+    markers = read_trial(path).markers
+    assert markers["RTOE"].positions[4] == pytest.approx([0.184, 0.805, 0.024])
+    path.write_text("\n".join([head[0], *head[2:], *rows]))
+    assert not read_trial(path).markers
+
+
 def test_counts_that_contradict_the_bytes_are_told():
     notes = [note for note in read_trial(SHORT).notes if "frames are counted" in note]
     assert notes == ["frames are counted in two ways (the header 100): the data hold 195, all read"]
@@ -42,6 +117,13 @@ def test_a_unit_that_is_not_known_stops_the_plate(word, tmp_path):
     for plate in read_trial(tmp_path / "a.c3d").plates:
         assert not plate.usable
         assert f'"{word}", which is no known N' in plate.problem
+
+
+@pytest.mark.parametrize("word", ["ells", "N"])
+def test_a_unit_that_is_no_length_stops_the_markers_of_nexus(word, tmp_path):
+    (tmp_path / "a.csv").write_text(walk_forms.vicon(unit=word))
+    with pytest.raises(DataError, match=f'"{word}", which is no known length'):
+        read_trial(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize(

@@ -106,6 +106,11 @@ def packed(asset):
     asset.json["extensionsRequired"] = ["EXT_meshopt_compression"]
 
 
+def of_two_numbers(asset):
+    position = asset.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+    asset.json["accessors"][position]["type"] = "VEC2"
+
+
 def cut_short(asset):
     asset.json["bufferViews"][0]["byteLength"] += 100_000
 
@@ -151,6 +156,12 @@ BAD = {
     "nodes in a circle": ("glb", lambda: a_glb(node_circle), "its nodes hold each other"),
     "a skin": ("glb", lambda: a_glb(skinned), "a skin that bends the mesh"),
     "a view beyond its buffer": ("glb", lambda: a_glb(cut_short), "reaches beyond its buffer"),
+    "corners of two numbers": ("glb", lambda: a_glb(of_two_numbers), "no vectors of three"),
+    "a property of no type": (
+        "ply",
+        lambda: made.ply("ascii").replace(b"property float y", b"property"),
+        'the PLY heading has "property"',
+    ),
     "numbers that are not there": ("gltf", lambda: made.plain().gltf("a.bin"), '"a.bin" is not'),
     "free-form surfaces": (
         "obj",
@@ -282,10 +293,70 @@ def test_lugs_alone_are_no_answer():
         found({"a": [made.base()], "b": made.all_lugs()}, solid="b")
 
 
-def test_faces_that_lie_double_are_refused():
+def fans():
+    """The faces of a sole, cut as if concave polygons were convex."""
     points, faces = made.joined(made.parts())
     turned = [face[1:] + face[:1] if len(face) == 6 else face for face in faces]
-    fans = [[f[0], f[n], f[n + 1]] for f in turned for n in range(1, len(f) - 1)]
-    mesh = Mesh(points[np.array(fans)].astype(np.float32), "made here", 1e-3)
-    with pytest.raises(DataError, match="faces lie double"):
-        outsole_from_mesh(mesh)
+    return points[[[f[0], f[n], f[n + 1]] for f in turned for n in range(1, len(f) - 1)]]
+
+
+def of_faces(corners):
+    return outsole_from_mesh(
+        Mesh(np.asarray(corners, dtype=np.float32), "made here", 1e-3), FileSettings(spacing=0.5e-3)
+    )
+
+
+def at(corners, height):
+    return (corners[:, :, 2] == height).all(axis=1)
+
+
+def mixed_corners(corners):
+    generator = np.random.default_rng(1)
+    points = corners.reshape(-1, 3).copy()
+    some = generator.choice(len(points), len(points) // 10, replace=False)
+    points[some] = points[generator.permutation(some)]
+    return points.reshape(-1, 3, 3)
+
+
+def one_turned(corners):
+    return np.concatenate([corners[:1, ::-1], corners[1:]])
+
+
+WHOLE = made.triangles()
+GROUND = np.flatnonzero(at(WHOLE, 0))
+UNSOUND = {
+    "fans": (fans(), "faces lie double"),
+    "fans, a face twice": (np.concatenate([fans(), fans()[:1]]), "faces lie double"),
+    "fans, a face turned": (one_turned(fans()), "faces lie double"),
+    "fans, open above": (fans()[~at(fans(), 9)], "faces lie double"),
+    "half the ground": (np.delete(WHOLE, GROUND[::2], 0), "ground side are missing"),
+    "two lugs without ground": (np.delete(WHOLE, GROUND[:8], 0), "ground side are missing"),
+    "the same, inside out": (np.delete(WHOLE, GROUND[:8], 0)[:, ::-1], "ground side are missing"),
+    "mixed corners, faces twice": (
+        np.concatenate([mixed_corners(WHOLE), mixed_corners(WHOLE)[:5]]), "lines through it",
+    ),
+}  # fmt: skip
+HEALTHY = {
+    "twice": np.concatenate([WHOLE, WHOLE]),
+    "twice, once turned": np.concatenate([WHOLE, WHOLE[:, ::-1]]),
+    "every second face turned": np.where(np.arange(len(WHOLE))[:, None, None] % 2, WHOLE,
+                                         WHOLE[:, ::-1]),
+    "ground turned": np.where(at(WHOLE, 0)[:, None, None], WHOLE[:, ::-1], WHOLE),
+    "open above": WHOLE[~at(WHOLE, 9)],
+    "no walls": WHOLE[np.ptp(WHOLE[:, :, 2], axis=1) == 0],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UNSOUND)
+def test_a_sole_whose_parts_disagree_is_refused(name):
+    corners, words = UNSOUND[name]
+    with pytest.raises(DataError, match=words) as caught:
+        of_faces(corners)
+    assert caught.value.remedy
+
+
+@pytest.mark.parametrize("name", HEALTHY)
+def test_turned_repeated_and_open_faces_change_nothing(name):
+    measures = tread_measures(of_faces(HEALTHY[name]).surface)
+    assert measures.land_ratio == pytest.approx(made.LAND, rel=0.01)
+    assert measures.channel_depth[1] == pytest.approx(4e-3, abs=0.05e-3)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from underfoot.core import DataError
+from underfoot.core.missing import coded
 from underfoot.surface import (
     HeightMap,
     Profile,
@@ -260,6 +261,45 @@ def ridges(degrees, nx=256, ny=160, sides=(1e-5, 1e-5)):
     across = np.radians(degrees - 90)
     u = x * np.cos(across) + y * np.sin(across)
     return HeightMap(5e-6 * np.sin(2 * np.pi * u / 320e-6), sides[0], spacing_y=sides[1])
+
+
+@pytest.mark.parametrize("code", ["-9999", "9999.0", "-32768", "1e30"])
+@pytest.mark.parametrize("count", [1, 4])
+def test_codes_for_missing_heights_are_no_heights(tmp_path, code, count):
+    x = np.arange(200) * 5.0
+    z = 3.0 * np.sin(2 * np.pi * x / 100.0)
+    lost = range(50, 50 + count)
+    rows = [f"{a:.1f},{code if n in lost else f'{b:.5f}'}" for n, (a, b) in
+            enumerate(zip(x, z, strict=True))]  # fmt: skip
+    (tmp_path / "a.csv").write_text("x (um),z (um)\n" + "\n".join(rows))
+    with pytest.raises(DataError, match=f"{count} of 200 heights are missing"):
+        read_surface(tmp_path / "a.csv")
+    filled = read_surface(tmp_path / "a.csv", fill_missing=True)
+    assert filled.heights.std() == pytest.approx(3e-6 / np.sqrt(2), rel=0.01)
+
+
+@pytest.mark.parametrize("heights", [[0, 1, 2, 3, 9], [0, 5, 5, 0], [1, 1, 1], [0, 1, 2, 9, 9]])
+def test_steps_and_peaks_are_no_codes(heights):
+    assert not coded(np.array(heights, dtype=float)).any()
+
+
+@pytest.mark.parametrize(
+    ("heading", "along", "up"),
+    [
+        ("x (inch),z (mil)", 0.0254, 25.4e-6),
+        ("x (inches),z (µin)", 0.0254, 25.4e-9),
+        ("Lateral (mm),Raw (Å)", 1e-3, 1e-10),
+        ("Lateral [mm],Height [Angstrom]", 1e-3, 1e-10),
+    ],
+)
+def test_units_of_other_workshops(tmp_path, heading, along, up):
+    x = np.arange(200) * 5e-6
+    z = 3e-6 * np.sin(2 * np.pi * x / 1e-4)
+    rows = "\n".join(f"{a / along:.9f},{b / up:.9f}" for a, b in zip(x, z, strict=True))
+    (tmp_path / "a.csv").write_text(f"{heading}\n{rows}\n")
+    profile = read_surface(tmp_path / "a.csv")
+    assert profile.spacing == pytest.approx(5e-6, rel=1e-4)
+    assert profile.heights.std() == pytest.approx(3e-6 / np.sqrt(2), rel=1e-4)
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 45, 90, 135, 160])

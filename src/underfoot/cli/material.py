@@ -18,7 +18,11 @@ def material(
         ),
     ] = None,
     out: Annotated[
-        Path | None, optional("File of the compound (TOML); data and figures stand beside it.")
+        Path | None,
+        optional(
+            "File of the compound (TOML); data and figures stand beside it. Or a deck with its "
+            "Prony series: .inp (Abaqus), .k (LS-DYNA), .feb (FEBio), .mac (ANSYS)."
+        ),
     ] = None,
     shore: Annotated[str | None, optional('Hardness, as "68 A" or "40 Shore D".')] = None,
     temperature: Annotated[
@@ -48,6 +52,7 @@ def material(
     from underfoot.core import InputError, Progress, to_si
     from underfoot.core.files import whole_file
     from underfoot.material.durometer_scales import durometer_reading
+    from underfoot.material.write_decks import FORMS, deck_text
 
     from .output import answer
 
@@ -80,9 +85,19 @@ def material(
         progress("Reading the tests", 0.0)
         found = compound_from_files(files or [], **sizes, **more)
         if out is not None:
+            written = found.toml() if form is None else deck_of(found)
             with whole_file(out) as part:
-                part.write_text(found.toml(), encoding="utf-8")
+                part.write_text(written, encoding="utf-8")
         return found
+
+    form = None if out is None else FORMS.get(out.suffix.casefold())
+
+    def deck_of(compound: Compound) -> str:
+        if compound.spectrum is None:
+            raise InputError("no relaxation was measured: a deck needs its terms", where="--out")
+        return deck_text(
+            compound.spectrum, form or "", poisson_ratio=compound.poisson_ratio, unit=unit or "MPa"
+        )
 
     answer(
         "compound",
@@ -92,6 +107,8 @@ def material(
         json=shared.json,
         everything=shared.everything,
     )
-    if out is not None and not shared.json:
+    if out is not None and form is not None and not shared.json:
+        print(f"\n{out} is written: moduli in {unit or 'MPa'}, times in s.")
+    elif out is not None and not shared.json:
         print(f"\n{out} is written. A case beside it takes it with these lines:\n")
         print(f'[shoe.material]\nfile = "{out.name}"')

@@ -112,17 +112,17 @@ def definitions(
 
 def export(
     file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
-    out: Annotated[Path, optional("C3D file to be written.")],
+    out: Annotated[Path, optional("File to be written: .c3d, .trc (markers) or .mot (forces).")],
     companion: Annotated[
         Path | None, optional("Second file of the same recording.", "--with")
     ] = None,
     profile: ProfilePath = None,
 ) -> None:
-    """Write a recording as C3D with the contacts found as events, for other software."""
+    """Write a recording as C3D with the contacts found as events, or as TRC or MOT of OpenSim."""
     from underfoot.core import InputError
     from underfoot.trials.readers import Profile, read_profile, read_trial
     from underfoot.trials.recording.trial import joined
-    from underfoot.trials.study.export import c3d_with_events
+    from underfoot.trials.study.export import c3d_with_events, mot_text, trc_text
     from underfoot.trials.walking.events import stances
     from underfoot.trials.walking.walkway import walkway_of
 
@@ -132,6 +132,11 @@ def export(
     trial = read_trial(file, read)
     if companion is not None:
         trial = joined(trial, read_trial(companion, read))
+    if out.suffix.casefold() in (".trc", ".mot"):
+        made = trc_text(trial) if out.suffix.casefold() == ".trc" else mot_text(trial)
+        out.write_text(made, encoding="utf-8")
+        say(f"{out} is written, y up")
+        return
     walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
     found = stances(walk)
     out.write_bytes(c3d_with_events(trial, found))

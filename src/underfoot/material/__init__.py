@@ -39,3 +39,4 @@ from .spectrum_fit import SpectrumFit as SpectrumFit
 from .spectrum_fit import fit_dynamic as fit_dynamic
 from .spectrum_fit import fit_relaxation as fit_relaxation
 from .spectrum_fit import reduced as reduced
+from .write_decks import write_deck as write_deck

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, text, to_si
+from underfoot.core.missing import coded
 from underfoot.core.optional import optional_module
 from underfoot.core.units import metres
 
@@ -39,8 +40,9 @@ def length_factor(unit: str, where: str) -> float:
     name = unit.strip().replace("µ", "u").replace("μ", "u")
     if re.fullmatch(r"micro(n|meter|metre)s?", name, re.I):
         name = "um"
-    if name.casefold() in ("um", "nm", "mm", "cm"):
-        name = name.casefold()
+    if name.casefold() in ("um", "nm", "mm", "cm", "uin", "inch", "inches", "mil", "mils", "å",
+                           "angstrom", "angstroms"):  # fmt: skip
+        name = name.casefold().removesuffix("es").removesuffix("s").replace("å", "angstrom")
     try:
         return to_si(f"1 {name}", "m", where=where)
     except InputError as error:
@@ -65,7 +67,7 @@ def complete(
     heights: np.ndarray, fill_missing: bool, where: str, first_line: int | None = None
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the heights without gaps and what was done, if anything."""
-    missing = ~np.isfinite(heights)
+    missing = ~np.isfinite(heights) | coded(heights)
     if not missing.any():
         return heights, ()
     if not fill_missing:
@@ -77,7 +79,7 @@ def complete(
             where=where,
             remedy="Ask for interpolation (fill_missing=True); the result then says so",
         )
-    whole, note = filled(heights)
+    whole, note = filled(np.where(missing, np.nan, heights))
     return whole, (note,)
 
 

@@ -27,7 +27,9 @@ _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
 SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
-    r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|mm|m)(?![A-Za-z])", re.I
+    r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|mm|m|inch(?:es)?|mils?|[uµμ]in"
+    r"|Å|angstroms?)(?![A-Za-z])",
+    re.I,
 )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.core.arrays import Array
 from underfoot.core.compiled import njit
 
 from .mesh_edges import mixed
@@ -69,3 +70,33 @@ def _root(parent: NDArray[np.int32], n: int) -> int:
         parent[n] = parent[parent[n]]
         n = parent[n]
     return n
+
+
+@njit(cache=True)
+def extents_of_bodies(
+    triangles: NDArray[np.float32], body: NDArray[np.int32], axes: Array, count: int
+) -> tuple[Array, Array, Array]:
+    """Return least and greatest coordinates (count, 3) along the rows of ``axes``, and areas.
+
+    Of bodies without triangles the extents are infinite, least above greatest.
+    """
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    area = np.zeros(count)
+    u, v = np.empty(3), np.empty(3)
+    for n in range(triangles.shape[0]):
+        own = body[n]
+        for k in range(3):
+            x, y, z = triangles[n, k, 0], triangles[n, k, 1], triangles[n, k, 2]
+            for m in range(3):
+                along = axes[m, 0] * x + axes[m, 1] * y + axes[m, 2] * z
+                low[own, m] = min(low[own, m], along)
+                high[own, m] = max(high[own, m], along)
+        for m in range(3):
+            u[m] = np.float64(triangles[n, 1, m]) - triangles[n, 0, m]
+            v[m] = np.float64(triangles[n, 2, m]) - triangles[n, 0, m]
+        area[own] += 0.5 * np.sqrt(
+            (u[1] * v[2] - u[2] * v[1]) ** 2
+            + (u[2] * v[0] - u[0] * v[2]) ** 2
+            + (u[0] * v[1] - u[1] * v[0]) ** 2
+        )
+    return low, high, area

@@ -111,13 +111,16 @@ def overlap_lines(
     pitch: float,
     shape: tuple[int, int],
     near: float,
-) -> tuple[int, int, int]:
-    """Return on how many straight lines a body overlaps itself, on how many faces lie double, met.
+) -> tuple[int, int, int, int, int]:
+    """Return on how many straight lines a body overlaps itself, and on how many faces lie double.
 
-    Lines along the third axis, ``pitch`` apart. Along a line through a sound body the surfaces are
-    met in turn from outside and from inside; two from outside in a row, farther apart than
-    ``near``, mean that the surface crosses itself. Two faces turned opposite ways that lie nearer,
-    with nothing else beside them, are faces that lie double.
+    Then on how many a first face is missing, how many lines end within the body, and how many meet
+    the mesh at all. Lines along the third axis, ``pitch`` apart. Along a line through a sound body
+    the surfaces are met in turn from outside and from inside; two from outside in a row, farther
+    apart than ``near``, mean that the surface crosses itself. Two faces turned opposite ways that
+    lie nearer, with nothing else beside them, are faces that lie double. Where a line ends within
+    the body and meets its first face from the other side than most lines that don't, the face that
+    it should have met is missing.
 
     Parameters:
         body: (n,) number of the body of each triangle; all alike: bodies that overlap count too.
@@ -163,15 +166,31 @@ def overlap_lines(
             side = np.empty(counts[-1], dtype=np.int8)
             owner = np.empty(counts[-1], dtype=np.int32)
             order = counts[:-1].copy()
-    crossed, doubled, met = 0, 0, 0
+    crossed, doubled, odd, met, down = 0, 0, 0, 0, 0
+    firsts, flaps = np.zeros(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
     for line in range(lines):
         begin, end = counts[line], counts[line + 1]
         if begin == end:
             continue
         met += 1
         ranks = begin + np.argsort(height[begin:end])
-        overlaps, double, whole = False, False, True
+        overlaps, double, flap, whole = False, False, False, True
         within = 0
+        even = (end - begin) % 2 == 0
+        lone = 0  # side of the first face that no other cancels
+        k = 0
+        while k < end - begin and lone == 0:
+            lone = side[ranks[k]]
+            if k + 1 < end - begin and height[ranks[k + 1]] - height[ranks[k]] <= near:
+                lone += side[ranks[k + 1]]
+                k += 1
+            k += 1
+        lone = min(max(lone, -1), 1)
+        if even:
+            down -= side[ranks[0]]
+        else:
+            odd += 1
+            firsts[lone + 1] += 1
         for k in range(end - begin):
             here = ranks[k]
             within += side[here]
@@ -191,9 +210,12 @@ def overlap_lines(
             if k > 0 and within == 0 and height[here] - height[ranks[k - 1]] <= near:
                 free = k == 1 or height[ranks[k - 1]] - height[ranks[k - 2]] > near
                 free = free and (k + 1 == end - begin or height[ranks[k + 1]] - height[here] > near)
-                double = double or free
-        # a line that ends within the body grazed an edge or a hole: it tells nothing
-        if whole:
-            crossed += int(overlaps)
-            doubled += int(double)
-    return crossed, doubled, met
+                # of a line that ends within the body only what it meets first is sure
+                double = double or (free and even)
+                flap = flap or (free and k == 1)
+        doubled += int(double)
+        flaps[lone + 1] += int(flap and not even)
+        # a line that ends within the body grazed an edge or a hole
+        crossed += int(overlaps and whole)
+    outer = -1 if down >= 0 else 1
+    return crossed, doubled + flaps[1 + outer], firsts[1 - outer], odd, met

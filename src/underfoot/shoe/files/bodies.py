@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from underfoot.core import DataError, unknown_name
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.components import MOST_FACES, components
+from .._kernels.components import MOST_FACES, components, extents_of_bodies
 from .carriers import carried
 from .floor import without_floor
 from .mesh import Mesh
@@ -177,14 +177,8 @@ def _measured(mesh: Mesh) -> _Bodies:
     assert mesh.body is not None
     axes = box_axes(mesh.triangles, FileSettings())
     count = len(mesh.bodies)
-    along = mesh.triangles @ axes.T.astype(np.float32)
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, mesh.body, along.min(axis=1))
-    np.maximum.at(high, mesh.body, along.max(axis=1))
+    low, high, area = extents_of_bodies(mesh.triangles, mesh.body, axes, count)
     low, high = (np.where(np.isfinite(low), each, 0.0) for each in (low, high))  # empty bodies
-    sides = along[:, 1:] - along[:, :1]
-    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
-    area = np.bincount(mesh.body, areas, minlength=count).astype(np.float64)
     rank = np.empty(count, dtype=int)
     rank[np.argsort(-area)] = np.arange(1, count + 1)
     names = tuple(name or f"body {n}" for name, n in zip(mesh.bodies, rank, strict=True))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 
-from .._kernels.components import MOST_FACES
+from .._kernels.components import MOST_FACES, extents_of_bodies
 from .._kernels.height_buffer import height_buffer
 from .mesh import Mesh
 from .orientation import box_axes
@@ -15,6 +15,7 @@ from .settings import FileSettings
 from .view import View, extents, view
 
 _MOST = 12  # bodies that are looked at, the largest first
+_FACES = 1000  # of a body whose contact is looked at: more tell no more
 _COARSE = 300  # cells along a body
 _NEAR = 1e-3  # of a body's length: faces nearer than this touch
 _HANGS, _PART = 0.6, 0.1  # of a body's plan form over what carries it, in all: what touches it
@@ -53,16 +54,10 @@ def carried(mesh: Mesh) -> NDArray[np.intp]:
     if count < 2 or mesh.triangles.shape[0] > MOST_FACES:
         return group
     claims: list[_Claim] = []
-    corners = mesh.triangles.astype(np.float64)
-    spread = np.zeros(count)
-    for axis in np.eye(3):
-        along = corners @ axis
-        low, high = np.full(count, np.inf), np.full(count, -np.inf)
-        np.minimum.at(low, mesh.body, along.min(axis=1))
-        np.maximum.at(high, mesh.body, along.max(axis=1))
-        spread += np.where(np.isfinite(low), high - low, 0.0) ** 2
-    for carrier in np.argsort(-spread)[:_MOST]:
-        claims += _claims(mesh, corners, int(carrier))
+    size = _sizes(mesh.triangles, mesh.body, np.eye(3), count)
+    sample = _sample(mesh.body, count)
+    for carrier in np.argsort(-(size**2).sum(axis=1))[:_MOST]:
+        claims += _claims(mesh, sample, int(carrier))
     claims.sort(key=lambda claim: claim.misfit)
     taken: list[_Claim] = []
     for claim in claims:
@@ -78,7 +73,16 @@ def carried(mesh: Mesh) -> NDArray[np.intp]:
     return group
 
 
-def _claims(mesh: Mesh, corners: Array, carrier: int) -> list[_Claim]:
+def _sample(body: NDArray[np.int32], count: int) -> NDArray[np.intp]:
+    """Return the numbers of triangles that stand for their bodies: all of small ones."""
+    order = np.argsort(body, kind="stable")
+    sizes = np.bincount(body, minlength=count)
+    place = np.arange(body.size) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    step = np.maximum(sizes // _FACES, 1)
+    return np.sort(order[place % np.repeat(step, sizes) == 0])
+
+
+def _claims(mesh: Mesh, sample: NDArray[np.intp], carrier: int) -> list[_Claim]:
     assert mesh.body is not None
     own = mesh.triangles[mesh.body == carrier]
     if own.shape[0] < 2:
@@ -89,22 +93,25 @@ def _claims(mesh: Mesh, corners: Array, carrier: int) -> list[_Claim]:
     if not length > 0:
         return []
     seen = view(own, axes, length / _COARSE)
-    placed = corners @ axes.T
+    body = mesh.body[sample]
+    placed = mesh.triangles[sample].astype(np.float64) @ axes.T
     sides = placed[:, 1:] - placed[:, :1]
     normal = np.cross(sides[:, 0], sides[:, 1])
     area = np.linalg.norm(normal, axis=1)
     level = np.abs(normal[:, 2]) > _LEVEL * area
-    plan = np.bincount(mesh.body, np.abs(normal[:, 2]), len(mesh.bodies)) / 2
+    plan = np.bincount(body, np.abs(normal[:, 2]), len(mesh.bodies)) / 2
     middle = placed.mean(axis=1)
     lowest, highest, there = _over(seen, middle)
-    over = np.bincount(mesh.body, np.abs(normal[:, 2]) * there, len(mesh.bodies)) / 2
+    over = np.bincount(body, np.abs(normal[:, 2]) * there, len(mesh.bodies)) / 2
     near = _NEAR * length
     touching = level & there & (middle[:, 2] > lowest - near) & (middle[:, 2] < highest + near)
     below = middle[:, 2] < (lowest + highest) / 2
+    size = _sizes(mesh.triangles[sample], body, axes, len(mesh.bodies))
+    slender = size[:, 2] > _SLENDER * size[:, :2].max(axis=1)
     found = []
     for sign, on_side in ((-1.0, below), (1.0, ~below)):
-        met = np.bincount(mesh.body, np.abs(normal[:, 2]) * (touching & on_side), len(mesh.bodies))
-        lugs = (met > _HANGS * over) & (met > _PART * plan) & ~_slender(mesh, placed)
+        met = np.bincount(body, np.abs(normal[:, 2]) * (touching & on_side), len(mesh.bodies))
+        lugs = (met > _HANGS * over) & (met > _PART * plan) & ~slender
         lugs[carrier] = False
         if lugs.any():
             claim = _claim(mesh, seen, carrier, lugs, sign, near)
@@ -154,12 +161,9 @@ def _over(seen: View, points: Array) -> tuple[Array, Array, Mask]:
     return seen.lowest[rows, columns], seen.highest[rows, columns], there
 
 
-def _slender(mesh: Mesh, placed: Array) -> Mask:
-    """Return which bodies stand out farther than they are wide: print supports."""
-    assert mesh.body is not None
-    count = len(mesh.bodies)
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, mesh.body, placed.min(axis=1))
-    np.maximum.at(high, mesh.body, placed.max(axis=1))
-    size = np.where(np.isfinite(low), high - low, 0.0)
-    return np.asarray(size[:, 2] > _SLENDER * size[:, :2].max(axis=1))
+def _sizes(
+    triangles: NDArray[np.float32], body: NDArray[np.int32], axes: Array, count: int
+) -> Array:
+    """Return the extents of the bodies (count, 3) along the rows of ``axes``."""
+    low, high, _ = extents_of_bodies(triangles, body, np.ascontiguousarray(axes), count)
+    return np.where(np.isfinite(low), high - low, 0.0)

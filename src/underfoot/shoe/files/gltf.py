@@ -168,6 +168,8 @@ class _Asset:
             order = np.arange(vertices.shape[0])
             if "indices" in primitive:
                 order = self._accessor(primitive["indices"]).astype(np.int64).ravel()
+        if vertices.ndim != 2 or vertices.shape[1] != 3:
+            raise self._error("the places of its corners are no vectors of three numbers")
         for target, weight in zip(primitive.get("targets", ()), weights, strict=False):
             if weight and "POSITION" in target:
                 vertices = vertices + weight * self._accessor(target["POSITION"])

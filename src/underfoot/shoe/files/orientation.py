@@ -71,7 +71,8 @@ def box_axes(
         thin = down
     else:
         points = np.concatenate([corners, 3 * corners.mean(axis=1, keepdims=True)], axis=1)
-        moments = np.einsum("n,nki,nkj->ij", weights, points, points)
+        weighted = weights[:, None, None] * points
+        moments = weighted.reshape(-1, 3).T @ points.reshape(-1, 3)
         _, vectors = np.linalg.eigh(moments)
         thin = _snapped(np.asarray(vectors[:, 0], dtype=np.float64))
         if settings.forward in DIRECTIONS:
@@ -90,7 +91,8 @@ def box_axes(
 def _sample(triangles: NDArray[np.float32]) -> tuple[Array, Array]:
     """Return corners (n, 3, 3) about the centroid, and areas."""
     chosen = triangles[:: math.ceil(triangles.shape[0] / _SAMPLE) or 1].astype(np.float64)
-    chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
+    if not np.isfinite(chosen).all():
+        chosen = chosen[np.isfinite(chosen).all(axis=(1, 2))]
     sides = chosen[:, 1:] - chosen[:, :1]
     areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     centre = np.average(chosen.mean(axis=1), axis=0, weights=np.maximum(areas, 1e-30))

@@ -29,7 +29,7 @@ from .mesh import Mesh
 from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
-from .view import Soundness, View, extents, soundness, view
+from .view import Soundness, View, extents, soundness, view, without_copies
 
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
@@ -294,23 +294,21 @@ def _view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple
     remarks: list[str] = []
     covered = seen.covered
     up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
-    sheet = float(np.median((seen.highest - seen.lowest)[covered])) < _SHEET
     inward = sound.closed and not sound.turned_edges and sound.volume < 0
     if up > 0.5 and not inward:
         remarks.append("Normals of the ground side point into the sole (inverted); tolerated.")
     elif 0.01 < up <= 0.5 and not inward:
         remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
-    if not sheet:
-        remarks += _agreement(seen, sound, mesh, where)
-    return tuple(remarks)
+    return (*remarks, *_agreement(seen, sound, mesh, where))
 
 
 def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str]:
     """Return a remark where bodies overlap or faces lie double.
 
     Raises:
-        DataError: One body crosses itself, or its faces lie double, on more than 2 % of the lines
-            through it: area by faces and by outline, or volume by faces and by height, disagree.
+        DataError: One body crosses itself, its faces lie double, or faces of its ground side are
+            missing, on more than 2 % of the lines through it: area by faces and by outline, or
+            volume by faces and by height, disagree.
     """
     covered = seen.covered
     shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
@@ -318,21 +316,26 @@ def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str
     odd = (0.381966, 0.527864)
     first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
 
-    def lines(body: NDArray[np.int32]) -> tuple[int, int, int]:
+    triangles = without_copies(mesh.triangles) if sound.duplicates else mesh.triangles
+
+    def lines(body: NDArray[np.int32]) -> tuple[int, int, int, int, int]:
         return overlap_lines(
-            mesh.triangles, body, seen.axes, (first[0], first[1]), _OVERLAP_PITCH,
+            triangles, body, seen.axes, (first[0], first[1]), _OVERLAP_PITCH,
             (shape[0], shape[1]), _SAME_PLACE,
         )  # fmt: skip
 
-    count = mesh.triangles.shape[0]
-    crossed, doubled, met = lines(np.zeros(count, dtype=np.int32))
-    sure = sound.turned_edges == 0 and sound.duplicates == 0
+    count = triangles.shape[0]
+    crossed, doubled, missing, odd_lines, met = lines(np.zeros(count, dtype=np.int32))
     own = 0
-    if sure and crossed > _MOST_APART * met and count <= MOST_FACES:
-        own, _, _ = lines(components(mesh.triangles)[0])
+    known_sides = sound.turned_edges <= _MOST_APART * count
+    if known_sides and crossed > _MOST_APART * met and count <= MOST_FACES:
+        own, *_ = lines(components(triangles)[0])
+    one_sided = odd_lines > met / 2  # as a scan without its upper side
     for many, what, cause in (
         (own, "the surface crosses itself", "corners of its faces are mixed up"),
-        (doubled * sure, "faces lie double, with nothing between them",
+        (0 if one_sided else missing, "faces of the ground side are missing",
+         "a program left out faces that it did not understand"),
+        (doubled, "faces lie double, with nothing between them",
          "concave polygons were cut as if they were convex"),
     ):  # fmt: skip
         if many > _MOST_APART * met:

@@ -102,6 +102,7 @@ def _heading(data: bytes, where: str) -> tuple[str, list[_Element], int]:
         elif words[:1] == ["element"] and len(words) == 3 and words[2].isdigit():
             elements.append(_Element(words[1], int(words[2]), []))
         elif words[:1] == ["property"] and elements:
+            words += [""] * (3 - len(words))  # of no type: refused
             kinds = [_TYPES.get(word) for word in words[2:-1] if words[1] == "list"] or [
                 _TYPES.get(words[1])
             ]

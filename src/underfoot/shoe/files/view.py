@@ -146,6 +146,14 @@ def soundness(mesh: Mesh, where: str) -> Soundness:
     )
 
 
+def without_copies(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return each triangle once, whichever way it is turned and whichever corner comes first."""
+    triangles = triangles + np.float32(0.0)
+    _, keys, _, _ = soup_keys(triangles, triangles.view(np.uint32))
+    _, chosen = np.unique(keys, return_index=True)
+    return triangles[np.sort(chosen)]
+
+
 def _duplicates(faces: NDArray[np.uint64]) -> int:
     faces.sort()
     return int(np.count_nonzero((faces[1:] == faces[:-1]) & (faces[1:] != 0)))

@@ -13,14 +13,16 @@ from .draft import Draft
 from .formats import nearest_format
 from .profile import PlateColumns
 from .sheet import Sheet, sheet_from
-from .text import force_unit, is_number, si_unit
+from .text import clock_time, force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
 _PLATE = re.compile(
-    r"^(?P<before>(?:.*[^a-z])?)(?P<kind>f|force|m|mom|moment|t|torque|a|p|cop|cent(?:re|er)[ _]?of"
-    r"[ _]?pressure)[ _.]?(?P<axis>[xyz])(?P<after>.*)$",
+    r"^(?:(?P<before>(?:.*[^a-z])?)(?P<kind>f|grf|force|m|mom|moment|t|torque|a|p|cop|cent(?:re|er)"
+    r"[ _]?of[ _]?pressure)[ _.]?(?P<number>\d*)[ _.]?"
+    r"|(?P<ground>.*(?:ground|grf).*[^a-z])(?P<vector>[vp]))(?P<axis>[xyz])(?P<after>.*)$",
     re.I,
 )
+"""Fx1, Force_x, FP1_Fx, F1X (AMTI), GRF1x, ground_force_1_vx (OpenSim)."""
 # Names of a tribometer's columns, letters only.
 _NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load"}
 _SHEAR = {
@@ -34,6 +36,7 @@ _SHEAR = {
 }
 _COF = {"cof", "\u03bc", "frictioncoefficient", "coefficientoffriction", "reibwert", "reibungszahl"}
 _WHAT = re.compile(r"(forces?|moments?|torques?|cop|centre|center)[ _.:]*$", re.I)
+_DAY = 86_400.0  # s
 _FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 _POINT = re.compile(r"^(?P<before>.*?)[ _.:]?(?P<axis>[xyz])$", re.I)
 _NOT_POINTS = re.compile(r"^(f|force|m|moment|torque|a|v|acc|gyro|cop|.*force|.*moment)$", re.I)
@@ -73,8 +76,9 @@ def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
     """Return the trial in named columns."""
     profile = draft.profile
     draft.notes += sheet.notes
-    if sheet.texts:
-        names = ", ".join(list(sheet.texts)[:6])
+    left = [name for name in sheet.texts if not _is_time(sheet, name)]
+    if left:
+        names = ", ".join(left[:6])
         draft.notes.append(f"columns that hold text are left out: {names}")
     _clock(draft, sheet)
     for name, (column, unit, scale) in profile.channels.items():
@@ -120,7 +124,10 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
     if profile.rate is not None and profile.time is None:
         draft.rate = profile.rate
         return
-    name = profile.time or next((key for key in sheet.numbers if _is_time(sheet, key)), None)
+    name = profile.time or next((key for key in sheet.columns if _is_time(sheet, key)), None)
+    if name is not None and name in sheet.texts:
+        draft.clock(_clock_times(sheet, name), restarts=True)
+        return
     if name is None:
         draft.rate = _rate_in(sheet.header)
         if not draft.rate:
@@ -139,6 +146,21 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
     if not written:
         draft.notes.append("time without a unit: taken as s")
     draft.clock(values * unit[1], restarts=True)
+
+
+def _clock_times(sheet: Sheet, name: str) -> np.ndarray:
+    """Return the seconds of a column of clock times: "10:15:20.001", with a date or without."""
+    times = [clock_time(cell) for cell in sheet.texts[name]]
+    wrong = next((n for n, one in enumerate(times) if one is None), None)
+    if wrong is not None:
+        raise DataError(
+            f'"{sheet.texts[name][wrong]}" in the column "{name}" is no time',
+            where=sheet.name,
+            allowed='seconds, or a clock as "10:15:20.001"',
+        )
+    seconds = np.array(times, dtype=float)
+    nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY)
+    return seconds - seconds[0] + _DAY * nights
 
 
 def _is_time(sheet: Sheet, name: str) -> bool:
@@ -161,8 +183,10 @@ def _plate_groups(sheet: Sheet) -> dict[tuple[str, str], dict[str, dict[str, str
     for name in sheet.numbers:
         match = _PLATE.match(name)
         if match:
-            kind = {"f": "f", "m": "m", "t": "m"}.get(match["kind"][0].casefold(), "c")
-            key = _WHAT.sub("", match["before"].casefold()), match["after"].casefold()
+            letter = (match["kind"] or match["vector"])[0].casefold()
+            kind = {"f": "f", "g": "f", "v": "f", "m": "m", "t": "m"}.get(letter, "c")
+            before = match["ground"] or match["before"] + match["number"]
+            key = _WHAT.sub("", before.casefold()), match["after"].casefold()
             columns = groups.setdefault(key, {}).setdefault(kind, {})
             columns.setdefault(match["axis"].casefold(), name)
     return {key: kinds for key, kinds in groups.items() if len(kinds.get("f", {})) == 3}

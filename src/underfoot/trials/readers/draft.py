@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+from underfoot.core.missing import coded
 from underfoot.core.text import decoded
 
 from ..recording.axes import found_vertical, heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .profile import Profile
-from .seen import KINDS, camera_clock, unseen
+from .seen import KINDS, camera_clock, coded_forces, unseen
 from .text import (
     in_si,
     known_units,
@@ -137,6 +138,9 @@ class Draft:
             note = "" if unit else "no unit in the file"
             note = f'in "{written}" in the file' if written else note
         values = values * (scale * factor) + offset
+        if si == "N" and (lost := coded(values, least=1.0)).any():
+            values = np.where(lost, np.nan, values)
+            self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:
@@ -149,7 +153,15 @@ class Draft:
         """Add a force plate (n, 3), N; ``more`` as ``finished_plate`` takes it but ``up``."""
         more = {"start": self.start, "subtract_baseline": self.subtract_baseline, **more}
         more |= {"name": name or f"plate {len(self.plates) + 1}", "rate": self.rate}
-        self.plates.append(_RawPlate(np.asarray(force, dtype=float), more))
+        force = np.asarray(force, dtype=float)
+        coded = coded_forces(force)
+        if coded.any():
+            force = np.where(coded[:, None], np.nan, force)
+            self.notes.append(
+                f"{more['name']}: {int(coded.sum())} samples hold a number that stands for a lost "
+                "one: taken as not measured"
+            )
+        self.plates.append(_RawPlate(force, more))
 
     def length_unit(self, written: str, places: np.ndarray, of: str = "the markers") -> float:
         """Return the factor to m of a unit; without one that which the numbers (...) tell.

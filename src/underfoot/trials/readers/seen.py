@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.missing import coded
+
 from ..recording.signals import runs
 
 HELD, STRAIGHT, SIGN = "held", "straight", "sign"
@@ -27,6 +29,7 @@ _AROUND = 12  # frames around a line that tell how its path bends
 _CORNER = 3.0  # times that bend: the corner at the end of a line that was drawn
 _RESOLVED = 0.1  # share of a path's moving frames on a line, above which it is too coarse to tell
 _FAR, _FAR_SPREADS = 50.0, 20.0  # m and quartile ranges from a path's middle: nobody goes there
+_NO_FORCE, _FEW = 100.0, 0.2  # N, and share of the samples, of a number that is a code
 _ENOUGH = 4096  # frames that tell the last digit of a path
 _SLOWER = 1.5  # rows a camera frame
 
@@ -103,6 +106,19 @@ def unseen(path: np.ndarray, *, every_repeat: bool = False) -> dict[str, np.ndar
     path = np.where(lost[HELD][:, None], np.nan, path)
     lost[STRAIGHT] = _straight(path)
     return {kind: mask for kind, mask in lost.items() if mask.any()}
+
+
+def coded_forces(force: np.ndarray) -> np.ndarray:
+    """Return which samples (n,) of a plate's force (n, 3), N, hold a number for "not measured".
+
+    One number in all three directions; or, in one of them, a few samples of one and the same
+    number that lies farther from all others than these from each other.
+    """
+    one = (force[:, 0] == force[:, 1]) & (force[:, 1] == force[:, 2])
+    lost = one & (np.abs(force[:, 0]) >= _NO_FORCE)
+    for values in np.where(lost[:, None], np.nan, force).T:
+        lost |= coded(values, apart=1.0, least=_NO_FORCE, most=_FEW)
+    return lost
 
 
 def _signs(path: np.ndarray) -> np.ndarray:

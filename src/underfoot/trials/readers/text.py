@@ -14,6 +14,11 @@ from underfoot.core.text import cells_of
 _WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
 NOTHING = ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
+_CLOCK = re.compile(
+    r"(?:[\d./-]{6,10}[T ]+)?(?P<h>\d{1,2}):(?P<m>[0-5]\d):(?P<s>[0-5]\d)(?:[.,:](?P<part>\d+))?"
+    r" ?(?P<half>[ap]m)?(?:Z|[+-]\d\d:?\d\d)?",
+    re.IGNORECASE,
+)
 _WRITTEN = re.compile(r"[+\-−]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+\-−]?\d+)?")
 
 
@@ -200,6 +205,17 @@ def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str
         shown = ", ".join(repeated[:5]) + (" ..." if len(repeated) > 5 else "")
         notes.append(f"duplicate {kind} names, numbered #2, #3 ...: {shown}")
     return list(names)
+
+
+def clock_time(cell: str) -> float | None:
+    """Return the seconds since midnight of "10:15:20.001" behind a date or not, None of others."""
+    match = _CLOCK.fullmatch(cell.strip())
+    if match is None:
+        return None
+    hours, minutes, seconds = (int(match[k]) for k in ("h", "m", "s"))
+    if match["half"]:
+        hours = hours % 12 + 12 * (match["half"].casefold() == "pm")
+    return 3600.0 * hours + 60.0 * minutes + seconds + float(f"0.{match['part'] or 0}")
 
 
 def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | None]:

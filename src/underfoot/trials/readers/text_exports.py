@@ -53,6 +53,9 @@ def read_trc(draft: Draft) -> Trial:
 # and, where a table with two plates of one name went through pandas, ground_force_vx.1
 _GROUND = re.compile(r"^(?P<base>.*?)_?(?P<kind>[vp][xyz])(?:\.(?P<number>\d+))?$")
 _REACTION = re.compile(r"ground|grf|force|fp|plate", re.IGNORECASE)
+# OpenSim's own tables of a C3D, three numbers a name: f1, p1, and in flat tables f1_1, f1_2 ...
+_NUMBERED = re.compile(r"^(?P<kind>f|force|p|point)_?(?P<base>\d+)_(?P<axis>[123])$", re.I)
+_FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 
 
 def read_motion(draft: Draft) -> Trial:
@@ -80,8 +83,12 @@ def read_motion(draft: Draft) -> Trial:
     labels = split(lines[at].rstrip(), delimiter)
     if labels[0].casefold() not in ("time", "frame", "t"):
         raise draft.error(f'the first column is "{labels[0]}", not time')
-    names = draft.names(labels, "column")
     rows = [line.strip() for line in lines[at + 1 :]]
+    vectors = header.get("datatype", "").casefold() == "vec3"
+    if vectors:  # x, y and z of a name stand in one cell, with commas between
+        labels = [labels[0], *(_part(label, i) for label in labels[1:] for i in range(3))]
+        rows = [re.sub(r"\s*,\s*", delimiter or " ", row) for row in rows]
+    names = draft.names(labels, "column")
     numbers = draft.table(rows, delimiter, len(labels), at + 2)
     draft.count(header.get("nrows", ""), len(numbers), "nrows", rows=True)
     draft.count(header.get("ncolumns", ""), len(labels), "ncolumns")
@@ -90,11 +97,21 @@ def read_motion(draft: Draft) -> Trial:
     degrees = header.get("indegrees", "").casefold() in ("yes", "true", "1")
     for i, name in enumerate(names[1:], start=1):
         draft.channel(name, numbers[:, i], note="angles in degrees" if degrees else "")
+    unit = si_unit(header.get("units", ""))
+    if vectors and unit is not None and unit[0] == "m":
+        for i in range(1, len(labels), 3):
+            if not (_NUMBERED.match(labels[i]) or _GROUND.match(labels[i])):
+                draft.marker(labels[i].rpartition("_")[0], numbers[:, i : i + 3] * unit[1])
     if draft.times is None:
         _plates(draft, labels, numbers)
     else:
         draft.notes.append("samples are not equally spaced: no plates were made")
     return draft.trial("OpenSim motion")
+
+
+def _part(label: str, axis: int) -> str:
+    """The name of one number of a vector: of a force "..._vx", of anything else "..._1"."""
+    return f"{label}{'xyz'[axis]}" if _GROUND.match(label + "x") else f"{label}_{axis + 1}"
 
 
 def _header(lines: list[str]) -> dict[str, str]:
@@ -113,7 +130,11 @@ def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
     groups: dict[tuple[str, int], dict[str, int]] = {}
     for i, label in enumerate(labels[1:], start=1):
         match = _GROUND.match(label)
-        if match and _REACTION.search(match["base"]):
+        told = _NUMBERED.match(label)
+        if told:
+            kind = ("v" if told["kind"][0] in "fF" else "p") + "xyz"[int(told["axis"]) - 1]
+            groups.setdefault((told["base"], 0), {})[kind] = i
+        elif match and _REACTION.search(match["base"]):
             number = int(match["number"] or 0)
             while match["kind"] in groups.setdefault((match["base"], number), {}):
                 number += 1  # columns of one name are those of the next plate
@@ -125,6 +146,10 @@ def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
         place = None
         if {"px", "py", "pz"} <= columns.keys():
             place = numbers[:, [columns["px"], columns["py"], columns["pz"]]]
+            far = np.abs(place[np.isfinite(place)])
+            if far.size and float(np.percentile(far, 90)) > _FAR:
+                place = 1e-3 * place
+                draft.notes.append("centre of pressure taken as mm from its size")
         kind = f"ground reaction ({labels[columns['vx']]})"
         draft.plate(force, centre_of_pressure=place, kind=kind)
 
@@ -305,8 +330,8 @@ def read_vicon_csv(draft: Draft) -> Trial:
             for name in dict.fromkeys(names):
                 at = [i for i, n in enumerate(names) if n == name]
                 if name and len(at) == 3:
-                    unit = si_unit(units[at[0]]) or ("m", 1e-3, 0.0)
-                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * unit[1])
+                    metres = draft.length_unit(units[at[0]] or "mm", numbers[:, at])
+                    draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * metres)
         else:
             draft.notes.append(f"the block of {kinds[start]} was left out")
     return draft.trial("Vicon CSV")
