@@ -69,6 +69,16 @@ def test_complete_data_are_repeated_measures_in_every_term():
         assert [other.f, other.error_df, other.p] == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.parametrize(("persons", "shoes"), [(2, 3), (2, 5), (3, 3), (4, 3), (5, 2), (3, 5)])
+def test_few_persons_are_repeated_measures_too(persons, shoes):
+    """At two and at four degrees of freedom parts of Kenward and Roger's expansion vanish."""
+    y, factors, who = Design("", persons, (shoes,), 1.0, trials=3).study(np.random.default_rng(2))
+    one, other = mixed_model(y, factors, who).tests[0], repeated_measures(y, factors, who).rows[0]
+    assert other.error_df == (persons - 1) * (shoes - 1)
+    expected = pytest.approx([other.f, other.error_df, other.p], rel=1e-5)
+    assert [one.f, one.error_df, one.p] == expected
+
+
 def test_epsilon_of_each_term_is_that_of_its_own_contrasts():
     """Of one factor alone: Greenhouse and Geisser's formula on the double-centred covariance."""
     y, factors, who = study()
