@@ -260,7 +260,7 @@ def test_power_of_equivalent_shares_by_all_tables():
         ("statsmodels.stats.multitest", lambda: corrected_p([0.01, 0.2])),
         (
             "statsmodels.discrete.discrete_model",
-            lambda: logistic_regression([1.0, 2.0, 3.0, 4.0, 5.0], [0, 1, 0, 1, 1]),
+            lambda: logistic_regression([0, 1, 0, 1, 1], {"x": [1.0, 2.0, 3.0, 4.0, 5.0]}),
         ),
         (
             "statsmodels.regression.linear_model",
