@@ -66,7 +66,7 @@ def edit(
     text = edit_text(file.parent)
     new = edit_from(step, what, value, reason, "this edit")
     earlier = edits_of(file.parent, [file.name], others=True).get(file.name, [])
-    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, landmarks=read.landmarks)
     before, after = (
         required_frictions(replace(walk, trial=trial.with_edits(*edits)))
         for edits in (earlier, [*earlier, new])
@@ -132,7 +132,7 @@ def export(
     trial = read_trial(file, read)
     if companion is not None:
         trial = joined(trial, read_trial(companion, read))
-    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, landmarks=read.landmarks)
     found = stances(walk)
     out.write_bytes(c3d_with_events(trial, found))
     say(f"{sum(s.accepted for s in found)} steps as events in {out}")

@@ -67,7 +67,7 @@ class VarianceComponents:
         last = 1.0 - c[2] * b
         beyond = (1.0 + c[0] * b) * both**2 - last
         df = 4.0 + (q + 2.0) * last / beyond if beyond > 0.0 else 0.0
-        if df > 0.0 and (two or mean * (df - 2.0) > 0.0):
+        if df >= 1.0 and (two or mean * (df - 2.0) > 0.0):
             return df, 1.0 if two else df * mean / (df - 2.0)
         # beyond the range of the expansion: the fewest that a single contrast can have
         return max(2.0 / second, 1.0), 1.0

@@ -160,7 +160,7 @@ FALL = 0.8  # of the pelvis's height before contact; assumed: a recovering walke
 _RISEN = 0.93  # of it, at which the walker stands again; assumed
 _AFTER = 1.5  # s looked at after contact
 _TOE_FIRST = np.radians(-5.0)
-_PELVIS = re.compile(r"asis?$|psis?$|pelv|sacr|troch|hip$|(^|[ _.:\-])[lr]?v?sac", re.IGNORECASE)
+_PELVIS = re.compile(r"pelv|troch|hip$|(^|[ _.:\-])[lr]?v?sac", re.IGNORECASE)  # its height tells
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +209,7 @@ def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     markers = [
         marker
         for name, marker in walk.trial.markers.items()
-        if _PELVIS.search(name.rsplit(":", 1)[-1].strip()) and marker.times is None
+        if (name in walk.pelvis or _PELVIS.search(name)) and marker.times is None
     ]
     if not markers:
         return "", "no marker of the pelvis"

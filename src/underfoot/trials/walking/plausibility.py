@@ -12,7 +12,7 @@ import numpy as np
 
 from underfoot.core import UnderfootError
 
-from ..recording.axes import LEVEL, DirectionSource, Ramp
+from ..recording.axes import LEVEL, DirectionSource, Ramp, body_markers
 from ..recording.measurement import Flag, remark
 from ..recording.plates import plate_contacts
 from ..recording.signals import (
@@ -123,7 +123,7 @@ def step_flags(
 ) -> tuple[Flag, ...]:
     """Return what is doubtful about signals, markers and features of one accepted step."""
     plate = walk.plate(stance.plate)
-    forces = tuple(_force_flags(plate, stance, walk.up, walk.weight))
+    forces = (*unknown_heel(walk), *_force_flags(plate, stance, walk.up, walk.weight))
     if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
         features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
     return (
@@ -134,6 +134,40 @@ def step_flags(
         *(unlikely_flags(features) if features else (_NOT_JUDGED,)),
         *([] if not features or VERTICAL[0] in features else [_TOO_FAST]),
     )
+
+
+def unknown_heel(walk: Walkway) -> tuple[Flag, ...]:
+    """Return the caution of a recording whose markers have no heel among them, by their names."""
+    count = len(body_markers(walk.trial.markers))
+    if walk.heels or not count:
+        return ()
+    text = (
+        f"none of {count} markers is recognised as a heel: a slip can't be seen, "
+        "and then the ratio is not required friction; name it under [landmarks] in profile.toml"
+    )
+    return (Flag("heel", text),)
+
+
+def unseen(walk: Walkway) -> tuple[Flag, ...]:
+    """Return what can't be seen in a whole recording for want of markers or of a body mass."""
+    found = unknown_heel(walk)
+    count = len(body_markers(walk.trial.markers))
+    if not count:
+        text = "no markers: slips, turns, slopes and a gain of the shear can't be seen"
+        found += (Flag("markers", text),)
+    elif not walk.pelvis:
+        text = (
+            f"none of {count} markers is recognised as the pelvis's: a gain of "
+            "the shear can't be seen; name them under [landmarks] in profile.toml"
+        )
+        found += (Flag("pelvis", text),)
+    if walk.weight is None:
+        text = (
+            "no body mass: a gain of the normal force can't be seen; write it into "
+            "conditions.csv or profile.toml"
+        )
+        found += (Flag("body mass", text),)
+    return found
 
 
 _NOT_JUDGED = remark(
