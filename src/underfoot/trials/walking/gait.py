@@ -22,6 +22,7 @@ from .plausibility import (
     other_foot_flags,
     rcof_flags,
     step_flags,
+    walking_speed,
 )  # fmt: skip
 from .slips import Outcome, Slip, slip_of
 from .walkway import Walkway, walkway_of
@@ -226,7 +227,7 @@ def required_friction(
     uncertainty, parts = None, "not estimated"
     if checked:
         flags += step_flags(walk, stance, definition.filter, features)
-        flags += rcof_flags(value, axes.ramp)
+        flags += rcof_flags(value, axes.ramp, walking_speed(walk, stance))
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
@@ -257,7 +258,7 @@ def stance_frictions(
     for i, step in enumerate(steps):
         friction = step.measurement
         if friction.value is not None:
-            more = other_foot_flags(step.stance, friction.value, values)
+            more = other_foot_flags(step.stance, friction.value, values, walk.weight)
             steps[i] = replace(step, measurement=replace(friction, flags=friction.flags + more))
     return steps
 
