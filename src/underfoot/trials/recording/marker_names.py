@@ -77,8 +77,8 @@ def landmark(name: str) -> Landmark | None:
     return next((Landmark(kind, _side_of(own)) for kind in kinds), None)
 
 
-def _side_of(own: str) -> str:
-    words = re.split(r"[\s_.\-]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", own).casefold())
+def _side_of(name: str) -> str:
+    words = re.split(r"[\s_.\-]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).casefold())
     for side, each in _SIDES.items():
         if any(re.fullmatch(each, word) for word in words):
             return side

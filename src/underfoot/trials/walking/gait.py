@@ -16,7 +16,7 @@ from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
 from ..recording.trial import Plate, Trial
 from .events import Stance, stances
 from .gait_context import push_off_flags
-from .likelihood import impossible
+from .likelihood import impossible, unseen_gain
 from .plausibility import (
     baseline_error,
     judged_features,
@@ -230,6 +230,7 @@ def required_friction(
         flags += step_flags(walk, stance, definition.filter, features)
         flags += rcof_flags(value, axes.ramp, walking_speed(walk, stance))
         flags += push_off_flags(walk, stance)
+        flags += unseen_gain(features, value, mass=weight is not None)
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)

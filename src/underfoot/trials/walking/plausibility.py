@@ -7,6 +7,7 @@ named, they are assumed. A flag that matters makes a step "caution".
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -72,6 +73,7 @@ SLOW_MEAN_LOW = Limit(
     "1989, Winter 1991); walking below 0.9 m/s, or a stance above 0.8 s where no marker tells",
 )  # fmt: skip
 HUMP = Limit("single hump", 1.05, "1")  # largest mid-stance force over both humps
+SLOW_HUMP = Limit("single hump", 1.1, "1", "a slow walk has a flat force (assumed, below 0.9 m/s)")
 LOADING_RATE = Limit("loading rate", 100.0, "1/s")
 USUAL_STANCE = Limit("stance time", 1.0, "s")
 LONG_STANCE = Limit(
@@ -216,6 +218,9 @@ _NOT_JUDGED = remark(
 
 _FASTEST = 1.8  # m/s
 _USUAL_SPEED = 1.3  # m/s; of the people whose RCOF and steps the limits are of
+_FLAT = math.log(0.9)  # of the valley over the peaks
+_PEAK_TIMES = {"time of first peak", "time of second peak"}
+_LEAKS = {"shear in the sideways force", "shear in the mass"}
 _SHEAR_BY_SPEED = {"braking impulse": True, "driving impulse": True, "both impulses": True,
                    "driving ratio": False}  # logarithm or not  # fmt: skip
 _TOO_FAST = remark(
@@ -239,6 +244,10 @@ def judged_features(walk: Walkway, stance: Stance) -> dict[str, float]:
     if speed > _FASTEST:
         return {name: value for name, value in features.items() if name not in VERTICAL}
     share = math.sqrt(min(speed, _USUAL_SPEED) / _USUAL_SPEED)
+    for name in _LEAKS & features.keys():  # told the worse, the smaller the shear
+        features[name] *= share
+    if features.get("valley over peaks", -1.0) > _FLAT:  # two peaks that don't stand out
+        features = {name: value for name, value in features.items() if name not in _PEAK_TIMES}
     for name in _SHEAR_BY_SPEED.keys() & features.keys() if share > 0.3 else ():
         logarithm = _SHEAR_BY_SPEED[name]
         features[name] = features[name] - math.log(share) if logarithm else features[name] / share
@@ -339,7 +348,7 @@ def _force_flags(walk: Walkway, plate: Plate, stance: Stance) -> Iterator[Flag]:
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
-    if middle > HUMP.value * humps:
+    if middle > (HUMP.value if speed is None or speed > SLOW else SLOW_HUMP.value) * humps:
         text = "the force is largest in mid-stance: running or hopping, not walking"
         yield HUMP.flag(middle / float(humps), text)
     if weight is not None:
@@ -469,7 +478,6 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
     margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
     free = _unloaded(plate, up, margin)
     begin, end = max(0, stance.start - margin), stance.stop + margin
-    free[begin:end] = False
     found = []
     for window in (slice(max(0, begin - quiet), begin), slice(end, end + quiet)):
         force = plate.force[window][free[window]]
@@ -480,9 +488,14 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
 
 
 def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
-    """Mask of the samples (n,) further than ``margin`` from any contact."""
+    """Mask of the samples (n,) further than ``margin`` from any contact; not to be written to."""
+    return _free(plate, tuple(up.tolist()), margin)
+
+
+@lru_cache(maxsize=8)  # every step of a long record asks
+def _free(plate: Plate, up: tuple[float, ...], margin: int) -> np.ndarray:
     free = np.ones(len(plate.force), dtype=bool)
-    for start, stop in plate_contacts(plate, up):
+    for start, stop in plate_contacts(plate, np.array(up)):
         free[max(0, start - margin) : stop + margin] = False
     return free
 
@@ -552,7 +565,12 @@ def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float,
 
 def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
     """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
-    parts = []
+    return _noise(plate, tuple(up.tolist()), low_pass)
+
+
+@lru_cache(maxsize=8)
+def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> float:
+    parts, up = [], np.array(vertical)
     for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
         part = plate.force[start:stop]
         if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
