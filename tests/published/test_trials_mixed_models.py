@@ -113,9 +113,13 @@ def test_p_is_the_same_in_another_unit(factor):
 
 @pytest.mark.slow
 def test_one_in_twenty_is_found_where_there_is_nothing():
-    """Of 600 studies each: within four standard errors; without cells missing it is exact."""
+    """Of 600 studies each: within four standard errors.
+
+    Of complete data the tests above say more: there they are the classical ones.
+    """
     for number, design in enumerate(DESIGNS):
-        if design.persons * np.prod(design.levels) > 80:
+        complete = not design.missing and not design.label
+        if complete or design.persons * np.prod(design.levels) > 80:
             continue
         told = shares(design, 600, number)
         assert told.pop("not done") < 0.02
