@@ -31,7 +31,7 @@ from underfoot.trials import (
     walkway_of,
 )
 from underfoot.trials.walking.likelihood import UNLIKELY, Reference, references
-from underfoot.trials.walking.step_features import _PELVIS, VERTICAL, _shapes, step_features
+from underfoot.trials.walking.step_features import VERTICAL, _shapes, step_features
 
 REPOSITORY = Path(__file__).parents[1]
 DATA = REPOSITORY / "tests" / "data" / "trials"
@@ -65,11 +65,7 @@ def recordings() -> Iterator[tuple[str, Trial]]:
             trial = joined(trial, forces)
         walk = walkway_of(trial)
         feet = {*walk.heels.values(), *walk.toes.values()}
-        kept = {
-            n: m
-            for n, m in trial.markers.items()
-            if n in feet or _PELVIS.search(n.rsplit(":", 1)[-1].strip())
-        }
+        kept = {n: m for n, m in trial.markers.items() if n in feet or n in walk.pelvis}
         yield laboratory, replace(trial, markers=kept, channels={})
 
 
@@ -95,8 +91,8 @@ def finished(
 def sound(trial: Trial, rng: np.random.Generator) -> Trial:
     """A sound variant: another pace, mass, force of the push-off, noise of the plates."""
     pace, mass, push = np.exp(rng.normal(0.0, [0.05, 0.15, 0.05]))
-    up = walkway_of(trial).up
-    forces = []
+    walk = walkway_of(trial)
+    up, forces = walk.up, []
     for plate in trial.plates:
         normal = np.outer(plate.force @ up, up)
         force = mass * (normal + push * (plate.force - normal))
@@ -105,7 +101,7 @@ def sound(trial: Trial, rng: np.random.Generator) -> Trial:
     markers = {}
     for name, m in trial.markers.items():
         place = m.positions
-        if _PELVIS.search(name.rsplit(":", 1)[-1].strip()):
+        if name in walk.pelvis:
             # The same forces lift the body as fast: in less time by less.
             rise = (place - np.nanmean(place, axis=0)) @ up
             place = place + np.outer((pace**-2 - 1.0) * rise, up)

@@ -1,17 +1,21 @@
 """Few values, equal values, slips: p counted by hand, equality by resolution, shares in print."""
 
+import sys
 from itertools import combinations, permutations, product
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from underfoot.core import DataError, InputError
+from underfoot.core import DataError, InputError, MissingExtraError
 from underfoot.trials.statistics import (
     bland_altman,
+    corrected_p,
     equivalence,
     intraclass_correlation,
     letters,
+    linear_model,
+    logistic_regression,
     paired_curve_test,
     persons_needed,
     power,
@@ -248,3 +252,24 @@ def test_power_of_equivalent_shares_by_all_tables():
     ) == pytest.approx(44, abs=2)
     with pytest.raises(InputError, match="shares"):
         power("slips_equivalent", 10, shares=(0.1, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("module", "ask"),
+    [
+        ("statsmodels.stats.multitest", lambda: corrected_p([0.01, 0.2])),
+        (
+            "statsmodels.discrete.discrete_model",
+            lambda: logistic_regression([0, 1, 0, 1, 1], {"x": [1.0, 2.0, 3.0, 4.0, 5.0]}),
+        ),
+        (
+            "statsmodels.regression.linear_model",
+            lambda: linear_model([1.0, 2.0, 4.0, 3.0], {"a": list("xxyy")}),
+        ),
+    ],
+)
+def test_a_missing_library_is_named_with_its_extra(monkeypatch, module, ask):
+    ask()
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=r"needs the package statsmodels.*\[trials\]"):
+        ask()

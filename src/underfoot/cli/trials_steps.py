@@ -66,7 +66,7 @@ def edit(
     text = edit_text(file.parent)
     new = edit_from(step, what, value, reason, "this edit")
     earlier = edits_of(file.parent, [file.name], others=True).get(file.name, [])
-    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, landmarks=read.landmarks)
     before, after = (
         required_frictions(replace(walk, trial=trial.with_edits(*edits)))
         for edits in (earlier, [*earlier, new])
@@ -137,7 +137,7 @@ def export(
         out.write_text(made, encoding="utf-8")
         say(f"{out} is written, y up")
         return
-    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, heels=read.heels)
+    walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, landmarks=read.landmarks)
     found = stances(walk)
     out.write_bytes(c3d_with_events(trial, found))
     say(f"{sum(s.accepted for s in found)} steps as events in {out}")

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from underfoot.core import InputError, nearest_match, to_si
 
+from ..recording.marker_names import checked_landmark
 from ..recording.tester_calibration import TesterCalibration
 from ..recording.trial import PlateAccuracy
 from .text import force_unit, known_units, si_unit
@@ -20,7 +21,8 @@ _PARTS: dict[str, tuple[str, ...]] = {
         "delimiter header_line sheet rate time time_unit length_unit subtract_baseline".split()
     ),
     "channels": (), "plates": (), "markers": (),
-    "axes": ("vertical", "walking"), "heel": ("left", "right"), "subject": ("mass",),
+    "axes": ("vertical", "walking"), "heel": ("left", "right"), "landmarks": (),
+    "subject": ("mass",),
     "sensors": (), "accuracy": ("gain", "crosstalk", "source"),
 }  # fmt: skip
 
@@ -43,7 +45,8 @@ class PlateColumns:
 class Profile:
     """What a profile file says; every part is optional.
 
-    See ``docs/guide/trials_reading.md`` for the file. ``calibration`` is the record of the tester,
+    See ``docs/guide/trials_reading.md`` for the file. ``landmarks``: the laboratory's own names of
+    markers with their places ("left heel"). ``calibration`` is the record of the tester,
     which stands in a file of its own.
     """
 
@@ -61,7 +64,7 @@ class Profile:
     markers: Mapping[str, tuple[tuple[str, str, str], str]] = field(default_factory=dict)
     vertical: str | None = None
     walking: str | None = None
-    heels: Mapping[str, str] = field(default_factory=dict)
+    landmarks: Mapping[str, str] = field(default_factory=dict)
     body_mass: float | None = None
     sensors: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     accuracy: PlateAccuracy | None = None
@@ -118,7 +121,10 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
         markers=each("markers", _marker),
         vertical=axes.get("vertical"),
         walking=axes.get("walking"),
-        heels=each("heel", lambda name, _: str(name)),
+        landmarks={
+            **{str(name): f"{side} heel" for side, name in parts["heel"].items()},
+            **each("landmarks", checked_landmark),
+        },
         body_mass=_quantity(subject, "mass", "kg", f"{where}.subject"),
         sensors=_sensors(parts["sensors"], f"{where}.sensors"),
         accuracy=_accuracy(parts["accuracy"], f"{where}.accuracy"),

@@ -13,6 +13,7 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
 
+from .marker_names import HEEL, PELVIS, TOE, landmark, own_landmarks
 from .plates import plate_normal
 from .signals import CONTACT_FORCE
 from .trial import Marker, Plate, Trial, Vertical
@@ -96,12 +97,7 @@ _ABOVE = 0.2  # m between the feet and the middle of a body's other markers
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
 _ALONG = 0.7  # cosine of the angle between the way of a foot's pressure and that of the walk
 _NAMES = "xyz"
-_TOE = re.compile(r"toe$|mt[12]$|toe[ _.\-]?[lr]?$", re.IGNORECASE)
-_HEEL = re.compile(r"heel|hee$|cal$|calc|talon|ferse|hiel", re.IGNORECASE)
-_NOT_HEEL = re.compile(r"force|moment|angle|power|grf|scale", re.IGNORECASE)
-_NOT_SIDE = re.compile(r"^(lat|lateral|low|lower|rear|med|medial)[ _.\-]|[ _.\-]?(lat|rear)$", re.I)
-_LEFT = re.compile(r"^(l|left|izq|esq|gauche)[ _.\-]?|[ _.\-](l|left|izq)$|izq", re.IGNORECASE)
-_RIGHT = re.compile(r"^(r|right|der|dro|droit)[ _.\-]?|[ _.\-](r|right|der)$|der", re.IGNORECASE)
+_LOW = 0.12  # m above the lowest marker; the heel stands lower than a hand or a shin
 
 
 class DirectionSource(StrEnum):
@@ -220,10 +216,13 @@ def moving_markers(markers: Mapping[str, Marker]) -> Mapping[str, Marker]:
 
     Where nothing moves as far as somebody who walks, all may be of a body.
     """
-    spans = {name: _span(marker) for name, marker in markers.items()}
-    if max(spans.values(), default=0.0) < _GOES:
-        return markers
-    return {name: markers[name] for name, span in spans.items() if span > _FIXED}
+    spans = [_span(marker) for marker in markers.values()]
+    return markers if max(spans, default=0.0) < _GOES else body_markers(markers)
+
+
+def body_markers(markers: Mapping[str, Marker]) -> Mapping[str, Marker]:
+    """Return the markers that leave their place: corners of plates and frames don't."""
+    return {name: marker for name, marker in markers.items() if _span(marker) > _FIXED}
 
 
 @lru_cache(maxsize=4096)
@@ -300,35 +299,68 @@ def shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarr
     return swing - (swing @ up) * up
 
 
-def heel_candidates(trial: Trial, heels: Mapping[str, str] | None = None) -> dict[str, list[str]]:
+def heel_candidates(
+    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
+) -> dict[str, list[str]]:
     """Return the markers that may be heels by side: ``left``, ``right``, ``unknown``.
 
-    ``heels`` (from a profile) names them and wins; one that is not in the trial is a DataError.
-    The best-seen candidates come first.
+    ``landmarks``: a laboratory's own names with their places ("left heel"), which win; see
+    ``own_landmarks`` for the DataError. The best-seen candidates come first. Names of two or three
+    letters count with ``up`` alone, the vertical (3,), where they lie lowest.
     """
-    if heels:
-        given = {side: [name] for side, name in heels.items() if trial.marker(name)}
-        return {"left": [], "right": [], "unknown": [], **given}
-    return _by_side(trial, _HEEL)
+    return _by_side(trial, HEEL, landmarks, up)
 
 
-def toe_candidates(trial: Trial) -> dict[str, list[str]]:
+def toe_candidates(
+    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
+) -> dict[str, list[str]]:
     """Return the markers that may be toes by side, as ``heel_candidates`` does."""
-    return _by_side(trial, _TOE)
+    return _by_side(trial, TOE, landmarks, up)
 
 
-def _by_side(trial: Trial, pattern: re.Pattern[str]) -> dict[str, list[str]]:
+def pelvis_markers(trial: Trial, landmarks: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the side of each marker of the pelvis by its name: left, right or empty."""
+    own = own_landmarks(landmarks or {}, trial.markers, where=trial.name)
+    found = {name: own.get(name) or landmark(name) for name in trial.markers}
+    own_ones = {name for name, place in own.items() if place.kind == PELVIS}
+    return {
+        name: place.side
+        for name, place in found.items()
+        if place is not None and place.kind == PELVIS and (not own_ones or name in own_ones)
+    }
+
+
+def _by_side(
+    trial: Trial, kind: str, landmarks: Mapping[str, str] | None, up: np.ndarray | None
+) -> dict[str, list[str]]:
     names_by_side: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
+    own, ranks = own_landmarks(landmarks or {}, trial.markers, where=trial.name), {}
+    given = {place.side for place in own.values() if place.kind == kind}
     for name, marker in trial.markers.items():
-        plain = name.rsplit(":", 1)[-1].strip()
-        if not pattern.search(plain) or _NOT_HEEL.search(plain) or marker.missing.all():
+        place = own.get(name) or landmark(name)
+        if place is None or place.kind != kind or marker.missing.all():
             continue
-        sided = _NOT_SIDE.sub("", plain)
-        side = "left" if _LEFT.search(sided) else "right" if _RIGHT.search(sided) else "unknown"
-        names_by_side[side].append(name)
+        if name not in own and (place.side in given or (place.short and not _low(trial, name, up))):
+            continue
+        ranks[name] = place.short, int(marker.missing.sum())
+        names_by_side[place.side or "unknown"].append(name)
     for names in names_by_side.values():
-        names.sort(key=lambda name: int(trial.markers[name].missing.sum()))
+        names.sort(key=ranks.__getitem__)
     return names_by_side
+
+
+def _low(trial: Trial, name: str, up: np.ndarray | None) -> bool:
+    """Whether a marker comes as low as the lowest of them."""
+    if up is None:
+        return False
+    lowest = {key: _lowest(marker, tuple(up.tolist())) for key, marker in trial.markers.items()}
+    return lowest[name] < np.nanmin(list(lowest.values())) + _LOW
+
+
+@lru_cache(maxsize=1024)
+def _lowest(marker: Marker, up: tuple[float, ...]) -> float:
+    seen = (marker.positions @ np.array(up))[~marker.missing]
+    return float(np.percentile(seen, 1)) if len(seen) else math.nan
 
 
 def found_vertical(

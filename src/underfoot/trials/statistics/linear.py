@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.optional import optional_module
 
 
 @dataclass(frozen=True, slots=True)
@@ -328,12 +329,11 @@ def model_data(
 
 
 def _least_squares(y: np.ndarray, matrix: np.ndarray) -> Any:
-    from statsmodels.regression.linear_model import OLS
-
+    models = optional_module("statsmodels.regression.linear_model", "trials", "A linear model")
     with python_warnings.catch_warnings():
         # Dependent columns are in the model's own warnings, with the cells that cause them.
         python_warnings.simplefilter("ignore")
-        return OLS(y, matrix).fit()
+        return models.OLS(y, matrix).fit()
 
 
 @dataclass(frozen=True, slots=True)

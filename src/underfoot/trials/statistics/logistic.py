@@ -12,6 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import ConvergenceError, DataError, InputError, unknown_name
+from underfoot.core.optional import optional_module
+
+_PURPOSE = "A logistic regression"
 
 
 def log_likelihood(eta: np.ndarray, y: np.ndarray) -> float:
@@ -284,9 +287,8 @@ def _scaled(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _maximum_likelihood(y: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    from statsmodels.discrete.discrete_model import Logit
-
-    fit = Logit(y, matrix).fit(disp=0, method="newton", maxiter=100, warn_convergence=False)
+    models = optional_module("statsmodels.discrete.discrete_model", "trials", _PURPOSE)
+    fit = models.Logit(y, matrix).fit(disp=0, method="newton", maxiter=100, warn_convergence=False)
     if not fit.mle_retvals["converged"]:
         raise ConvergenceError("the likelihood did not settle", where="logistic regression")
     return np.asarray(fit.params)
@@ -457,13 +459,11 @@ def _estimated(
     y: np.ndarray, matrix: np.ndarray, groups: np.ndarray, start: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Coefficients (p,) of the estimating equations and the correlation within clusters."""
-    from statsmodels.genmod.cov_struct import Exchangeable, Independence
-    from statsmodels.genmod.families import Binomial
-    from statsmodels.genmod.generalized_estimating_equations import GEE
-
+    models = optional_module("statsmodels.genmod.api", "trials", _PURPOSE)
     largest = int(np.bincount(groups).max())
-    for structure in (Exchangeable(), Independence()):
-        model = GEE(y, matrix, groups, family=Binomial(), cov_struct=structure)
+    for structure in (models.cov_struct.Exchangeable(), models.cov_struct.Independence()):
+        family = models.families.Binomial()
+        model = models.GEE(y, matrix, groups, family=family, cov_struct=structure)
         with np.errstate(all="ignore"):
             fit: Any = model.fit(maxiter=200, ctol=1e-12, start_params=start, first_dep_update=0)
         alike = float(np.asarray(structure.dep_params or 0.0))

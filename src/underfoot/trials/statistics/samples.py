@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
+from underfoot.core.optional import optional_module
 
 ROUNDING = 1e-12
 """Differences below this share of the largest value are those of rounding: no instrument reads
@@ -53,9 +54,11 @@ def resolved(values: ArrayLike) -> np.ndarray:
 
 def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
     """Return p corrected for their number: Holm's method, or another of statsmodels."""
-    from statsmodels.stats.multitest import multipletests
-
-    corrected: Any = multipletests(p, method=method)[1] if p else []
+    if not p:
+        return []
+    purpose = "Correcting p for the number of comparisons"
+    corrected = optional_module("statsmodels.stats.multitest", "trials", purpose)
+    corrected = corrected.multipletests(p, method=method)[1]
     return [float(each) for each in corrected]
 
 

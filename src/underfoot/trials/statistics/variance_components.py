@@ -15,6 +15,7 @@ from underfoot.core import DataError
 
 _STEPS, _HALVINGS, _CLOSE = 100, 40, 1e-9
 _LEAST = 1e-8  # standard deviation over that of all values: below is rounding
+_TOLD = 1e-6  # to which degrees of freedom are found
 _ALIKE = 1e-9  # what is left of a grouping, or of what the data say of its variance: rounding
 
 
@@ -58,14 +59,18 @@ class VarianceComponents:
         b = (first + 6.0 * second) / (2.0 * q)
         g = ((q + 1.0) * first - (q + 4.0) * second) / ((q + 2.0) * second)
         c = np.array((g, q - g, q + 2.0 - g)) / (3.0 * q + 2.0 * (1.0 - g))
-        mean = 1.0 - second / q
-        spread = (1.0 + c[0] * b) / ((1.0 - c[1] * b) ** 2 * (1.0 - c[2] * b)) / q
-        ratio = spread * mean**2
-        if not (ratio * q > 1.0 and mean > 0.0):
-            # beyond the range of the expansion: the fewest that a single contrast can have
-            return max(2.0 / second, 1.0), 1.0
-        df = 4.0 + (q + 2.0) / (q * ratio - 1.0)
-        return df, df * mean / (df - 2.0)
+        mean, tail = 1.0 - second / q, 1.0 - c[1] * b
+        # Both vanish at two degrees of freedom, and the last of the three at four: in complete
+        # data the tests are exact there too, so nothing is divided by them.
+        two = max(abs(mean), abs(tail)) < _TOLD
+        both = 1.0 if two else mean / (tail or _TOLD)
+        last = 1.0 - c[2] * b
+        beyond = (1.0 + c[0] * b) * both**2 - last
+        df = 4.0 + (q + 2.0) * last / beyond if beyond > 0.0 else 0.0
+        if df >= 1.0 and (two or mean * (df - 2.0) > 0.0):
+            return df, 1.0 if two else df * mean / (df - 2.0)
+        # beyond the range of the expansion: the fewest that a single contrast can have
+        return max(2.0 / second, 1.0), 1.0
 
 
 def variance_components(

@@ -55,7 +55,7 @@ def definition_tables(
 
 def _steps(trial: Trial, profile: Profile) -> list[tuple[Cell, ...]]:
     walk = walkway_of(
-        trial, vertical=profile.vertical, walking=profile.walking, heels=profile.heels
+        trial, vertical=profile.vertical, walking=profile.walking, landmarks=profile.landmarks
     )
     rows: list[tuple[Cell, ...]] = []
     for step in required_frictions(walk):

@@ -25,6 +25,7 @@ from ..recording.trial import Trial
 from ..walking.events import Stance, no_contact_reason, stances
 from ..walking.gait import DEFINITIONS, RcofDefinition, RequiredFriction, stance_frictions
 from ..walking.gait_context import gait_context, slip_course, stance_curves
+from ..walking.plausibility import unseen
 from ..walking.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..walking.walkway import Walkway, walkway_of
 from .edit_table import EDIT_COLUMNS, edit_log
@@ -240,7 +241,7 @@ def protocol_ramp(protocol: Protocol) -> Ramp:
 
 def walkway(trial: Trial, protocol: Protocol, profile: Profile) -> Walkway:
     """Return a trial on its walkway: what the profile gives, the protocol's ramp."""
-    given = {key: getattr(profile, key) for key in ("vertical", "walking", "heels")}
+    given = {key: getattr(profile, key) for key in ("vertical", "walking", "landmarks")}
     return walkway_of(trial, **given, ramp=protocol_ramp(protocol))
 
 
@@ -282,6 +283,7 @@ class _Walk:
         if not self.stances:
             raise DataError(no_contact_reason(way), where=self.trial.name)
         rates(self.trial, draft)
+        draft.cautions += [flag.message for flag in unseen(way)]
         draft.curves["person"] = person_measures(self.trial, self.stances, self.axes)
 
 

@@ -37,6 +37,10 @@ measured, and how many measures two bodies must share; assumed."""
 _SIDE = re.compile(
     r"(.*\w)[ _-]?(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
 )
+_PAIRS, _SURE = 8, 4.0
+_PLATES = {"rcof": 0.08, "peak_force": 0.04}
+"""Recordings and standard errors that tell two plates apart, and how far (logarithm) left and right
+feet of one person may differ beyond them, who meet the same plates in the same order; assumed."""
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 
@@ -149,7 +153,7 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     if not tables:
         doubts += [*_single_levels(usable, person), *_confounded(usable, person)]
     if any(one.steps for one in usable):
-        doubts += _circumstances(usable, person)
+        doubts += [*_circumstances(usable, person), *_plates_apart(usable)]
     if person:
         doubts += [*_one_body(usable, person), *_sides_as_persons(usable, person)]
         doubts += [*_levels_exchanged(usable, person), *_trials_mislabelled(usable, person)]
@@ -515,6 +519,35 @@ def _nearest(body: Mapping[str, float], who: str, usual: Mapping[str, Mapping[st
             distances[other] = max(shared)
     best = min(distances, key=lambda name: distances[name], default="")
     return f", nearest {best}" if best and distances[best] < _LEAST else ""
+
+
+def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
+    """Two plates that read one walk after the other differently: a gain, crosstalk or compression.
+
+    Of each recording with steps on both the logarithm of the ratio of their numbers; the mean of
+    all must lie beyond four standard errors and beyond what feet differ by.
+    """
+    for key, what in (("rcof", "RCOF"), ("peak_force", "peak of the normal force")):
+        ratios: dict[tuple[str, str], list[float]] = defaultdict(list)
+        for one in files:
+            values: dict[str, list[float]] = defaultdict(list)
+            for step in one.steps:
+                if (step.get("rcof") or 0.0) > 0.0 and step.get(key):
+                    values[step.get("plate", "")].append(float(np.log(step[key])))
+            for pair in combinations(sorted(values), 2):
+                ratios[pair].append(float(np.mean(values[pair[0]]) - np.mean(values[pair[1]])))
+        for (first, second), logs in ratios.items():
+            mean, count = float(np.mean(logs)), len(logs)
+            if count < _PAIRS or abs(mean) < _PLATES[key]:
+                continue
+            if abs(mean) > _SURE * float(np.std(logs, ddof=1)) / count**0.5:
+                share = 100.0 * (float(np.exp(mean)) - 1.0)
+                words = (
+                    f"{what} is {share:+.0f} % on {first} against {second} in {count} recordings"
+                )
+                yield Doubt(
+                    f"{words}: a gain, crosstalk or compression of one of them?", _names(files)
+                )
 
 
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:

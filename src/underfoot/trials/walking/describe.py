@@ -104,7 +104,7 @@ class Description:
                 lost = 100.0 * float(markers[name].missing.mean()) if name in markers else 0.0
                 lines.append(f"  {side} heel candidate: {name} (missing {lost:.0f} %)")
         if not any(self.heels.values()):
-            lines.append("  no heel was recognised: name it under [heel] in a profile")
+            lines.append("  no heel was recognised: name it under [landmarks] in a profile")
         return lines
 
     def _channels(self) -> list[str]:
@@ -175,11 +175,13 @@ def described(
         vertical=vertical or profile.vertical,
         walking=walking or profile.walking,
         ramp=ramp,
-        heels=profile.heels,
+        landmarks=profile.landmarks,
     )
     steps = required_frictions(walk, definition)
     said = {**definition.conventions(), "surface": walk.surfaces}
-    return Description(trial, walk.axes, heel_candidates(trial, profile.heels), tuple(steps), said)
+    return Description(
+        trial, walk.axes, heel_candidates(trial, profile.landmarks, walk.up), tuple(steps), said
+    )
 
 
 def described_file(

@@ -15,13 +15,15 @@ from ..recording.plates import baseline_words, plate_up
 from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
 from ..recording.trial import Plate, Trial
 from .events import Stance, stances
-from .likelihood import impossible
+from .gait_context import push_off_flags
+from .likelihood import impossible, unseen_gain
 from .plausibility import (
     baseline_error,
     judged_features,
     other_foot_flags,
     rcof_flags,
     step_flags,
+    walking_speed,
 )  # fmt: skip
 from .slips import Outcome, Slip, slip_of
 from .walkway import Walkway, walkway_of
@@ -226,7 +228,9 @@ def required_friction(
     uncertainty, parts = None, "not estimated"
     if checked:
         flags += step_flags(walk, stance, definition.filter, features)
-        flags += rcof_flags(value, axes.ramp)
+        flags += rcof_flags(value, axes.ramp, walking_speed(walk, stance))
+        flags += push_off_flags(walk, stance)
+        flags += unseen_gain(features, value, mass=weight is not None)
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
@@ -257,7 +261,7 @@ def stance_frictions(
     for i, step in enumerate(steps):
         friction = step.measurement
         if friction.value is not None:
-            more = other_foot_flags(step.stance, friction.value, values)
+            more = other_foot_flags(step.stance, friction.value, values, walk.weight)
             steps[i] = replace(step, measurement=replace(friction, flags=friction.flags + more))
     return steps
 

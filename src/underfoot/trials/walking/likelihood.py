@@ -115,3 +115,39 @@ def impossible(features: Mapping[str, float], known: tuple[Reference, ...] | Non
                 "gain, unit or axes of the forces?"
             )
     return ""
+
+
+_SHEAR_GAIN = ("slope of the force line", "both impulses")
+_NORMAL_GAIN = ("mass by acceleration",)
+_MASS_GAIN = 0.14  # logarithm, from the mean force over body weight: 0.74 to 0.97 about 0.84
+_ANY_GAIN = 0.35  # logarithm, of a normal force that nothing is compared with: its units at least
+
+
+def unseen_gain(
+    features: Mapping[str, float],
+    value: float,
+    *,
+    mass: bool,
+    known: tuple[Reference, ...] | None = None,
+) -> tuple[Flag, ...]:
+    """Return by how much RCOF ``value`` may be off by gains that no check would notice.
+
+    From a sound step the gain of the shear, or of the normal force, must grow to the limit of the
+    narrowest feature that follows it; both together, as squares. ``mass``: body mass is known.
+    """
+    if not features:
+        return ()
+    reach = {
+        one.feature: one.limit(one.mean + 1e-12) - one.mean
+        for one in (references() if known is None else known)
+        if one.feature in features
+    }
+    shear = min((reach[name] for name in _SHEAR_GAIN if name in reach), default=_ANY_GAIN)
+    judged = [reach[name] for name in _NORMAL_GAIN if name in reach]
+    normal = min([*judged, _MASS_GAIN if mass else _ANY_GAIN])
+    bound = value * (math.exp(math.hypot(shear, normal)) - 1.0)
+    text = (
+        f"gains that no check sees (shear {100 * math.expm1(shear):.0f} %, normal force "
+        f"{100 * math.expm1(normal):.0f} %) could move RCOF by {bound:.2f}; not in its uncertainty"
+    )
+    return (Flag("unseen gain", text, False, bound, None, "1"),)

@@ -6,13 +6,14 @@ named, they are assumed. A flag that matters makes a step "caution".
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from underfoot.core import UnderfootError
 
-from ..recording.axes import LEVEL, DirectionSource, Ramp
+from ..recording.axes import LEVEL, DirectionSource, Ramp, body_markers
 from ..recording.measurement import Flag, remark
 from ..recording.plates import plate_contacts
 from ..recording.signals import (
@@ -26,9 +27,10 @@ from ..recording.signals import (
 from ..recording.trial import MADE_UP, Plate
 from .events import Stance
 from .likelihood import unlikely_flags
+from .processed import averaged, dead_time
 from .slips import contact_from_heel, heel_motion, marker_jumps
 from .step_features import VERTICAL, step_features
-from .walkway import BodyWeight, Walkway
+from .walkway import GRAVITY, BodyWeight, Walkway
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"
 
@@ -65,10 +67,28 @@ MEAN_LOW = Limit(
     "in 6 recorded steps of children",
 )  # fmt: skip
 MEAN_HIGH = Limit("mean over body weight", 0.97, "1", MEAN_LOW.source)
+SLOW_MEAN_LOW = Limit(
+    "mean over body weight", 0.68, "1",
+    "slow and old people stand for up to 73 % of a stride (from memory: Nilsson and Thorstensson "
+    "1989, Winter 1991); walking below 0.9 m/s, or a stance above 0.8 s where no marker tells",
+)  # fmt: skip
 HUMP = Limit("single hump", 1.05, "1")  # largest mid-stance force over both humps
+SLOW_HUMP = Limit("single hump", 1.1, "1", "a slow walk has a flat force (assumed, below 0.9 m/s)")
 LOADING_RATE = Limit("loading rate", 100.0, "1/s")
-LONG_STANCE = Limit("stance time", 1.0, "s")
+USUAL_STANCE = Limit("stance time", 1.0, "s")
+LONG_STANCE = Limit(
+    "stance time", 1.3, "s", "a walk of 0.5 m/s, as the mean force over body weight tells"
+)
 SHORT_STANCE = Limit("stance time", 0.45, "s")
+SHORT_PACE, LONG_PACE = (
+    Limit(
+        "pace", value, "1",
+        "stance time sqrt(g / h) sqrt(v / sqrt(g h)), h the height of the pelvis: 1.2 to 1.6 from "
+        "children to adults at 0.5 to 1.8 m/s, as the step grows with the root of the speed "
+        "(Sekiya et al. 1996, from memory); clocks wrong by two move it by 1.41",
+    )
+    for value in (0.95, 1.85)
+)  # fmt: skip
 REST_JUMP = Limit("jump from rest", 0.2, "1")
 SHEAR_SPIKE = Limit("spike", 30.0, "N")
 NORMAL_SPIKE = Limit("spike", 120.0, "N")
@@ -76,6 +96,13 @@ STEP = Limit(
     "step of the forces", 0.03, "1",
     "beyond the steps of 3 ms to both sides, over the mean force; up to 0.011 in 16 recorded steps",
 )  # fmt: skip
+AVERAGED = Limit(
+    "moving average", 16.0, "dB",
+    "depth of the spectrum at multiples of one frequency (processed.comb_depth): mean 8.0 and "
+    "standard deviation 1.9 in 18 recorded contacts, four of them; none of averages below 30 ms, "
+    "or with noise added later, is this deep",
+)  # fmt: skip
+DEAD_BAND = Limit("dead band", 0.0, "s", "no recorded contact rests at its unloaded level")
 HELD = Limit("held samples", 0.004, "s")
 STRAIGHT = Limit("straight lines", 0.03, "s", "up to 0.021 s in 16 recorded steps")
 DRAWN = Limit("samples drawn out", 0.006, "s", "forces need 150 samples a second and more")
@@ -101,16 +128,29 @@ TURNS = Limit(
     "maxima and minima of the shear along and across, filtered at 36 Hz, that stand out by 0.6 % "
     "of the mean force, between 8 and 50 % of the stance; up to 7 in 16 recorded steps",
 )  # fmt: skip
-OTHER_FOOT = Limit("shear against the other foot", 1.4, "1")
+OTHER_FOOT = Limit(
+    "shear against the other foot",
+    1.5,
+    "1",
+    "3.3 standard deviations of the ratio of two steps that scatter by 9 % each, which adults do",
+)
+CHILDS_FOOT = Limit(
+    "shear against the other foot", 2.0, "1", "the same with 15 %, below 40 kg (assumed)"
+)
 TURN = Limit("turn", math.radians(20.0), "rad")
 SHEAR_TURN = Limit(
     "turn", math.radians(60.0), "rad",
-    "angle between braking and driving; up to 55 deg in 17 real straight steps, 106 deg in a turn",
+    "angle between braking and driving where no marker tells the walk, less an even sideways force "
+    "of up to a tenth of the normal one: 106 deg in a recorded turn",
 )  # fmt: skip
+SIDEWAYS = 0.1  # of the normal force: the foot stands up to 0.1 m beside a body of 1 m
 CLIMB = Limit("climb", 0.15, "m/s")
 PLATE_HEIGHT = Limit("plate height", 0.03, "m")
 FAST = Limit("walking speed", 2.2, "m/s", "people run above 2.0 to 2.1 m/s (textbook value)")
-LATE = Limit("forces against markers", 0.06, "s")
+LATE = Limit(
+    "forces against markers", 0.06, "s", "times the stance over 0.65 s: slow feet land slowly"
+)
+SLOW, _SLOW_STANCE, _SLOW_MEAN = 0.9, 0.8, 0.78  # m/s, s, body weights
 _LOADING = (0.08, 0.5)  # share of the stance in which the turns of the shear are counted
 _STANDS_OUT = 0.006
 _OUTSIDE = 0.004, 0.04  # s from contact or toe off in which nothing loads the plate
@@ -123,7 +163,7 @@ def step_flags(
 ) -> tuple[Flag, ...]:
     """Return what is doubtful about signals, markers and features of one accepted step."""
     plate = walk.plate(stance.plate)
-    forces = tuple(_force_flags(plate, stance, walk.up, walk.weight))
+    forces = (*unknown_heel(walk), *_force_flags(walk, plate, stance))
     if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
         features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
     return (
@@ -136,6 +176,40 @@ def step_flags(
     )
 
 
+def unknown_heel(walk: Walkway) -> tuple[Flag, ...]:
+    """Return the caution of a recording whose markers have no heel among them, by their names."""
+    count = len(body_markers(walk.trial.markers))
+    if walk.heels or not count:
+        return ()
+    text = (
+        f"none of {count} markers is recognised as a heel: a slip can't be seen, "
+        "and then the ratio is not required friction; name it under [landmarks] in profile.toml"
+    )
+    return (Flag("heel", text),)
+
+
+def unseen(walk: Walkway) -> tuple[Flag, ...]:
+    """Return what can't be seen in a whole recording for want of markers or of a body mass."""
+    found = unknown_heel(walk)
+    count = len(body_markers(walk.trial.markers))
+    if not count:
+        text = "no markers: slips, turns, slopes and a gain of the shear can't be seen"
+        found += (Flag("markers", text),)
+    elif not walk.pelvis:
+        text = (
+            f"none of {count} markers is recognised as the pelvis's: a gain of "
+            "the shear can't be seen; name them under [landmarks] in profile.toml"
+        )
+        found += (Flag("pelvis", text),)
+    if walk.weight is None:
+        text = (
+            "no body mass: a gain of the normal force can't be seen; write it into "
+            "conditions.csv or profile.toml"
+        )
+        found += (Flag("body mass", text),)
+    return found
+
+
 _NOT_JUDGED = remark(
     "likelihood not judged: recorded steps on level ground tell it neither for a ramp nor for "
     "made-up recordings"
@@ -143,6 +217,12 @@ _NOT_JUDGED = remark(
 
 
 _FASTEST = 1.8  # m/s
+_USUAL_SPEED = 1.3  # m/s; of the people whose RCOF and steps the limits are of
+_FLAT = math.log(0.9)  # of the valley over the peaks
+_PEAK_TIMES = {"time of first peak", "time of second peak"}
+_LEAKS = {"shear in the sideways force", "shear in the mass"}
+_SHEAR_BY_SPEED = {"braking impulse": True, "driving impulse": True, "both impulses": True,
+                   "driving ratio": False}  # logarithm or not  # fmt: skip
 _TOO_FAST = remark(
     f"shape of the normal force not judged: above {_FASTEST} m/s sound steps have others"
 )
@@ -152,66 +232,132 @@ def judged_features(walk: Walkway, stance: Stance) -> dict[str, float]:
     """Return the features of a step that recorded steps can be compared with: on level ground.
 
     Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
-    2008) up to it fewer than 1 % look unlikely by one of them, of faster ones a half.
+    2008) up to it fewer than 1 % look unlikely by one of them (none of 25 below 0.9 m/s), of
+    faster ones a half. The shear of slower people is taken to the speed of those compared with: it
+    grows with the step's length, as the root of the speed.
     """
     if walk.axes.ramp.angle or walk.trial.settings.get("software") == MADE_UP:
         return {}
-    features = step_features(walk, stance)
-    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
-    if body is not None and float(np.linalg.norm(body)) > _FASTEST:
+    features, speed = step_features(walk, stance), walking_speed(walk, stance)
+    if speed is None:
+        return features
+    if speed > _FASTEST:
         return {name: value for name, value in features.items() if name not in VERTICAL}
+    share = math.sqrt(min(speed, _USUAL_SPEED) / _USUAL_SPEED)
+    for name in _LEAKS & features.keys():  # told the worse, the smaller the shear
+        features[name] *= share
+    if features.get("valley over peaks", -1.0) > _FLAT:  # two peaks that don't stand out
+        features = {name: value for name, value in features.items() if name not in _PEAK_TIMES}
+    for name in _SHEAR_BY_SPEED.keys() & features.keys() if share > 0.3 else ():
+        logarithm = _SHEAR_BY_SPEED[name]
+        features[name] = features[name] - math.log(share) if logarithm else features[name] / share
     return features
 
 
-def rcof_flags(value: float, ramp: Ramp = LEVEL) -> tuple[Flag, ...]:
+def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> tuple[Flag, ...]:
     """Return the flag of an RCOF that walking does not need.
 
     On a ramp the limits of level walking widen by the tangent of the angle, which is what a body
-    at rest there adds or takes off.
+    at rest there adds or takes off. Below 1.3 m/s, the ``speed`` they are of, the lower one falls
+    as the usual RCOF does with the step's length, the root of the speed.
     """
+    usual = 0.5 * (RCOF.value + LOW_RCOF.value)
+    fall = usual * (1.0 - math.sqrt(min(speed / _USUAL_SPEED, 1.0))) if speed else 0.0
+    low = max(LOW_RCOF.value - fall, 0.0)
     slope, ground = math.tan(abs(ramp.angle)), ramp.description.split(",")[0]
     where = f"straight walking on a {ground}" if slope else "level, straight walking"
     if value > RCOF.value + slope:
         return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
-    if value < LOW_RCOF.value - slope:
+    if value < low - slope:
         return (LOW_RCOF.flag(value, f"RCOF {value:.2f} is less than walking needs"),)
     return ()
 
 
 def other_foot_flags(
-    stance: Stance, shear: float, others: Sequence[tuple[Stance, float]]
+    stance: Stance,
+    shear: float,
+    others: Sequence[tuple[Stance, float]],
+    weight: BodyWeight | None = None,
 ) -> tuple[Flag, ...]:
-    """Return the flag of a step whose RCOF differs from that of the recording's other plates."""
+    """Return the flag of a step whose RCOF differs from that of the recording's other plates.
+
+    Children, by their ``weight``, scatter more.
+    """
     values = [value for other, value in others if other.plate != stance.plate]
     if not values:
         return ()
     middle = float(np.median(values))
     ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
     words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
-    return OTHER_FOOT.above(ratio, words)
+    child = weight is not None and weight.newtons < 40.0 * GRAVITY
+    return (CHILDS_FOOT if child else OTHER_FOOT).above(ratio, words)
 
 
-def _force_flags(
-    plate: Plate, stance: Stance, up: np.ndarray, weight: BodyWeight | None
+def _pace(walk: Walkway, stance: Stance, speed: float | None) -> float | None:
+    """Stance time made free of size and speed by the height of the pelvis (see ``LONG_PACE``)."""
+    heights = [
+        float(np.nanmedian(marker.positions @ walk.up))
+        for marker in map(walk.trial.marker, walk.pelvis)
+        if not marker.missing.all()
+    ]
+    corners = walk.plate(stance.plate).corners
+    if speed is None or not heights or corners is None:
+        return None
+    height = float(np.median(heights)) - float(corners.mean(axis=0) @ walk.up)
+    if not height > 0.2:
+        return None
+    swing = math.sqrt(GRAVITY / height)
+    return stance.duration * swing * math.sqrt(speed / (height * swing))
+
+
+def walking_speed(walk: Walkway, stance: Stance) -> float | None:
+    """Return the speed of the body over the surface during a step (m/s), None without markers.
+
+    On a belt that of the belt, before which the body stays.
+    """
+    if stance.plate in walk.belts:
+        return walk.belts[stance.plate].speed(stance.contact)
+    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
+    return None if body is None else float(np.linalg.norm(body))
+
+
+def _stance_flags(
+    walk: Walkway, stance: Stance, mean: float, speed: float | None
 ) -> Iterator[Flag]:
+    duration, pace = stance.duration, _pace(walk, stance, speed)
+    long = f"stance of {duration:.2f} s: is the sampling rate right?"
+    short = f"stance of {duration:.2f} s: running, or a wrong rate"
+    if pace is not None:
+        yield from LONG_PACE.above(pace, f"{long[:-1]} for {speed:.2f} m/s?")
+        if pace < SHORT_PACE.value:
+            yield SHORT_PACE.flag(pace, f"{short} for {speed:.2f} m/s")
+        return
+    # A slow walk has both feet down for longer: its mean is lower, that of a wrong clock is not.
+    slow = walk.weight is not None and mean < _SLOW_MEAN * walk.weight.newtons
+    yield from (LONG_STANCE if slow else USUAL_STANCE).above(duration, long)
+    if duration < SHORT_STANCE.value:
+        yield SHORT_STANCE.flag(duration, short)
+
+
+def _force_flags(walk: Walkway, plate: Plate, stance: Stance) -> Iterator[Flag]:
+    up, weight, rate = walk.up, walk.weight, plate.rate
     part = plate.force[stance.start : stance.stop]
     normal = part @ up
-    rate, duration = plate.rate, stance.duration
-    text = f"stance of {duration:.2f} s: is the sampling rate right?"
-    yield from LONG_STANCE.above(duration, text)
-    if duration < SHORT_STANCE.value:
-        yield SHORT_STANCE.flag(duration, f"stance of {duration:.2f} s: running, or a wrong rate")
+    speed = walking_speed(walk, stance)
+    yield from _stance_flags(walk, stance, float(normal.mean()), speed)
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
-    if middle > HUMP.value * humps:
+    if middle > (HUMP.value if speed is None or speed > SLOW else SLOW_HUMP.value) * humps:
         text = "the force is largest in mid-stance: running or hopping, not walking"
         yield HUMP.flag(middle / float(humps), text)
     if weight is not None:
         ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
         yield from HIGH_PEAK.above(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
-        if not MEAN_LOW.value <= mean <= MEAN_HIGH.value:
-            limit = MEAN_LOW if mean < MEAN_LOW.value else MEAN_HIGH
+        slow = stance.duration > _SLOW_STANCE if speed is None else speed < SLOW
+        low = SLOW_MEAN_LOW if slow else MEAN_LOW
+        if not low.value <= mean <= MEAN_HIGH.value:
+            limit = low if mean < low.value else MEAN_HIGH
             text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
             yield limit.flag(mean, text)
     own = weight.newtons if weight else 0.9 * stance.peak
@@ -247,6 +393,14 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
     if held >= 4 and held / rate >= HELD.value:
         text = f"all forces stand still for {held} samples: held values"
         yield HELD.flag(held / rate, text)
+    depth, window = averaged(plate.force, rate, stance.start, stance.stop, up)
+    text = (
+        f"the forces lack every multiple of {1.0 / max(window, 1e-3):.0f} Hz: a moving average of "
+    )
+    yield from AVERAGED.above(depth, f"{text}{1e3 * window:.0f} ms")
+    dead = max(dead_time(one, rate, stance.start, stance.stop) for one in plate.force.T)
+    text = f"a force rests at its zero for {1e3 * dead:.0f} ms under load: a dead band"
+    yield from DEAD_BAND.above(dead, text)
     yield from _straight_flags(part[inner], rate)
     firm = normal[inner]
     edge = max(1, len(firm) // 20)
@@ -324,7 +478,6 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
     margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
     free = _unloaded(plate, up, margin)
     begin, end = max(0, stance.start - margin), stance.stop + margin
-    free[begin:end] = False
     found = []
     for window in (slice(max(0, begin - quiet), begin), slice(end, end + quiet)):
         force = plate.force[window][free[window]]
@@ -335,9 +488,14 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
 
 
 def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
-    """Mask of the samples (n,) further than ``margin`` from any contact."""
+    """Mask of the samples (n,) further than ``margin`` from any contact; not to be written to."""
+    return _free(plate, tuple(up.tolist()), margin)
+
+
+@lru_cache(maxsize=8)  # every step of a long record asks
+def _free(plate: Plate, up: tuple[float, ...], margin: int) -> np.ndarray:
     free = np.ones(len(plate.force), dtype=bool)
-    for start, stop in plate_contacts(plate, up):
+    for start, stop in plate_contacts(plate, np.array(up)):
         free[max(0, start - margin) : stop + margin] = False
     return free
 
@@ -407,7 +565,12 @@ def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float,
 
 def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
     """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
-    parts = []
+    return _noise(plate, tuple(up.tolist()), low_pass)
+
+
+@lru_cache(maxsize=8)
+def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> float:
+    parts, up = [], np.array(vertical)
     for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
         part = plate.force[start:stop]
         if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
@@ -446,12 +609,12 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     turns = _turns(walk.plate(stance.plate), stance, axes.up) if stance.walking is not None else 0
     text = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
     yield from TURNS.above(turns, text)
-    angle = _braking_to_driving(walk, stance)
-    text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
-    yield from SHEAR_TURN.above(angle, text)
     middle = 0.5 * (stance.contact + stance.toe_off)
     whole = walk.body_velocity(stance.plate, stance.contact, stance.toe_off, climb=True)
     if whole is None:
+        angle = _braking_to_driving(walk, stance)
+        text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+        yield from SHEAR_TURN.above(angle, text)
         return
     climb = float(whole @ axes.up)
     speed = float(np.linalg.norm(whole - climb * axes.up))
@@ -472,12 +635,18 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
 
 
 def _braking_to_driving(walk: Walkway, stance: Stance) -> float:
-    """Angle (rad) between the braking and the opposite of the driving impulse of a step."""
+    """Angle (rad) between the braking and the opposite of the driving impulse of a step.
+
+    The even sideways force of a foot that stands beside the body is taken off before.
+    """
     if stance.walking is None:
         return 0.0
     up, forward = walk.axes.ramp.gravity(walk.up, stance.walking)
     force = walk.plate(stance.plate).force[stance.start : stance.stop]
-    shear = force - np.outer(force @ up, up)
+    normal, across = force @ up, np.cross(up, forward)
+    shear = force - np.outer(normal, up)
+    even = float((shear @ across).mean() / normal.mean())
+    shear = shear - np.outer(min(max(even, -SIDEWAYS), SIDEWAYS) * normal, across)
     half = len(shear) // 2
     along = shear @ forward
     braking = shear[:half][along[:half] < 0].sum(axis=0)
@@ -516,7 +685,8 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
         text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
-        yield from LATE.above(gap, text)
+        slowness = max(stance.duration / 0.65, 1.0)
+        yield from replace(LATE, value=LATE.value * slowness).above(gap, text)
     near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
     leaps = int(jumps[near].sum())
     if leaps:

@@ -1,7 +1,6 @@
 """Features of a step: ratios, shares and times that hold for any mass, force and person."""
 
 import math
-import re
 
 import numpy as np
 
@@ -9,7 +8,6 @@ from ..recording.signals import LowPass, low_passed, low_passed_part
 from .events import Stance
 from .walkway import GRAVITY, Walkway
 
-_PELVIS = re.compile(r"asis?$|psis?$|sacr(um)?$|v?sac$", re.IGNORECASE)
 _PENDULUM = 0.8  # slope of the force line of recorded steps in the plane of walking
 VERTICAL = (
     "peak over mean", "second peak over first", "valley over peaks", "time of first peak",
@@ -115,9 +113,7 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     """
     plate = walk.plate(stance.plate)
     pelvis = {
-        walk.marker(name, stance.plate, stance.contact): own[0].lower()
-        for name in walk.trial.markers
-        if _PELVIS.search(own := name.rsplit(":", 1)[-1].strip())
+        walk.marker(name, stance.plate, stance.contact): side for name, side in walk.pelvis.items()
     }
     pelvis = {m: side for m, side in pelvis.items() if m.times is None and not m.missing.all()}
     markers = list(pelvis)
@@ -132,7 +128,7 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     if len(whole) < 2 or whole.shape[1] < 30:
         return {}
     sides = [list(pelvis.values())[i] for i in seen]
-    balanced = sides.count("l") == sides.count("r")
+    balanced = sides.count("left") == sides.count("right")
     rate, frames = markers[0].rate, markers[0].time[near]
     body = low_passed(whole.mean(axis=0), rate, _BODY)
     rise = np.gradient(np.gradient(body @ walk.up, 1.0 / rate), 1.0 / rate)

@@ -16,6 +16,7 @@ from ..recording.axes import (
     axes_of,
     heel_candidates,
     marker_velocity,
+    pelvis_markers,
     toe_candidates,
     walking_direction,
 )  # fmt: skip
@@ -85,9 +86,9 @@ class Walkway:
     """A trial on its walkway; ``walkway_of`` makes one.
 
     ``axes``: vertical, walking direction over the whole recording, slope. ``weight``: of the body,
-    None when nothing tells it. ``heels`` and ``toes``: name of the best-seen marker by side.
-    ``belts``: by the name of their plate, none on a floor. ``walking`` is
-    the axis that a person set.
+    None when nothing tells it. ``heels`` and ``toes``: name of the best-seen marker by side;
+    ``pelvis``: side of each marker of the pelvis by its name. ``belts``: by the name of their
+    plate, none on a floor. ``walking`` is the axis that a person set.
     """
 
     trial: Trial
@@ -95,6 +96,7 @@ class Walkway:
     weight: BodyWeight | None
     heels: Mapping[str, str]
     toes: Mapping[str, str]
+    pelvis: Mapping[str, str] = field(default_factory=dict)
     belts: Mapping[str, Belt] = field(default_factory=dict)
     walking: str | None = None
 
@@ -159,22 +161,26 @@ def walkway_of(
     vertical: str | None = None,
     walking: str | None = None,
     ramp: Ramp = LEVEL,
-    heels: Mapping[str, str] | None = None,
+    landmarks: Mapping[str, str] | None = None,
 ) -> Walkway:
     """Return a trial with its axes, body weight, feet and belts resolved; a walkway as it is.
 
-    ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; ``heels`` names the heel
-    markers by side; ``ramp`` is the slope of the walkway. An axis that is none is an InputError, a
-    heel that is not in the trial a DataError.
+    ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; ``landmarks``
+    are a laboratory's own names of markers with their places ("left heel"); ``ramp`` is the slope
+    of the walkway. An axis that is none is an InputError, a place without marker a DataError.
     """
     if isinstance(walk, Walkway):
         return walk
     axes = axes_of(walk, vertical=vertical, walking=walking, ramp=ramp)
     best = (
         {side: names[0] for side, names in found.items() if names}
-        for found in (heel_candidates(walk, heels), toe_candidates(walk))
+        for found in (
+            heel_candidates(walk, landmarks, axes.up),
+            toe_candidates(walk, landmarks, axes.up),
+        )
     )
     heel, toe = best
     feet = [walk.marker(name) for name in (*heel.values(), *toe.values())]
     belts = belts_of(walk, axes.up, [foot for foot in feet if foot.times is None])
-    return Walkway(walk, axes, body_weight(walk, axes), heel, toe, belts, walking)
+    pelvis = pelvis_markers(walk, landmarks)
+    return Walkway(walk, axes, body_weight(walk, axes), heel, toe, pelvis, belts, walking)
