@@ -109,11 +109,9 @@ class Session:
         """
         return await (lane or self.jobs.live).ask(function, *args, **self._shown, **options)
 
-    def submit(
-        self, title: str, function: str, *args: Any, about: str = "", **options: Any
-    ) -> Task:
+    def submit(self, title: str, function: str, *args: Any, **options: Any) -> Task:
         """Queue a long job, whose texts are in units and language of the page; return its task."""
-        return self.jobs.submit(title, function, *args, about=about, **self._shown, **options)
+        return self.jobs.submit(title, function, *args, **self._shown, **options)
 
     @property
     def _shown(self) -> dict[str, str]:

@@ -44,6 +44,16 @@ TREAD = (
     Input("shoe.material.shore_a", "", 40.0, 90.0, 1.0),
     Input("shoe.wear.depth", "mm", 0.0, 6.0, 0.1),
 )
+LAYERS = (
+    Input("shoe.sole.outsole_thickness", "mm", 1.0, 60.0, 0.5),
+    Input("shoe.sole.midsole.thickness", "mm", 1.0, 60.0, 0.5),
+    Input("shoe.sole.midsole.modulus", "MPa", 0.1, 50.0, 0.1),
+    Input("shoe.roughness.ra", "um", 0.1, 50.0, 0.1),
+    Input("shoe.roughness.rq", "um", 0.1, 50.0, 0.1),
+)
+"""What carries the tread, and the surface of the rubber."""
+MIDSOLE = {"shoe.sole.midsole": {"modulus": "2 MPa", "thickness": "15 mm"}}
+"""Foam under the outsole as ``underfoot outsole inspect`` assumes it."""
 CONDITIONS = {
     "floor": (
         Input("floor.roughness.rq", "um", 0.1, 50.0, 0.1),
@@ -174,6 +184,11 @@ class _Design:
             last = ui.button(label, on_click=lambda: self.change(fewer))
             last.props("no-caps flat dense")
         sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
+        for each in LAYERS:
+            number_field(self.session, each, case, self.change)
+        if case.value("shoe.sole.midsole") is None:
+            midsole = ui.button(self.text("sole.midsole"), on_click=lambda: self.change(MIDSOLE))
+            midsole.props("no-caps flat dense")
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
         measured_file.build(self.session, self.name, "sole", self.fill)

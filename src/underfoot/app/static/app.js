@@ -126,7 +126,7 @@ addEventListener("lug", ({ target: viewer }) => {
       note.role = problem || outside ? "alert" : "";
       if (!problem && !outside) setSlider(slider, value * size, true);
     });
-    label.append(document.querySelector(`label[for="${slider.id}"]`).textContent, field, slider.dataset.unit);
+    label.append(document.querySelector(`label[for="${slider.id}"]`).firstChild.data, field, slider.dataset.unit);
     card.append(label);
   }
   place.querySelector(".lug-card")?.remove();
@@ -211,7 +211,7 @@ function askLive(id, address, soleId, keep) {
   if (keep) addEventListener("pagehide", () => { if (values() !== settled) send(values(), true); });
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { input.dataset.moved = "yes"; held = true; clearTimeout(resting); show(input); ask(); });
+    input.addEventListener("input", () => { input.dataset.moved = "yes"; input.labels[0].querySelector("small").textContent = root.dataset.own; held = true; clearTimeout(resting); show(input); ask(); });
     input.addEventListener("change", () => { held = false; if (keep) rest(); else later(); });
   }
 }
