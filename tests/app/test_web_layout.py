@@ -37,7 +37,7 @@ def project(tmp_path_factory):
     study = made.folder / "studies" / "Speeds.toml"
     study.write_text(STUDY)
     work_studies.computed(str(study), str(study.with_suffix("")), progress=silent)
-    write_report(wear_series(made.case("Heel"), steps=2, quick=True), folder / "wear")
+    write_report(wear_series(made.case("Heel"), mode="plane", steps=2, band=False), folder / "wear")
     sole = write_stl(made.folder / "soles" / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
     write_report(inspected(sole, FileSettings()), folder / "file")
     return made
