@@ -3,8 +3,9 @@
   const found = new Set(), say = (what, text) => found.add(`${what}: ${text.trim().slice(0, 60)}`);
   const beyond = document.documentElement.scrollWidth - document.documentElement.clientWidth;
   if (beyond > 1) found.add(`the page is ${beyond} px wider than the window`);
+  const forEars = (e) => e && (getComputedStyle(e).clipPath === "inset(50%)" || forEars(e.parentElement));
   const shown = (e) => e.checkVisibility({ opacityProperty: true, visibilityProperty: true })
-    && !e.closest(".hidden-title, [aria-hidden=true], .q-icon, noscript");
+    && !e.closest("[aria-hidden=true], .q-icon, noscript") && !forEars(e);
   const inside = (e) => { // what scrolls shows the rest; what hides cuts it off
     const boxes = [];
     for (let a = e; a && a !== document.body; a = a.parentElement) {
@@ -59,7 +60,7 @@
       const high = document.elementFromPoint(x, y), own = (n) => n.nodeType === 3 ? n.parentElement : n;
       if (high && !over(a.node) && !over(b.node)) continue;
       // a bar that stays over the page, or a dialog over it, hides what is below it
-      const floor = (n) => own(n).closest(".q-dialog, .q-menu, .q-header, .stage-side");
+      const floor = (n) => own(n).closest(".q-dialog, .q-menu, .q-tooltip, .q-header, .stage-side");
       if (floor(a.node) !== floor(b.node)) continue;
       say("one on the other", `"${a.text.trim().slice(0, 24)}" and "${b.text.trim().slice(0, 24)}"`);
     }
@@ -69,6 +70,7 @@
     const framed = style.borderTopWidth !== "0px" || (style.backgroundColor !== "rgba(0, 0, 0, 0)" && e.parentElement && style.backgroundColor !== getComputedStyle(e.parentElement).backgroundColor);
     if (!framed || r.width * r.height < 6000 || !shown(e) || e.closest("svg")) continue;
     if (e.innerText?.trim() || e.querySelector("svg, img, canvas, input, textarea, button, iframe") || ["svg", "IMG", "CANVAS"].includes(e.tagName)) continue;
+    if ([e, ...e.querySelectorAll("*")].some((each) => getComputedStyle(each, "::after").content !== "none")) continue;
     say("an empty box", `${e.tagName}.${e.className}`);
   }
   return [...found];

@@ -48,7 +48,7 @@ def faults(page, name):
     found = []
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": max(768, width // 2)})
-        page.wait_for_timeout(400)
+        page.wait_for_timeout(800)
         found += [f"{name}, {width} px: {each}" for each in page.evaluate(FAULTS)]
     return found
 

@@ -116,7 +116,8 @@ def sliders(
     for each in inputs:
         value = each.given(case)
         if value is not None:
-            rows.append(_row(session, each, value, _origin(session, case, each.path)[0]))
+            origin = _origin(session, case, each.path)[0].partition(":")[0]  # in a word
+            rows.append(_row(session, each, value, origin))
     root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
     root.classes("sliders").props(f'data-own="{escape(session.text("origin.given"))}"')
 
