@@ -205,7 +205,10 @@ def test_land_that_no_channel_width_gives_is_refused_with_a_remedy(tmp_path):
         project.undo("B")
 
 
-LARGE_LUGS = {"shoe.tread.lug_width": "30 mm", "shoe.tread.channel_width": "4 mm"}  # of 20 mm none floats
+LARGE_LUGS = {
+    "shoe.tread.lug_width": "30 mm",
+    "shoe.tread.channel_width": "4 mm",
+}  # of 20 mm none floats
 GROOVES = "shoe.tread.grooves"
 
 
