@@ -123,6 +123,13 @@ def test_a_person_on_a_full_disk_reads_so_and_goes_on_with_room(small_disk, tmp_
         page.locator(SOLES).set_input_files(sole)
         page.locator(".drop-state", has_text="can't be the name of a file").wait_for()
         room = small_disk / "room"
+        room.write_bytes(bytes(shutil.disk_usage(small_disk).free))
+        page.locator("input[name='shoe.tread.depth']").press("ArrowRight")
+        page.locator("[data-part=problem]", has_text="no space left on the disk").wait_for()
+        assert project.case("heel").value("shoe.tread.depth") == pytest.approx(3e-3)
+        room.unlink()
+        page.wait_for_function("!document.querySelector('[data-part=problem]').textContent")
+        assert project.case("heel").value("shoe.tread.depth") == pytest.approx(3.1e-3)
         enough = sum(sizes.values()) - sizes["report.html"] // 2  # the result fits, not its page
         room.write_bytes(bytes(shutil.disk_usage(small_disk).free - enough))
         page.get_by_role("button", name="Compute friction").click()

@@ -118,19 +118,28 @@ class Session:
         return {"units": self.units, "language": self.text.language}
 
     def follow(
-        self, state: Callable[[], object], changed: Callable[[], object]
-    ) -> Callable[[], None]:
+        self,
+        state: Callable[[], object],
+        changed: Callable[[], object],
+        busy: Callable[[], bool] = lambda: False,
+    ) -> Callable[..., None]:
         """Call ``changed`` when ``state`` has another value: a page shows what another one did.
 
-        Returns a function that takes the present state as shown: what this page did itself.
+        It waits while the page is ``busy``. Returns a function that takes the present state as
+        shown; given what this page does itself it does that, and what another page did just before
+        is still to be shown.
         """
         shown = [state()]
 
-        def take() -> None:
-            shown[0] = state()
+        def take(own: Callable[[], object] | None = None) -> None:
+            current = own is None or state() == shown[0]
+            if own is not None:
+                own()
+            if current:
+                shown[0] = state()
 
         async def look() -> None:
-            if state() != shown[0]:
+            if state() != shown[0] and not busy():
                 take()
                 followed = changed()
                 if isawaitable(followed):
