@@ -48,7 +48,7 @@ def faults(page, name):
     found = []
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": max(768, width // 2)})
-        page.wait_for_timeout(800)
+        page.wait_for_timeout(400)
         found += [f"{name}, {width} px: {each}" for each in page.evaluate(FAULTS)]
     return found
 
@@ -81,7 +81,7 @@ def test_nothing_is_cut_covered_or_empty(project, tmp_path, language):
         for name, address in pages(app, project):
             page.set_viewport_size({"width": 1366, "height": 768})
             page.goto(address)
-            page.wait_for_timeout(2500)
+            page.wait_for_timeout(1500)
             for tab in page.query_selector_all(".q-tab") or [None]:
                 page.set_viewport_size({"width": 1366, "height": 768})
                 if tab:
