@@ -9,6 +9,7 @@ from commands import called, process
 from underfoot.case import Case
 from underfoot.compute.sole import new_sole, read_outsole
 from underfoot.core import InputError
+from underfoot.questions.wear import _measures, worn_cases
 
 OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
 SPECS = sorted(path for path in OUTSOLES.glob("*.toml") if not path.stem.endswith("_glycerol"))
@@ -151,3 +152,38 @@ def test_wear_of_a_hexagon_heel(tmp_path):
     assert "Published trends" in page
     assert "a larger worn region goes with a higher peak fluid pressure" in page
     assert (tmp_path / "wear" / "wear.csv").read_text().count("\n") == 4
+
+
+@pytest.mark.slow
+def test_a_bevelled_sole_from_a_file_wears_as_that_of_its_lengths(tmp_path):
+    setting = {
+        "shoe": "work_shoe_half_tread",
+        "floor": "vinyl_g4",
+        "contaminant": "glycerol_90pct",
+        "motion": "slip_tester_g4",
+    }
+    bars = {
+        "shoe.tread.pattern": "transverse",
+        "shoe.tread.lug_width": "6 mm",
+        "shoe.tread.channel_width": "4 mm",
+        "shoe.tread.depth": "3.5 mm",
+        "shoe.heel.profile.length": "25 mm",
+    }
+    lengths, stl = Case(**setting).replace(bars), tmp_path / "sole.stl"
+    (tmp_path / "lengths.toml").write_text(lengths.to_toml())
+    done = called("outsole", "make", tmp_path / "lengths.toml", "--out", stl)
+    assert done.returncode == 0, done.stderr
+    file = Case(**setting).replace(
+        {
+            **dict.fromkeys(("shoe.heel", "shoe.tread")),
+            "shoe.outsole": {"file": str(stl)},
+            "shoe.sole.outsole_thickness": "25 mm",
+        }
+    )
+    one, other = (
+        [_measures(worn) for worn in worn_cases(case, "plane", 3, 2e-3)] for case in (lengths, file)
+    )
+    assert [each.removed_depth for each in one] == pytest.approx([0, 2e-3 / 3, 4e-3 / 3, 2e-3])
+    for name in ("removed_depth", "tread_left"):
+        seen, expected = ([getattr(each, name) for each in made] for made in (other, one))
+        assert seen == pytest.approx(expected, abs=0.02e-3), name

@@ -42,7 +42,14 @@ def test_a_sweep_gives_what_the_runs_of_its_cases_give(case, tmp_path):
 @pytest.mark.slow
 def test_an_optimisation_beats_the_designs_that_it_began_with(case, tmp_path):
     found = uf.optimise(
-        case.replace("numerics.cells_along", 1),  # smooth on a grid as coarse as this
+        # at an instant the film is smooth on a grid as coarse as this; of steady sliding it is not
+        case.replace(
+            {
+                "numerics.cells_along": 1,
+                "motion.duration": "120 ms",
+                "contaminant": "glycerol_50pct",
+            }
+        ),
         {"motion.speed": ("0.2 m/s", "0.8 m/s"), "shoe.material.shore_a": (50.0, 70.0)},
         minimise=["fluid_load"],
         require=["cof > 0.005"],

@@ -5,20 +5,25 @@ import errno
 import shutil
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 
 import psutil
 import pytest
 from tests.trial_soles import step, step_bars
-from web_app import begin, drawn, page_of, served
+from web_app import COARSE, begin, drawn, page_of, project_of, served
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 
 pytest.importorskip("nicegui")
 
-from underfoot.app import work_sole
+from underfoot.app import work, work_sole
+from underfoot.app.pages import sole_file
 from underfoot.app.project import Project
 from underfoot.app.uploads import received
+from underfoot.case import Case
 from underfoot.core import InputError, silent
+from underfoot.report.outsole import case_text, inspected
+from underfoot.shoe.files import FileSettings
 
 SOLES = "input[type=file][accept*=stl]"
 
@@ -105,16 +110,30 @@ def test_a_person_on_a_full_disk_reads_so_and_goes_on_with_room(small_disk, tmp_
     big, sole = tmp_path / "big.stl", tmp_path / ("b" * 200 + ".stl")
     big.write_bytes(bytes(9_000_000))
     write_stl(sole, triangles(heel_body(grooved(pitch=10e-3))))
-    with served(small_disk / "project", tmp_path / "home") as app, page_of(app.link) as page:
-        begin(page, app.base)
+    project = project_of(small_disk / "project", "heel")
+    folder = project.result_folder("heel")
+    work.computed(str(project.path("heel")), str(folder), progress=silent)
+    sizes = {path.name: path.stat().st_size for path in folder.iterdir()}
+    shutil.rmtree(folder)
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "design?variant=heel")
+        drawn(page)
         page.locator(SOLES).set_input_files(big)
         page.locator(".drop-state", has_text="no space left on the disk").wait_for()
         page.locator(SOLES).set_input_files(sole)
         page.locator(".drop-state", has_text="can't be the name of a file").wait_for()
         room = small_disk / "room"
-        room.write_bytes(bytes(shutil.disk_usage(small_disk).free - 600_000))
+        room.write_bytes(bytes(shutil.disk_usage(small_disk).free))
+        page.locator("input[name='shoe.tread.depth']").press("ArrowRight")
+        page.locator("[data-part=problem]", has_text="no space left on the disk").wait_for()
+        assert project.case("heel").value("shoe.tread.depth") == pytest.approx(3e-3)
+        room.unlink()
+        page.wait_for_function("!document.querySelector('[data-part=problem]').textContent")
+        assert project.case("heel").value("shoe.tread.depth") == pytest.approx(3.1e-3)
+        enough = sum(sizes.values()) - sizes["report.html"] // 2  # the result fits, not its page
+        room.write_bytes(bytes(shutil.disk_usage(small_disk).free - enough))
         page.get_by_role("button", name="Compute friction").click()
-        page.wait_for_selector(".big")  # the result fits, its page does not
+        page.wait_for_selector(".big")
         page.get_by_text("report.html could not be written").wait_for()
         room.unlink()
         page.get_by_role("button", name="Compute friction").click()
@@ -146,3 +165,26 @@ def test_reading_a_step_file_shows_progress_and_stops_beside_sliders(tmp_path):
         page.get_by_role("button", name="Use this sole", exact=True).wait_for()
         drawn(page)
         assert page.complaints == []
+
+
+@pytest.mark.parametrize("own", [{}, {"shoe.material.shore_a": 65.0, "shoe.wear.depth": 1e-3}])
+def test_a_file_in_the_app_is_the_case_that_inspect_writes(tmp_path, own):
+    """What a person set before stays; nothing of the shoe begun with does."""
+    project = project_of(tmp_path / "project", "heel")
+    project.change("heel", own)
+    file = write_stl(
+        project.folder / "soles" / "bars.stl", triangles(heel_body(grooved(pitch=10e-3)))
+    )
+    session = SimpleNamespace(project=project)
+    page = SimpleNamespace(session=session, path="soles/bars.stl", settings={})
+    variants = str(project.inside("variants"))
+    answer = work_sole.inspected_sole(str(file), {}, variants, progress=silent)
+    sole_file._Inspection._use(page, ["heel"], answer["shoe"])
+    text = case_text(inspected(file, FileSettings()), project.folder / "variants")
+    by_command = project.folder / "variants" / "command.toml"
+    by_command.write_text(text)
+    expected = Case.load(by_command).replace({**COARSE, **own})
+    assert project.case("heel").hash == expected.hash
+    assert project.case("heel").value("shoe.sole.midsole.thickness") == pytest.approx(15e-3)
+    project.undo("heel")
+    assert project.case("heel").shoe.outsole is None

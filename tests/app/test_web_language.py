@@ -87,14 +87,15 @@ def german(page, app):
     page.goto(app.base)
 
 
-def foreign(texts, english):
-    """Return every line with an English word, by its page."""
-    return {
+def assert_german(texts, english):
+    """Assert that no line of a page has an English word."""
+    foreign = {
         f"{name}: {line}: {sorted(words(line) & english)}"
         for name, lines in texts.items()
         for line in lines
         if words(line) & english
     }
+    assert not foreign, "\n".join(sorted(foreign))
 
 
 def test_sentences_are_put_in_whole_and_numbers_have_their_signs(tmp_path):
@@ -153,7 +154,7 @@ def test_five_pages_and_the_report_have_no_english_word_in_german(app, english):
         page.goto(next((app.folder / "results").glob("*/report.html")).as_uri())
         assert page.evaluate("document.documentElement.lang") == "de"
         texts["report"] = seen(page, fold=False)
-        assert not foreign(texts, english)
+        assert_german(texts, english)
         shown = " ".join(texts["answer"])
         assert re.search(r"\b0,\d\d\d\b", shown)
         assert not re.search(r"\b0\.\d\d\d\b", shown)
@@ -192,7 +193,7 @@ def test_places_trials_and_errors_have_no_english_word_in_german(app, english, t
         page.locator("input[type=file][accept*=stl]").set_input_files(tmp_path / "text.stl")
         page.locator(".problem").wait_for()
         texts["sole refused"] = seen(page, fold=False)
-        assert not foreign(texts, english)
+        assert_german(texts, english)
 
 
 def test_inches_and_pounds_on_every_page(app):

@@ -156,6 +156,33 @@ def test_a_change_in_one_tab_marks_the_numbers_of_the_others(app, project):
         start.get_by_text("of earlier inputs").wait_for(state="detached")
 
 
+def test_two_tabs_that_move_sliders_at_once_end_as_the_file(app, project):
+    names = ("shoe.tread.lug_width", "shoe.tread.depth")
+    with page_of(app.link) as page:
+        tabs = [page, page.context.new_page()]
+        for tab in tabs:
+            tab.goto(f"{app.base}design?variant=heel")
+            drawn(tab)
+
+        def shown(tab, name):
+            slider = tab.locator(f"input[name='{name}']")
+            return float((slider.get_attribute("aria-valuetext") or "0").split()[0])
+
+        def as_the_file():
+            values = {name: 1e3 * project.case("heel").value(name) for name in names}
+            pairs = [(shown(tab, name), values[name]) for tab in tabs for name in names]
+            return all(seen == pytest.approx(value, abs=1e-6) for seen, value in pairs)
+
+        before = [project.case("heel").value(name) for name in names]
+        for step in (1, 2):
+            for tab, name in zip(tabs, names, strict=True):
+                tab.locator(f"input[name='{name}']").press("ArrowRight")
+            moved = pytest.approx([value + step * 1e-4 for value in before])
+            until(lambda moved=moved: [project.case("heel").value(n) for n in names] == moved)
+            until(as_the_file)
+        assert page.complaints == []
+
+
 def test_looking_starts_nothing_and_the_last_variant_comes_back(app, project):
     with page_of(app.link) as page:
         page.goto(f"{app.base}answer?variant=heel&run=1")

@@ -23,7 +23,7 @@ class SoleView(ui.element):
         super().__init__("div")
         self._session = session
         self.classes("sole-view")
-        for key in ("lugs", "file-lugs"):
+        for key in ("lugs", "file-lugs", "loading"):
             self.props(f'data-{key}="{escape(session.text(f"sole.{key}"))}"')
 
     def show(self, html: str) -> None:

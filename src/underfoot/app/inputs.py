@@ -116,9 +116,10 @@ def sliders(
     for each in inputs:
         value = each.given(case)
         if value is not None:
-            rows.append(_row(session, each, value))
+            origin = _origin(session, case, each.path)[0].partition(":")[0]  # in a word
+            rows.append(_row(session, each, value, origin))
     root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
-    root.classes("sliders")
+    root.classes("sliders").props(f'data-own="{escape(session.text("origin.given"))}"')
 
     async def asked(question: dict[str, Any]) -> dict[str, Any]:
         changed = changes(inputs, question["values"])
@@ -132,7 +133,16 @@ def sliders(
     return root
 
 
-def _row(session: Session, each: Input, value: float) -> str:
+def _origin(session: Session, case: Case, path: str) -> tuple[str, str]:
+    """Return in words where a value of a case comes from, and its source; empty where not known."""
+    origin = case.origins.get(path)
+    if origin is None:
+        return "", ""
+    kind = "assumed" if origin.leaf.assumed else origin.kind
+    return session.text(f"origin.{kind}"), origin.leaf.source or ""
+
+
+def _row(session: Session, each: Input, value: float, origin: str) -> str:
     low, high, shown, step = each.low, max(each.high, value), value, each.step
     size, sign = each.shown_in(session.units)
     if each.log:
@@ -142,7 +152,8 @@ def _row(session: Session, each: Input, value: float) -> str:
     marks = f'data-unit="{sign}" data-size="{size}" data-given="{value:.6g}"'
     marks += ' data-log="1"' * each.log
     return (
-        f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}</label>'
+        f'<label for="{key}">{escape(session.text(f"inputs.{each.path}"))}'
+        f"<small>{escape(origin)}</small></label>"
         f'<input type="range" id="{key}" name="{each.path}" min="{min(low, shown):.6g}" '
         f'max="{high:.6g}" step="{step:g}" value="{shown:.6g}" {marks}>'
         f'<output for="{key}"></output>'
@@ -172,8 +183,8 @@ def number_field(
     session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
 ) -> None:
     """Show a value with its unit and where it comes from; ``change`` gets what is typed."""
-    value, origin = each.given(case), case.origins.get(each.path)
-    if value is None and origin is None and case.value(each.path.rpartition(".")[0]) is None:
+    value = each.given(case)
+    if value is None and case.value(each.path.rpartition(".")[0]) is None:
         return
     size, sign = each.shown_in(session.units)
     shown = None if value is None else value / size
@@ -193,10 +204,8 @@ def number_field(
         change({each.path: each.written(value)})
 
     field.on("change", typed)
-    if origin is not None:
-        leaf = origin.leaf
-        kind = "assumed" if leaf.assumed else origin.kind
-        hint = session.text(f"origin.{kind}")
+    hint, source = _origin(session, case, each.path)
+    if hint:
         field.props(f'hint="{escape(hint)}"')
-        if leaf.source:
-            field.tooltip(leaf.source)
+    if source:
+        field.tooltip(source)

@@ -120,6 +120,7 @@ class Task:
         problem: What went wrong, as the error says it.
         answer: What the function returned, while the server runs.
         arguments, options: What the function takes, plain data.
+        then: Title, function and arguments of what is queued when it is done.
     """
 
     number: int
@@ -135,6 +136,7 @@ class Task:
     answer: Any = field(default=None, repr=False)
     arguments: Sequence[Any] = ()
     options: dict[str, Any] = field(default_factory=dict)
+    then: Sequence[Any] = ()
 
     @property
     def open(self) -> bool:
@@ -176,14 +178,21 @@ class Jobs:
         self._read()
 
     def submit(
-        self, title: str, function: str, *args: Any, about: str = "", **options: Any
+        self,
+        title: str,
+        function: str,
+        *args: Any,
+        about: str = "",
+        then: Sequence[Any] = (),
+        **options: Any,
     ) -> Task:
         """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
 
         The function writes what is to last into the project's folder; what it takes is plain data.
+        ``then`` (title, function, arguments) is queued when it is done, whoever looks.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(number, title, function, about, arguments=args, options=options)
+        task = Task(number, title, function, about, arguments=args, options=options, then=then)
         self.tasks[number] = task
         self._waiting.append(task)
         self._changed(task)
@@ -200,7 +209,7 @@ class Jobs:
 
     def again(self, task: Task) -> Task:
         """Queue a task once more."""
-        about = {"about": task.about, **task.options}
+        about = {"about": task.about, "then": task.then, **task.options}
         return self.submit(task.title, task.function, *task.arguments, **about)
 
     def latest(self, about: str, function: str) -> Task | None:
@@ -256,6 +265,8 @@ class Jobs:
                 task.function, *task.arguments, heard=heard, **task.options
             )
             self._end(task, DONE)
+            if task.then:
+                self.submit(*task.then, about=task.about, **task.options)
         except Cancelled:
             self._end(task, STOPPED)
         except Exception as error:

@@ -119,7 +119,8 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
         try:
             return await handler(await request.json())
         except Exception as error:
-            return {"problem": " ".join(words for _, words in problem_parts(error))}
+            words = " ".join(words for _, words in problem_parts(error))
+            return {"problem": words, "again": isinstance(error, OSError)}
 
     @application.post("/api/quantity")
     async def quantity(request: Request) -> Any:

@@ -109,30 +109,37 @@ class Session:
         """
         return await (lane or self.jobs.live).ask(function, *args, **self._shown, **options)
 
-    def submit(
-        self, title: str, function: str, *args: Any, about: str = "", **options: Any
-    ) -> Task:
+    def submit(self, title: str, function: str, *args: Any, **options: Any) -> Task:
         """Queue a long job, whose texts are in units and language of the page; return its task."""
-        return self.jobs.submit(title, function, *args, about=about, **self._shown, **options)
+        return self.jobs.submit(title, function, *args, **self._shown, **options)
 
     @property
     def _shown(self) -> dict[str, str]:
         return {"units": self.units, "language": self.text.language}
 
     def follow(
-        self, state: Callable[[], object], changed: Callable[[], object]
-    ) -> Callable[[], None]:
+        self,
+        state: Callable[[], object],
+        changed: Callable[[], object],
+        busy: Callable[[], bool] = lambda: False,
+    ) -> Callable[..., None]:
         """Call ``changed`` when ``state`` has another value: a page shows what another one did.
 
-        Returns a function that takes the present state as shown: what this page did itself.
+        It waits while the page is ``busy``. Returns a function that takes the present state as
+        shown; given what this page does itself it does that, and what another page did just before
+        is still to be shown.
         """
         shown = [state()]
 
-        def take() -> None:
-            shown[0] = state()
+        def take(own: Callable[[], object] | None = None) -> None:
+            current = own is None or state() == shown[0]
+            if own is not None:
+                own()
+            if current:
+                shown[0] = state()
 
         async def look() -> None:
-            if state() != shown[0]:
+            if state() != shown[0] and not busy():
                 take()
                 followed = changed()
                 if isawaitable(followed):

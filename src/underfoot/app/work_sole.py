@@ -14,7 +14,7 @@ from underfoot.compute.sole import new_sole, sole_shape
 from underfoot.core import InputError, Progress
 from underfoot.core.fields import labelled
 from underfoot.core.files import checksum
-from underfoot.report.outsole import OutsoleInspection
+from underfoot.report.outsole import OutsoleInspection, case_shoe
 from underfoot.report.surface_mesh import surface_mesh
 from underfoot.shoe import heel_map
 from underfoot.shoe.files import FileSettings, outsole_from_mesh, read_mesh
@@ -35,8 +35,12 @@ STEP, WIDEST, HALVINGS = 1.1, 60e-3, 10
 the widest of them, and how often what lies between is halved."""
 
 
-def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress) -> dict[str, Any]:
+def inspected_sole(
+    path: str, settings: Mapping[str, Any], folder: str = "", *, progress: Progress
+) -> dict[str, Any]:
     """Return an outsole file as it is read with ``settings``: in words and as a part of a page.
+
+    ``shoe`` is that of a case in ``folder``, as ``underfoot outsole inspect --out`` writes it.
 
     Raises:
         InputError, DataError: As ``outsole_from_file``; the file changed while it was read.
@@ -74,7 +78,8 @@ def inspected_sole(path: str, settings: Mapping[str, Any], *, progress: Progress
         )
     whole = surface_mesh(surface.x, surface.y, surface.height, surface.land)
     html = sole_html(Drawn(inspection.file.name, fields), whole)
-    return {**presented(inspection), "html": html, "sha256": before}
+    shoe = case_shoe(inspection, Path(folder or file.parent))
+    return {**presented(inspection), "html": html, "shoe": shoe}
 
 
 def equal_land(

@@ -97,6 +97,7 @@ class Continuation:
         ConvergenceError: The case itself does not converge.
     """
 
+    @threads_limited(1)
     def __init__(self, case: Case, *, quick: bool = True, progress: Progress = silent) -> None:
         _refuse_history(case)
         self.case = case
@@ -113,6 +114,7 @@ class Continuation:
             )
 
     @cached_property
+    @threads_limited(1)
     def values(self) -> dict[str, float]:
         """Scalars of the march by name, SI."""
         return place_numbers(self._parts, self.contact)
@@ -128,6 +130,7 @@ class Continuation:
         return None if self._drawn.sampled is None else self._drawn.sampled.cof
 
     @cached_property
+    @threads_limited(1)
     def _drawn(self) -> ContactFriction:
         return self._friction(self._parts, self.contact)
 
@@ -141,6 +144,7 @@ class Continuation:
         """How unknown the film is (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
 
+    @threads_limited(1)
     def continued(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:
         """Return what the changes (path in the case: new value) make of the contact.
 
@@ -214,7 +218,6 @@ class Continuation:
         return parts, first, second
 
 
-@threads_limited(1)
 def preview(
     case: Case, changes: Mapping[str, Any], *, quick: bool = True, progress: Progress = silent
 ) -> Preview:

@@ -37,12 +37,14 @@ def line_chart(
         parts.append(
             f'<path d="M{LEFT} {at_y(value):.1f}H{WIDTH - 10}" stroke="currentColor" '
             f'opacity="0.15"/><text x="{LEFT - 6}" y="{at_y(value) + 4:.1f}" '
-            f'text-anchor="end">{value:g}</text>'
+            f'text-anchor="end">{value:.12g}</text>'
         )
     for value in across:
+        last = value == across[-1]  # stays inside
+        x_text, anchor = (WIDTH - 1, "end") if last else (f"{at_x(value):.1f}", "middle")
         parts.append(
-            f'<text x="{at_x(value):.1f}" y="{HEIGHT - BOTTOM + 16}" text-anchor="middle">'
-            f"{value:g}</text>"
+            f'<text x="{x_text}" y="{HEIGHT - BOTTOM + 16}" text-anchor="{anchor}">'
+            f"{value:.12g}</text>"
         )
     middle = f'x="{(LEFT + WIDTH) / 2}" y="{HEIGHT - 6}"'
     parts.append(f'<text {middle} text-anchor="middle">{escape(x_label)}</text>')

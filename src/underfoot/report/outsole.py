@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from underfoot.case import text as toml
 from underfoot.core.files import checksum
 from underfoot.core.html import embedded, new_figure
 from underfoot.core.page import Picture, Section, remark_sections, table_sections
@@ -364,3 +365,8 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
         if thickness is None
         else f'"{thickness * 1e3:.3g} mm"  # with the lugs, as in the file',
     )
+
+
+def case_shoe(inspection: OutsoleInspection, out: Path) -> dict[str, Any]:
+    """Return the shoe of ``case_text`` as plain data: what a case takes from a file."""
+    return dict(toml.parsed(case_text(inspection, out))["shoe"])

@@ -187,7 +187,11 @@ def inlet_of_a_worn_heel(corner: float = 30.3e-3) -> Check:
 
 
 def heel_on_two_grids() -> Check:
-    """Load on the film of an untreaded work shoe in glycerol on cells of 1.5 mm and of 1 mm."""
+    """Load on the film of an untreaded work shoe in glycerol on cells of 1 mm and of 0.75 mm.
+
+    1 mm is the grid for a first look. Coarser ones scatter by some percent about the answer, as
+    their rows of cells meet the edges of the facet: 187, 167 and 179 N on 1.7, 1.5 and 1.25 mm.
+    """
     case = Case(
         shoe="work_shoe_untreaded",
         floor="vinyl_g4",
@@ -196,7 +200,7 @@ def heel_on_two_grids() -> Check:
         numerics={"cells_along": 16},
     )
     coarse, fine = (
-        _usable(solved_motion(prepared(case, spacing))).fluid_load for spacing in (1.5e-3, 1e-3)
+        _usable(solved_motion(prepared(case, spacing))).fluid_load for spacing in (1e-3, 0.75e-3)
     )
     return Check(
         "sole solver: untreaded heel in glycerol, load on the film (N)",

@@ -58,7 +58,8 @@ def begin_run(session: Session, name: str) -> Task:
             return task
         session.jobs.cancel(task)  # the file has changed since it began
     arguments = str(project.path(name)), str(project.result_folder(name))
-    return session.submit(job, RUN, *arguments, about=name)
+    help_job = (session.text("answer.help_job"), ADVICE, *arguments)
+    return session.submit(job, RUN, *arguments, about=name, then=help_job)
 
 
 def example(session: Session) -> None:
@@ -114,9 +115,6 @@ class _Answer:
                 with self.progress:
                     ui.label(done.problem).classes("problem problem-what").props('role="alert"')
             if done.state == DONE:
-                path = str(self.session.project.path(self.name))
-                arguments = (self.text("answer.help_job"), ADVICE, path, str(self.folder))
-                self.session.submit(*arguments, about=self.name)
                 self._reload()
 
         self.progress.clear()

@@ -76,7 +76,8 @@ class _Compare:
             for name in self.choice.value:
                 if not self.session.project.is_current(name):
                     ui.label(self.text("compare.changed", name=name)).classes("caution")
-            ui.label(" ".join(comparison["headline"])).classes("lead")
+            headline = " ".join(comparison["headline"]).replace(" %", "\u00a0%")
+            ui.label(headline).classes("lead")
             sentences(comparison["cautions"], "soft")
         with self.rest:
             self._sortable()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from nicegui import ui
@@ -44,6 +45,16 @@ TREAD = (
     Input("shoe.material.shore_a", "", 40.0, 90.0, 1.0),
     Input("shoe.wear.depth", "mm", 0.0, 6.0, 0.1),
 )
+LAYERS = (
+    Input("shoe.sole.outsole_thickness", "mm", 1.0, 60.0, 0.5),
+    Input("shoe.sole.midsole.thickness", "mm", 1.0, 60.0, 0.5),
+    Input("shoe.sole.midsole.modulus", "MPa", 0.1, 50.0, 0.1),
+    Input("shoe.roughness.ra", "um", 0.1, 50.0, 0.1),
+    Input("shoe.roughness.rq", "um", 0.1, 50.0, 0.1),
+)
+"""What carries the tread, and the surface of the rubber."""
+MIDSOLE = {"shoe.sole.midsole": {"modulus": "2 MPa", "thickness": "15 mm"}}
+"""Foam under the outsole as ``underfoot outsole inspect`` assumes it."""
 CONDITIONS = {
     "floor": (
         Input("floor.roughness.rq", "um", 0.1, 50.0, 0.1),
@@ -58,6 +69,8 @@ CONDITIONS = {
     ),
 }
 """Values of each part of the conditions that a person may set, beside its catalogue entry."""
+HELD = 0.8
+"""s after a slider was moved in which the form is not built anew."""
 KINDS = {"floor": "floor", "contaminant": "fluid", "motion": "setup"}
 """Kind of catalogue entry of each part."""
 
@@ -82,6 +95,7 @@ class _Design:
 
     def __init__(self, session: Session, name: str) -> None:
         self.session, self.name, self.text = session, name, session.text
+        self.moved = 0.0
 
     def show(self) -> None:
         title(self.text("design.title")).classes("hidden-title")
@@ -104,7 +118,9 @@ class _Design:
                 ui.label("").props('data-live=measures role="status"').classes("soft measures")
                 self.view = SoleView(self.session)
         self.shown = self.session.follow(
-            lambda: self.session.project.state(self.name)[0], self.fill
+            lambda: self.session.project.state(self.name)[0],
+            self.fill,
+            busy=lambda: monotonic() - self.moved < HELD,
         )
         self.fill()
 
@@ -173,7 +189,12 @@ class _Design:
             label = self.text("sole.grooves", count=len(grooves))
             last = ui.button(label, on_click=lambda: self.change(fewer))
             last.props("no-caps flat dense")
-        sliders(self.session, TREAD, case, self._drawn, self._keep, self.view, keep=True)
+        sliders(self.session, TREAD, case, self._moving, self._keep, self.view, keep=True)
+        for each in LAYERS:
+            number_field(self.session, each, case, self.change)
+        if case.value("shoe.sole.midsole") is None:
+            midsole = ui.button(self.text("sole.midsole"), on_click=lambda: self.change(MIDSOLE))
+            midsole.props("no-caps flat dense")
         ui.separator()
         sole_file.build(self.session, self.name, self.view, self.fill)
         measured_file.build(self.session, self.name, "sole", self.fill)
@@ -187,8 +208,12 @@ class _Design:
         return changes
 
     def _keep(self, changes: dict[str, Any]) -> None:
-        self.session.project.change(self.name, changes)
-        self.shown()
+        self.moved = 0.0
+        self.shown(lambda: self.session.project.change(self.name, changes))
+
+    async def _moving(self, changes: dict[str, Any]) -> dict[str, Any]:
+        self.moved = monotonic()  # a slider that is held is not taken away
+        return await self._drawn(changes)
 
     async def _drawn(self, changes: dict[str, Any]) -> dict[str, Any]:
         path = str(self.session.project.path(self.name))

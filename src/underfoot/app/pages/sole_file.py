@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -21,8 +22,8 @@ from .repair import references
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
 WORK = "underfoot.app.work_sole:inspected_sole"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
-DRAWN = ("shoe.heel", "shoe.tread", "shoe.sole")
-"""Parts of a case that an outsole from a file takes the place of."""
+OWN = ("shoe.material", "shoe.roughness", "shoe.wear", "shoe.sole.midsole")
+"""Parts of a shoe that stay as the person set them where an outsole comes from a file."""
 CHOICES = {
     "down": AXES,
     "forward": AXES,
@@ -126,8 +127,9 @@ class _Inspection:
         }
         read = dict(self.settings)
         try:
+            variants = str(self.session.project.inside("variants"))
             answer = await self.session.ask(
-                WORK, file, settings, lane=self.session.jobs.reading, heard=heard
+                WORK, file, settings, variants, lane=self.session.jobs.reading, heard=heard
             )
         except Exception as error:
             if read == self.settings:
@@ -148,13 +150,13 @@ class _Inspection:
         ui.run_javascript(f"showTexts({as_json(values)})")
         with self.reading:
             sentences(answer["headline"])
-            self._uses(answer["sha256"])
+            self._uses(answer["shoe"])
             for line in next(iter(answer["remarks"].values()), []):
                 ui.label(line).classes("assumed" if line.startswith("Assumed") else "soft")
             for shown in answer["tables"]:
                 table(shown)
 
-    def _uses(self, sha256: str) -> None:
+    def _uses(self, shoe: dict[str, Any]) -> None:
         """Show what can be done with the file: nothing is changed until one is pressed."""
         project, text = self.session.project, self.text
         path = project.inside(self.path)
@@ -167,16 +169,16 @@ class _Inspection:
         ]
 
         def use() -> None:
-            self._use([self.name], sha256)
+            self._use([self.name], shoe)
             self.used()
 
         def use_everywhere() -> None:
-            self._use([self.name, *others], sha256)
+            self._use([self.name, *others], shoe)
             self.used()
 
         def use_new() -> None:
-            new = project.copy(self.name, self.name)
-            self._use([new], sha256)
+            new = project.copy(self.name, Path(self.path).stem)
+            self._use([new], shoe)
             self.session.go("/design", variant=new)
 
         with ui.element("div").classes("row"):
@@ -186,11 +188,16 @@ class _Inspection:
                 words = text("sole_file.use_in", names=", ".join(others))
                 ui.button(words, on_click=use_everywhere).props("no-caps outline")
 
-    def _use(self, names: list[str], sha256: str) -> None:
+    def _use(self, names: list[str], shoe: dict[str, Any]) -> None:
+        """Give variants the shoe that a case of the file has; what a person set of it stays."""
         project = self.session.project
-        given = {key: value for key, value in self.settings.items() if value not in ("auto", None)}
-        outsole = {"file": f"../{self.path}", "sha256": sha256, **given}
         if not project.inside(self.path).is_file():
             raise InputError(f"there is no file {self.path}", where="sole")
-        for name in names:  # what was drawn with sliders gives way to the file; undo brings it back
-            project.change(name, {**dict.fromkeys(DRAWN), "shoe.outsole": outsole})
+        for name in names:  # undo brings back what was drawn with sliders
+            case = project.case(name)
+            kept = {part: entry for part, entry in case.entries.items() if part.startswith(OWN)} | {
+                path: case.value(path)
+                for path, origin in case.origins.items()
+                if path.startswith(OWN) and origin.kind == "given"
+            }
+            project.change(name, {"shoe": shoe, **kept})

@@ -8,6 +8,7 @@ from ..components import title
 from ..session import Session, address
 
 MOST_RECENT = 8
+KEPT = "path=/; max-age=31536000; SameSite=Strict"
 TOUR = ("doors", "sole", "compute", "live", "files")
 """Steps of the first-run tour, by the keys of their words."""
 
@@ -95,7 +96,7 @@ def _pack(session: Session) -> None:
 
 
 def _tour(session: Session) -> None:
-    """Offer the tour; it opens by itself where the project is new."""
+    """Offer the tour; it opens by itself once, where the project is new."""
     text = session.text
     with ui.dialog() as dialog, ui.card().classes("tour"), ui.stepper() as steps:
         dialog.props(f'aria-label="{text("tour.open")}"')
@@ -110,5 +111,8 @@ def _tour(session: Session) -> None:
                     ui.button(name, on_click=forward).props("no-caps unelevated")
                     ui.button(text("tour.skip"), on_click=dialog.close).props("no-caps flat")
     ui.button(text("tour.open"), icon="help_outline", on_click=dialog.open).props("no-caps flat")
-    if not session.project.variants() and not session.project.removed():
+    request, project = ui.context.client.request, session.project
+    new = not project.variants() and not project.removed()
+    if new and (request is None or "toured" not in request.cookies):
         dialog.open()
+        ui.run_javascript(f'document.cookie = "toured=1; {KEPT}"')

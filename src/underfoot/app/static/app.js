@@ -42,15 +42,15 @@ async function showPart(id, address) {
 }
 
 // Send files one after the other into a folder of the project; "files" says where they are.
-const unopened = new Map(); // places for files in tabs that were not opened yet
-new MutationObserver(() => unopened.forEach((given, id) => {
-  if (document.getElementById(id)) { unopened.delete(id); takeFiles(id, ...given); }
+const unopened = new Map(); // what waits for its place: in tabs not opened yet, or not drawn yet
+new MutationObserver(() => unopened.forEach((begin, id) => {
+  if (document.getElementById(id)) { unopened.delete(id); begin(); }
 })).observe(document.documentElement, { childList: true, subtree: true });
 
 function takeFiles(id, settings, words) {
   const { folder, most, multiple, accept } = settings;
   const zone = document.getElementById(id), state = zone?.querySelector(".drop-state");
-  if (!zone) { unopened.set(id, [settings, words]); return; }
+  if (!zone) { unopened.set(id, () => takeFiles(id, settings, words)); return; }
   const input = Object.assign(document.createElement("input"), { type: "file", multiple, accept, hidden: true });
   zone.append(input);
   const say = (text, ...values) => { state.textContent = values.reduce((t, v, k) => t.replace(`%${k + 1}`, v), text); };
@@ -126,7 +126,7 @@ addEventListener("lug", ({ target: viewer }) => {
       note.role = problem || outside ? "alert" : "";
       if (!problem && !outside) setSlider(slider, value * size, true);
     });
-    label.append(document.querySelector(`label[for="${slider.id}"]`).textContent, field, slider.dataset.unit);
+    label.append(document.querySelector(`label[for="${slider.id}"]`).firstChild.data, field, slider.dataset.unit);
     card.append(label);
   }
   place.querySelector(".lug-card")?.remove();
@@ -155,7 +155,9 @@ function showTexts(texts) {
 // Where a slider has come to rest the question says "last": at once where values are kept, so that
 // none is lost to who goes on quickly, else after a moment.
 function askLive(id, address, soleId, keep) {
-  const root = document.getElementById(id), inputs = [...(root?.querySelectorAll("input[type=range]") || [])];
+  const root = document.getElementById(id);
+  if (!root) { unopened.set(id, () => askLive(id, address, soleId, keep)); return; }
+  const inputs = [...root.querySelectorAll("input[type=range]")];
   let asked = "{}", settled = "{}", busy = false, telling = false, held = false, resting = 0;
   const value = (input) => {
     if (!input.dataset.moved) return Number(input.dataset.given);
@@ -168,7 +170,8 @@ function askLive(id, address, soleId, keep) {
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };
-  const tell = (words) => { root.querySelector("[data-part=problem]").textContent = words || ""; };
+  let unkept = ""; // why the last value is not in the file: said until it is
+  const tell = (words) => { root.querySelector("[data-part=problem]").textContent = unkept || words || ""; };
   async function send(now, last) {
     const body = `{"values": ${now}, "last": ${last}}`, headers = { "content-type": "application/json" };
     try {
@@ -202,16 +205,18 @@ function askLive(id, address, soleId, keep) {
     if (telling) return;
     telling = true;
     for (let now = values(); now !== settled; now = values()) {
-      settled = now;
       const answer = await send(now, true);
-      if (answer.problem) tell(answer.problem);
+      unkept = answer.problem || "";
+      tell();
+      if (answer.again && document.body.contains(root)) { setTimeout(rest, 1000); break; } // a full disk: until there is room
+      settled = now;
     }
     telling = false;
   }
   if (keep) addEventListener("pagehide", () => { if (values() !== settled) send(values(), true); });
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { input.dataset.moved = "yes"; held = true; clearTimeout(resting); show(input); ask(); });
+    input.addEventListener("input", () => { input.dataset.moved = "yes"; input.labels[0].querySelector("small").textContent = root.dataset.own; held = true; clearTimeout(resting); show(input); ask(); });
     input.addEventListener("change", () => { held = false; if (keep) rest(); else later(); });
   }
 }

@@ -48,7 +48,7 @@ function asForm(core, small, depth, wanted) {
   for (const [form, other, fixed, withWords] of sentenceForms) {
     const as = form.test(core) ? core : small, parts = wanted(fixed) && form.exec(as);
     if (!parts || (withWords && parts.slice(1).some((part) => !isKnown(part, depth)))) continue;
-    const said = other.replace(/\{(\d)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
+    const said = other.replace(/\{(\d+)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
     return as === core ? said : capital(said);
   }
   return null;

@@ -82,8 +82,10 @@ function startStudy(root) {
     });
     columns.forEach((column, c) => {
       const at = 40 + c * step, s = scales[c], texts = s.names ? [s.names[0], s.names.at(-1)] : s.ends.map(short);
+      const ends = [{ x: 4, "text-anchor": "start" }, { x: 616, "text-anchor": "end" }]; // a name at the edge stays inside
+      const name = c === 0 ? ends[0] : c === columns.length - 1 ? ends[1] : { x: at, "text-anchor": "middle" };
       shapes.push(element("line", { x1: at, x2: at, y1: 50, y2: 310, class: "axis" }));
-      shapes.push(element("text", { x: at, y: c % 2 ? 14 : 28, "text-anchor": "middle" }, column.name.length > 24 ? `${column.name.slice(0, 23)}…` : column.name));
+      shapes.push(element("text", { ...name, y: c % 2 ? 14 : 28 }, column.name.length > 24 ? `${column.name.slice(0, 23)}…` : column.name));
       shapes.push(element("text", { x: at, y: 44, "text-anchor": "middle" }, texts[1]), element("text", { x: at, y: 324, "text-anchor": "middle" }, texts[0]));
       if (column.unit) shapes.push(element("text", { x: at, y: 338, "text-anchor": "middle" }, column.unit));
     });

@@ -608,6 +608,7 @@ async function startViewer(root) {
       if (!same) return false;
       await Promise.all(fresh.panes.map(unpackPane));
       const chosen = scene.quantities.indexOf(state.quantity);
+      const size = () => scene.panes.flatMap((p) => [p.x0, p.y0, p.x0 + p.nx * p.spacing, p.y0 + p.ny * p.spacing]), before = size();
       scene.panes.forEach((pane, k) => {
         Object.assign(pane, fresh.panes[k]);
         const name = stages[k].querySelector(".pane-name");
@@ -618,6 +619,10 @@ async function startViewer(root) {
       state.cell = -1;
       if (state.lug) state.lug = lugAt(state.lug.pane, cellOf(scene.panes[state.lug.pane], state.lug.place));
       await choose(scene.quantities[chosen]);
+      if (size().some((end, k) => Math.abs(end - before[k]) > 0.01)) { // m; another sole: all of it
+        Object.assign(view, fit(view.turn, view.tilt));
+        redraw();
+      }
       return true;
     },
   };

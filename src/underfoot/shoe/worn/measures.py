@@ -72,10 +72,11 @@ def surface_wear_measures(new: SoleSurface, worn: SoleSurface) -> WearMeasures:
     that had no tread are left aside, and so is the rounded rim, where a lug measures less than half
     of the median height.
     """
-    inside = new.inside
-    removed = np.where(inside, np.nan_to_num(worn.land_base - new.land_base), 0.0)
+    inside, lug = new.inside, nearest_true(new.land)
+    # what the land lost: between the lugs its base is a guess, on a bevel off by the bevel's rise
+    removed = np.where(inside, np.nan_to_num(worn.land_base - new.land_base)[lug], 0.0)
     raised = np.nan_to_num(worn.height - new.height)[inside]
-    depth = np.where(inside, new.tread_depth[nearest_true(new.land)], 0.0)
+    depth = np.where(inside, new.tread_depth[lug], 0.0)
     lugs = depth[depth > 0]
     if lugs.size:
         depth = np.where(depth < SHALLOW * np.median(lugs), 0.0, depth)
