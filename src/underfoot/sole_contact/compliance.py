@@ -356,7 +356,10 @@ def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:
 
     nearest = distance_transform_edt(~land, return_distances=False, return_indices=True)
     assert isinstance(nearest, np.ndarray)
-    return above[nearest[0], nearest[1]]
+    filled = above[nearest[0], nearest[1]]
+    mirrored = filled[:, ::-1]
+    # of two places as near the transform takes either: a sole that is its image has a body that is
+    return 0.5 * (filled + mirrored) if np.array_equal(above, above[:, ::-1]) else filled
 
 
 def mean_lug_depth(sole: SoleMap) -> float:
