@@ -197,7 +197,7 @@ def test_a_comparison_that_can_t_tell_names_what_would():
     )
     unlike = compare(bars, hexagons, quick=True)
     assert "is not decided" in unlike.headline()[0]
-    assert "COF of both soles on one tester" in unlike.headline()[1]
+    assert "COF of both on one tester" in unlike.headline()[1]
     like = compare(bars, bars.replace({"name": "b", "shoe.tread.depth": "3.02 mm"}), quick=True)
-    assert "is not decided" in like.headline()[0]
-    assert "No reading would tell" in like.headline()[1]
+    assert "equal for every purpose" in like.headline()[0]
+    assert "too small to see" in like.headline()[0]

@@ -542,7 +542,8 @@ def test_the_ranking_is_that_of_another_grid_and_other_positions_of_the_tread(qu
     assert here == pytest.approx(there, abs=0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.study
+@pytest.mark.xfail(strict=True, reason="0.14 for 0.16 of 25 mm: steady sliding empties the patch")
 def test_a_larger_worn_region_carries_more_load_on_its_film():
     """Its threshold is no rule here: what a region does comes of the film under it.
 

@@ -131,10 +131,10 @@ class Session:
         """
         shown = [state()]
 
-        def take(own: Callable[[], object] | None = None) -> None:
-            current = own is None or state() == shown[0]
-            if own is not None:
-                own()
+        def take(action: Callable[[], object] | None = None) -> None:
+            current = action is None or state() == shown[0]
+            if action is not None:
+                action()
             if current:
                 shown[0] = state()
 
