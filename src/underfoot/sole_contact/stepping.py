@@ -37,6 +37,7 @@ STEADY_MOVE = 3e-3  # share of the load that may change its place then
 MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
 CREEPING = 100.0  # s in which a sole slides its length, from which half the elapsed time counts
 SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
+HOVERING = 10  # steps that lie within ``SLOW`` where a film never rests
 LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
 MEMORY = 0.5  # of the time in which a sole slides its length: what a film remembers
 MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from its map's angle
@@ -206,7 +207,8 @@ class SlidingSole:
         At rest: over a step of a quarter of the elapsed time, in which the sole slides its own
         length, the load on the film changes by less than 1e-4 of the whole, and less than 3e-3 of
         it moves to another place. Where long steps keep failing, a film is at rest that changes by
-        less than 1 % while the sole slides twice its length.
+        less than 1 % while the sole slides twice its length; after ``LONGEST_TIME`` one whose last
+        ten steps lie within 1 %.
         """
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
@@ -221,6 +223,11 @@ class SlidingSole:
             change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
             least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
             return begin > loading and change < SLOW * least
+
+        def hovers() -> bool:
+            film = np.array(self.history.fluid_load[-HOVERING:])
+            least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
+            return bool(np.ptp(film) < SLOW * least)
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
@@ -240,7 +247,7 @@ class SlidingSole:
         longest_step = longest / LEAST_STEPS
         ramp = self._ramp(longest, normal_force, speed, None)
         done = self._loop(ramp, longest, longest_step, most_steps, settled)
-        return self._state(done)
+        return self._state(done or (self._time >= longest * (1 - 1e-12) and hovers()))
 
     def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
         """Set what holds at time 0, before the first ``advance``, which ramps from here.
