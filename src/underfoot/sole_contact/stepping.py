@@ -208,7 +208,7 @@ class SlidingSole:
         length, the load on the film changes by less than 1e-4 of the whole, and less than 3e-3 of
         it moves to another place. Where long steps keep failing, a film is at rest that changes by
         less than 1 % while the sole slides twice its length; after ``LONGEST_TIME`` one whose last
-        ten steps lie within 1 %.
+        ten steps lie within that.
         """
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
@@ -220,6 +220,8 @@ class SlidingSole:
         def slow() -> bool:
             begin = self._time - (2 * passing if passing < CREEPING else 0.5 * self._time)
             film = self.history.fluid_load
+            if not film:
+                return False
             change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
             least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
             return begin > loading and change < SLOW * least
@@ -247,7 +249,8 @@ class SlidingSole:
         longest_step = longest / LEAST_STEPS
         ramp = self._ramp(longest, normal_force, speed, None)
         done = self._loop(ramp, longest, longest_step, most_steps, settled)
-        return self._state(done or (self._time >= longest * (1 - 1e-12) and hovers()))
+        rests = hovers if self._time >= longest * (1 - 1e-12) else slow
+        return self._state(done or rests())
 
     def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
         """Set what holds at time 0, before the first ``advance``, which ramps from here.
