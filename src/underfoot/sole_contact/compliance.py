@@ -132,7 +132,7 @@ class ConvolutionCompliance:
     def under_hats(self, hats: sp.csr_matrix) -> Array:
         """Return B^T C B (m/Pa) of fields B (cells, n), in single precision."""
         shape = self._self.shape
-        loaded = (np.diff(hats.indptr) > 0).reshape(shape)
+        loaded: Any = (np.diff(hats.indptr) > 0).reshape(shape)
         rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.arange(loaded.size).reshape(shape)[box]
