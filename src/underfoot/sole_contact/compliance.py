@@ -132,15 +132,15 @@ class ConvolutionCompliance:
     def under_hats(self, hats: sp.csr_matrix) -> Array:
         """Return B^T C B (m/Pa) of fields B (cells, n), in single precision."""
         shape = self._self.shape
-        loaded: Any = (np.diff(hats.indptr) > 0).reshape(shape)
+        loaded = (np.diff(hats.indptr) > 0).reshape(shape)
         rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.arange(loaded.size).reshape(shape)[box]
         near: Any = hats[cells.ravel()]
         fields = cast("Any", sp.csc_matrix(near))
         part = self.within(box, np.float32)
-        risen = np.empty((cells.size, hats.shape[1]))
-        for k in range(hats.shape[1]):
+        risen = np.empty((cells.size, fields.shape[1]))
+        for k in range(fields.shape[1]):
             field = fields[:, [k]].toarray().reshape(cells.shape).astype(np.float32)
             risen[:, k] = part.apply(field).ravel()
         return fields.T @ risen
