@@ -166,6 +166,7 @@ def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
             task.click(page.get_by_role("button", name="At equal land"))
             page.get_by_role("cell", name="B, land of A", exact=True).wait_for()
             drawn(page)
+        page.locator(".pane-name", has_text="B, land of A").wait_for()
         assert page.locator(".pane-name").all_inner_texts() == ["A A", "B B, land of A"]
         page.get_by_text("give B the land of A").wait_for()
         a, b = (project.case(name) for name in ("A", "B, land of A"))

@@ -106,7 +106,6 @@ def test_a_variant_whose_file_is_gone_or_another_is_repaired_on_its_page(app, pr
         assert page.complaints == []
 
 
-@pytest.mark.xfail(reason="the full run of a tread worn off ends after 300 s, or not converged")
 def test_a_refused_preview_leaves_no_number_and_the_full_run_answers(app):
     with page_of(app.link) as page:
         computed(page, app)

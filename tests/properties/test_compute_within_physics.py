@@ -7,6 +7,9 @@ import numpy as np
 import pytest
 
 from underfoot import Case, run
+from underfoot.compute.positions import Place
+from underfoot.compute.prepare import prepared
+from underfoot.compute.solve import solved_at
 from underfoot.core import UnderfootError
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -45,6 +48,16 @@ def test_a_flat_pad_that_floats_at_its_own_angle_has_an_answer():
     assert film.max() > 0.98 * 44.5
     assert film.min() < 0.5 * 44.5
     assert beyond_physics(case, result) == []
+
+
+def test_a_tread_worn_through_has_an_answer_at_every_speed():
+    """Cells pressed shut with liquid in them held Newton's method up at a third of the speeds."""
+    pair = {"shoe": "work_shoe_full_tread", "floor": "vinyl_g4", "contaminant": "glycerol_90pct"}
+    worn = Case(**pair, motion="slip_tester_g4").replace("shoe.wear.depth", "4 mm")
+    for speed in ("0.64 m/s", "0.76 m/s", "0.88 m/s"):
+        case = worn.replace("motion.speed", speed)
+        _, contact = solved_at(prepared(case, 1.2e-3), Place(), 1.2e-3)
+        assert contact.status.usable
 
 
 @pytest.mark.slow

@@ -103,12 +103,13 @@ class FilmBalance:
         self._upstream, self._inlet = upstream, inlet
 
     def rows(
-        self, gap: Array, fluid: Array, stiffness: Array, full: Mask, faint: float
+        self, gap: Array, fluid: Array, stiffness: Array, full: Mask, faint: float, stuck: bool
     ) -> FilmRows:
         """Return the balance at a gap (cells,) and a fluid pressure (size,), Pa above the cavities.
 
         ``fluid`` is load per area of a cell, as are the columns by pressure. Which cells are full
-        is judged on the balance of those that were, ``full``.
+        is judged on the balance of those that were, ``full``. Where Newton is ``stuck``, gaps that
+        are pressed shut and hold too much liquid count as fixed, as the flow sees them.
         """
         faces, wet, give, problem = self._faces, self._wet, self._give, self._problem
         size = faces.size
@@ -130,7 +131,8 @@ class FilmBalance:
         pressure, fraction, net, cavity = self._balance(operator, fluid, before)
         by_gap = operator.by_gap(pressure, fraction)
         diagonal = by_pressure.diagonal[:size] * (1 + stiffness * give)
-        diagonal += np.abs(by_gap.diagonal[:size]) * give
+        shut = (gap[:size] < SMALLEST_GAP) & (net > 0) & stuck
+        diagonal += np.abs(by_gap.diagonal[:size]) * give * ~shut
         lacks = by_fraction.diagonal[:size] * (1 - fraction[:size])
         # at rest nothing flows and nothing is pressed: such a cell counts as full
         full = wet & (fluid - (net + lacks) / diagonal >= -faint)
@@ -145,7 +147,9 @@ class FilmBalance:
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
         moved = float((np.abs(carried) + stored)[self._film].sum()) + 1e-30
         # a gap that is pressed shut can open again: rows that did not know had no solution
-        by_gap = by_gap.columns((gap <= problem.largest_gap).astype(np.float64))
+        moves = gap <= problem.largest_gap
+        moves[:size] &= (gap[:size] >= SMALLEST_GAP) | (net <= 0) | (not stuck)
+        by_gap = by_gap.columns(moves.astype(np.float64))
         return FilmRows(
             full,
             net,

@@ -38,6 +38,7 @@ from .row_compliance import RowCompliance
 
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
+STUCK = 6  # such steps after which gaps that are pressed shut count as fixed
 CYCLES = (2, 3, 4)  # Newton steps after which a balance may come again
 CYCLE = 0.05  # relative difference of such balances that counts as none
 THIN = 2e-4  # m; steps are limited where the film is thinner
@@ -208,7 +209,7 @@ def implicit_step(
         above = total - asperity - floor
         rows, residual, imbalance = None, above, 0.0
         if balance is not None:
-            rows = balance.rows(gap, above, stiffness, full, faint)
+            rows = balance.rows(gap, above, stiffness, full, faint, _stuck(balances))
             full = rows.full
             residual = np.where(full, rows.imbalance / rows.diagonal, above)
             imbalance = rows.error
@@ -281,7 +282,12 @@ def _hopeless(residuals: list[float]) -> bool:
         return False
     if residuals[-1] > 1e3 * max(residuals[0], 1.0):
         return True
-    return len(residuals) > STALL and min(residuals[-STALL:]) > 0.5 * min(residuals[:-STALL])
+    return _stuck(residuals, STALL)
+
+
+def _stuck(balances: list[float], steps: int = STUCK) -> bool:
+    """Return whether so many steps have not halved what was reached before."""
+    return len(balances) > steps and min(balances[-steps:]) > 0.5 * min(balances[:-steps])
 
 
 def _cycling(balances: list[float]) -> bool:

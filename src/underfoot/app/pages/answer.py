@@ -111,9 +111,8 @@ class _Answer:
 
         async def ended(done: Task) -> None:
             self.run_button.enable()
-            if done.problem:
-                with self.progress:
-                    ui.label(done.problem).classes("problem problem-what").props('role="alert"')
+            with self.progress:
+                _alert(done.problem)
             if done.state == DONE:
                 self._reload()
 
@@ -315,14 +314,21 @@ class _Answer:
         self.behind.clear()
 
         async def ended(done: Task) -> None:
-            if done is not self.tried or done.state != DONE or done.answer is None:
+            if done is not self.tried:
+                return
+            with self.behind:
+                _alert(done.problem)
+            if done.state != DONE:
                 return
             answer = await self.session.ask("underfoot.app.work:answer", folder)
-            self.view.show(answer["html"])
             self.behind.clear()
             with self.behind:
                 if not self.preview_cof:  # what waited for this run waits no more
                     ui.run_javascript('showTexts({preview: "", preview_note: ""})')
+                if done.answer is None:  # ended without a number to trust
+                    _alert(answer["verdict"])
+                    return
+                self.view.show(answer["html"])
                 cof, before = f"{done.answer:.3f}", f"{self.preview_cof:.3f}"
                 message = self.text("answer.full_run", cof=cof)
                 if self.preview_cof:
@@ -421,3 +427,9 @@ class _Answer:
 
 def _capital(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:]
+
+
+def _alert(problem: str) -> None:
+    """Say a problem where there is one."""
+    if problem:
+        ui.label(problem).classes("problem problem-what").props('role="alert"')
