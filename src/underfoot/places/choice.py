@@ -469,7 +469,7 @@ def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: JointDr
     return slip_chances(acof, people, MODEL, joint.normal)
 
 
-def test_cof(
+def tested_cof(
     joint: JointDraws, case: Any, law: PairContactLaw, shoe: PlaceShoe, test: SlipTest
 ) -> Array:
     """Return draws (count,) of the COF that a test house reads of the new sole of a case."""
@@ -479,9 +479,6 @@ def test_cof(
         pressure=CONTACT_PRESSURE, drag=test.viscosity * SPEED,
     )  # fmt: skip
     return cof * np.exp(joint.error(tread_error(test.viscosity), tread_place(case)))
-
-
-test_cof.__test__ = False  # type: ignore[attr-defined]
 
 
 @threads_limited(1)
@@ -670,13 +667,13 @@ def _learn(
         case = cases[shoe.name]
         law = _law(case)
         for one in shoe.readings:
-            cof = test_cof(joint, case, law, shoe, slip_tests()[one.test])
+            cof = tested_cof(joint, case, law, shoe, slip_tests()[one.test])
             joint.learn(joint.log_likelihood(cof, one.reading), f"shoe {shoe.name}")
         known = shoe.known_class
         if known is not None:
             passed = np.zeros(joint.count)
             for one in known.readings:
-                cof = test_cof(joint, case, law, shoe, one.test)
+                cof = tested_cof(joint, case, law, shoe, one.test)
                 passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
@@ -797,7 +794,7 @@ def _measurements(
     test = slip_tests()[CHECKED[1][0]]
     readings += [
         (f"{CHECKED[1][1]} {shoe.name}",
-         test_cof(joint, cases[shoe.name], _law(cases[shoe.name]), shoe, test))
+         tested_cof(joint, cases[shoe.name], _law(cases[shoe.name]), shoe, test))
         for shoe in place.shoes if not shoe.readings
     ]  # fmt: skip
     for name, cof in readings:
