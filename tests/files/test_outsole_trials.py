@@ -1,5 +1,6 @@
 """Outsole files as designers have them: read right without an option, or refused in words."""
 
+import math
 import os
 import zipfile
 
@@ -353,6 +354,26 @@ def test_heel_piece_is_assumed_and_can_be_swapped(length):
     assert found.forward == "+x"
     assert "Assumed: a heel piece, cut at its front" in said(found)
     assert read(piece, FileSettings(spacing=1e-3, forward="flip")).forward == "-x"
+
+
+def heel_cut(degrees, sides=35.5, width=70.0):
+    """A heel rounded behind whose sides run straight for ``sides`` mm to an oblique front."""
+    shapely = made.shapely
+    round_end = shapely.Point(35, 0).buffer(35, quad_segs=32)
+    body = shapely.union_all([round_end, shapely.box(35, -width / 2, 35 + 2 * sides, width / 2)])
+    lean = math.tan(math.radians(degrees)) * width / 2
+    front = [(-9, -width), (35 + sides - 2 * lean, -width), (35 + sides + 2 * lean, width)]
+    return body.intersection(shapely.Polygon([*front, (-9, width)]))
+
+
+@pytest.mark.parametrize("turned", [0, 90])
+@pytest.mark.parametrize(
+    ("degrees", "sides"), [(0, 34), (7.3, 31), (-12, 28), (20, 35.5), (15, 42)]
+)
+def test_a_heel_as_wide_as_long_points_to_its_cut(degrees, sides, turned):
+    plan = made.shapely.affinity.rotate(heel_cut(degrees, sides), turned, origin=(0, 0))
+    found = read(plain_sole(plan, made.bars))
+    assert found.forward == ("+x", "+y")[turned // 90]
 
 
 @pytest.mark.parametrize("height", [10.0, 0.0], ids=("behind the sole", "level with its land"))
