@@ -319,6 +319,30 @@ def test_a_lay_is_named_and_numbers_are_across_it(tmp_path, degrees, sides):
     assert "lay" in " ".join(scan.headline())
 
 
+@pytest.mark.parametrize(("first", "second"), [(0, 90), (20, 110), (30, 150), (45, 100)])
+@pytest.mark.parametrize("ratio", [1.0, 0.5])
+@pytest.mark.parametrize("sides", [(1e-5, 1e-5), (1e-5, 1.6e-5)])
+def test_crossed_lays_are_named_and_both_count(tmp_path, first, second, ratio, sides):
+    one, other = (ridges(angle, 256, 256, sides).heights for angle in (first, second))
+    (tmp_path / "a.gsf").write_bytes(gsf(one + ratio * other, sides))
+    scan = read_scan(tmp_path / "a.gsf")
+    found = np.degrees(scan.texture.lays)
+    assert found.size == 2
+    for lay in (first, second):
+        assert abs((found - lay + 90) % 180 - 90).min() < 2
+    heights = one + ratio * other
+    assert scan.values["rq"].value == pytest.approx(3.42e-6 * np.hypot(1, ratio), rel=0.04)
+    # a stylus between the lays meets longer waves: of 452 um the filter takes 11 %, not 3 %
+    assert 0.8 < scan.values["ra"].value / np.abs(heights).mean() < 1.01
+    assert scan.values["rt"].value < np.ptp(heights)
+    assert "crossed lays" in " ".join(scan.headline())
+
+
+def test_noise_of_single_points_has_no_lay():
+    heights = np.random.default_rng(1).standard_normal((128, 160)) * 1e-6
+    assert not texture(HeightMap(heights, 1e-5)).has_lay
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_random_isotropic_map_has_no_lay(seed):
     made = self_affine(256, 1e-5, 5e-6, 0.8, 1e-3, 8e-5, seed)
