@@ -235,7 +235,8 @@ def _power(surface: HeightMap) -> tuple[Array, Array, Array]:
             window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n)
             z = z * window.reshape([-1 if a == axis else 1 for a in (0, 1)])
     qx, qy = (
-        2.0 * np.pi * np.fft.fftfreq(n, h) for n, h in zip(z.shape, surface.spacings, strict=True)
+        np.asarray(2.0 * np.pi * np.fft.fftfreq(n, h), dtype=np.float64)
+        for n, h in zip(z.shape, surface.spacings, strict=True)
     )
     return np.asarray(np.abs(np.fft.fft2(z)) ** 2, dtype=np.float64), qx, qy
 
