@@ -381,6 +381,21 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
     ),
     "plates before the axis": (
         "a.csv", lambda: table(heads=lambda plate, axis: f"FP{plate}_F{axis}"), None),
+    "German": (
+        "a.csv",
+        lambda: table("", ";", ",", heads=lambda plate, axis: f"Kraft {axis.upper()} {plate}")
+        .replace("Time (ms)", "Zeit [ms]"),
+        None,
+    ),
+    "units behind a stroke": (
+        "a.csv", lambda: table().replace(" (", " / ").replace(")", ""), None),
+    "units behind in": (
+        "a.txt", lambda: table(separator="\t").replace(" (", " in ").replace(")", ""), None),
+    "units behind a low line": (
+        "a.csv", lambda: table(unit=("kN", 1e3), decimals=5).replace(" (", "_").replace(")", ""),
+        None,
+    ),
+    "cells between bars": ("a.txt", lambda: table(separator=" | "), None),
     "plates of one name": ("a.csv", lambda: table(heads=lambda plate, axis: f"F{axis}"), None),
     "UTF-16": ("a.csv", lambda: table(point=",", separator=";").encode("utf-16"), None),
     "workbook": ("a.xlsx", workbook, None),

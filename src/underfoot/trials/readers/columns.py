@@ -17,8 +17,8 @@ from .text import clock_time, force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
 _PLATE = re.compile(
-    r"^(?:(?P<before>(?:.*[^a-z])?)(?P<kind>f|grf|force|m|mom|moment|t|torque|a|p|cop|cent(?:re|er)"
-    r"[ _]?of[ _]?pressure)[ _.]?(?P<number>\d*)[ _.]?"
+    r"^(?:(?P<before>(?:.*[^a-z])?)(?P<kind>f|grf|force|kraft|fuerza|forza|m|mom|moment|t|torque|a|p|"
+    r"cop|cent(?:re|er)[ _]?of[ _]?pressure)[ _.]?(?P<number>\d*)[ _.]?"
     r"|(?P<ground>.*(?:ground|grf).*[^a-z])(?P<vector>[vp]))(?P<axis>[xyz])(?P<after>.*)$",
     re.I,
 )
@@ -184,7 +184,7 @@ def _plate_groups(sheet: Sheet) -> dict[tuple[str, str], dict[str, dict[str, str
         match = _PLATE.match(name)
         if match:
             letter = (match["kind"] or match["vector"])[0].casefold()
-            kind = {"f": "f", "g": "f", "v": "f", "m": "m", "t": "m"}.get(letter, "c")
+            kind = {"f": "f", "g": "f", "k": "f", "v": "f", "m": "m", "t": "m"}.get(letter, "c")
             before = match["ground"] or match["before"] + match["number"]
             key = _WHAT.sub("", before.casefold()), match["after"].casefold()
             columns = groups.setdefault(key, {}).setdefault(kind, {})
