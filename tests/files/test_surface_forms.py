@@ -290,6 +290,8 @@ def test_steps_and_peaks_are_no_codes(heights):
         ("x (inches),z (µin)", 0.0254, 25.4e-9),
         ("Lateral (mm),Raw (Å)", 1e-3, 1e-10),
         ("Lateral [mm],Height [Angstrom]", 1e-3, 1e-10),
+        ("x (in),z (uin)", 0.0254, 25.4e-9),
+        ("x (cm),z (um)", 0.01, 1e-6),
     ],
 )
 def test_units_of_other_workshops(tmp_path, heading, along, up):
@@ -300,6 +302,22 @@ def test_units_of_other_workshops(tmp_path, heading, along, up):
     profile = read_surface(tmp_path / "a.csv")
     assert profile.spacing == pytest.approx(5e-6, rel=1e-4)
     assert profile.heights.std() == pytest.approx(3e-6 / np.sqrt(2), rel=1e-4)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_a_column_that_counts_the_rows_is_no_position(tmp_path, first):
+    x = np.arange(200) * 5e-6
+    z = 3e-6 * np.sin(2 * np.pi * x / 1e-4)
+    rows = "\n".join(
+        f"{n},{a * 1e3:.6f},{b * 1e6:.6f}" for n, (a, b) in enumerate(zip(x, z, strict=True), first)
+    )
+    (tmp_path / "a.csv").write_text(f"Point,x (mm),z (um)\n{rows}\n")
+    profile = read_surface(tmp_path / "a.csv")
+    assert profile.spacing == pytest.approx(5e-6, rel=1e-4)
+    assert profile.heights.std() == pytest.approx(3e-6 / np.sqrt(2), rel=1e-4)
+    (tmp_path / "a.csv").write_text(f"x (um),a (um),b (um)\n{rows}\n")
+    with pytest.raises(DataError, match="are no map"):
+        read_surface(tmp_path / "a.csv")
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 45, 90, 135, 160])
