@@ -24,7 +24,7 @@ _PLATE = re.compile(
 )
 """Fx1, Force_x, FP1_Fx, F1X (AMTI), GRF1x, ground_force_1_vx (OpenSim)."""
 # Names of a tribometer's columns, letters only.
-_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load"}
+_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load", "last", "auflast"}
 _SHEAR = {
     "frictionforce",
     "shearforce",
@@ -65,11 +65,15 @@ def read_columns(draft: Draft) -> Trial:
 
 def _is_known(sheet: Sheet) -> bool:
     """Whether the columns tell by themselves what they are: a time, and forces or a COF."""
-    folded = {re.sub("^daq|[^a-z\u03bc]", "", name.casefold()) for name in sheet.numbers}
+    folded = {_folded(name) for name in sheet.numbers}
     forces = folded & _NORMAL and folded & _SHEAR
     return any(_is_time(sheet, name) for name in sheet.numbers) and bool(
         forces or folded & _COF or _plate_groups(sheet)
     )
+
+
+def _folded(name: str) -> str:
+    return re.sub("^daq|[^a-z\u03bc]", "", name.casefold())
 
 
 def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
@@ -85,8 +89,15 @@ def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
         written, values = unit or sheet.units.get(column, ""), _column(sheet, column)
         draft.channel(name, values, written, scale=scale, note=f'column "{column}"')
     for name, values in sheet.numbers.items():
-        if name not in draft.channels:
-            draft.channel(name, values, sheet.units.get(name, ""))
+        if name in draft.channels:
+            continue
+        written = sheet.units.get(name, "")
+        force = force_unit(written) if _folded(name) in _NORMAL | _SHEAR else None
+        if force and not si_unit(written):  # a mass, which stands for its weight
+            note = f'in "{written}" in the file'
+            draft.channel(name, values, unit="N", scale=force[1], note=note)
+        else:
+            draft.channel(name, values, written)
     plates = profile.plates or _plate_columns(draft, sheet)
     if plates and draft.times is not None:
         draft.notes.append("samples are not equally spaced: no plates were made")
