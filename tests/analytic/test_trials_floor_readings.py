@@ -169,7 +169,7 @@ def test_a_check_of_the_other_slider_says_nothing(tmp_path):
     [
         ("en_16165_pendulum", "PTV", "0.355 0.36 0.35 0.36 0.35", "refused"),
         ("en_16165_shod_ramp", "angle", "0.35 0.36", "refused"),
-        ("en_16165_shod_ramp", "angle (rad)", "0.35 0.36 0.35", "accepted"),
+        ("en_16165_shod_ramp", "angle (rad)", "0.35 0.36 0.355", "accepted"),
         ("en_16165_shod_ramp", "angle", "20.1 20.6 20.3", "accepted"),
         ("en_16165_shod_ramp", "angle", "20.1 20.6", "caution"),
         ("en_16165_shod_ramp", "angle (gon)", "20.1 20.6", "refused"),
