@@ -28,8 +28,13 @@ _WRITTEN = re.compile(r"[+\-−]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+\-�
 
 
 def lines_of(text: str) -> list[str]:
-    """Return the lines without line ends; only CR and LF count as ends."""
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    """Return the lines without line ends; only CR and LF count as ends.
+
+    Of a text in which every second line is empty (ends written twice) the others.
+    """
+    lines = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    twice = len(lines) > 4 and not any(map(str.strip, lines[1::2]))
+    return lines[::2] if twice else lines
 
 
 def is_number(cell: str) -> bool:
