@@ -137,6 +137,33 @@ def test_loose_triangles_are_no_sole():
         read(corners)
 
 
+@pytest.mark.parametrize("place", [(900, 900, 0), (-150, 0, 40), (150, 10, -200)])
+def test_a_speck_apart_from_the_sole_is_left_out(place):
+    sole = plain_sole(lugs=made.bars)
+    speck = np.array(place) + np.array([[[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]])
+    found = read(np.concatenate([sole, speck]), HALF)
+    alone = read(sole, HALF)
+    assert tread_measures(found.surface).land_ratio == pytest.approx(
+        tread_measures(alone.surface).land_ratio, abs=1e-3
+    )
+    assert (found.down, found.forward) == (alone.down, alone.forward)
+    assert "specks apart" in said(found)
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.3, 1.0])
+def test_lugs_that_float_under_their_base_are_no_pair(gap):
+    base = made.slab(PLAN, 4.0, 4.0 + made.SLAB)
+    lugs = [
+        made.prism(part.simplify(1e-3), -gap, 4.0 - gap)
+        for lug in made.bars(PLAN)
+        for part in made._polygons(lug.intersection(PLAN))
+        if part.area > 1
+    ]
+    measures = tread_measures(read(np.concatenate([base, *lugs]), HALF).surface)
+    assert measures.land_ratio == pytest.approx(0.600, abs=0.006)
+    assert measures.channel_depth[1] * 1e3 == pytest.approx(4.0 + gap, abs=0.05)
+
+
 def test_stray_corner_is_named_with_its_place():
     sole = triangles(sole_body(step=2e-3))
     stray = sole[:1].copy()

@@ -204,7 +204,9 @@ def _with_axis(name: str) -> str:
         word = rf"(?:^|(?<=[\s_.-]))(?:{words})(?:$|(?=[\s_.-]))"
         rest = re.sub(word, "", name, flags=re.IGNORECASE)
         if rest != name:
-            return re.sub(r"(?i)(?<![a-z])(force|grf)[\s_.-]*", rf"\1 {axis} ", rest.strip(" _.-"), count=1)
+            return re.sub(
+                r"(?i)(?<![a-z])(force|grf)[\s_.-]*", rf"\1 {axis} ", rest.strip(" _.-"), count=1
+            )
     return name
 
 
