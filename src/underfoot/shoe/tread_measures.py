@@ -207,23 +207,15 @@ def _slopes(height: Array, spacing: float) -> Array:
 
 
 def height_noise(height: Array, lag: int = 1) -> float:
-    """Return the noise of a height map, m: 1.4826 median |third difference| / sqrt(20).
+    """Return the noise of a height map, m: 1.4826 median |third difference| / sqrt(20), along x.
 
     Of heights ``lag`` cells apart, which don't share noise: on a sole of even curvature the
-    difference holds nothing else; sharp walls are few enough not to move the median, along x or,
-    where bars lie across x, along y.
+    difference holds nothing else; sharp walls are few enough not to move the median.
     """
-
-    def along(rows: Array) -> float:
-        a, b, c, d = (rows[n * lag : max(0, rows.shape[0] - (3 - n) * lag)] for n in range(4))
-        third = np.abs(d - 3 * c + 3 * b - a)
-        third = third[np.isfinite(third)]
-        if third.size == 0:
-            return math.inf
-        return float(1.4826 * np.median(third) / math.sqrt(20))
-
-    noise = min(along(height), along(height.T))
-    return noise if math.isfinite(noise) else 0.0
+    a, b, c, d = (height[n * lag : max(0, height.shape[0] - (3 - n) * lag)] for n in range(4))
+    third = d - 3 * c + 3 * b - a
+    third = third[np.isfinite(third)]
+    return 0.0 if third.size == 0 else float(1.4826 * np.median(np.abs(third)) / math.sqrt(20))
 
 
 def without_noise(height: Array, land: Mask, noise: float, spacing: float, lag: int = 1) -> Array:

@@ -171,7 +171,8 @@ def _outsole(
         thickness=float(np.median(thickness[np.isfinite(height)])),
         tallness=float(high[2] - low[2]),
         standing=orientation.standing_share(height, seen.spacing),
-        noise=height_noise(height),
+        # bars across one axis are quiet along the other
+        noise=min(height_noise(height), height_noise(height.T)),
     )
     check_sole(shape, where)
     height, part, region_remarks = _region(height, seen.spacing, chosen, where)
