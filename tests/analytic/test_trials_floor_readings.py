@@ -313,3 +313,22 @@ def test_units_of_a_heading_count(tmp_path):
             tmp_path / "run.csv",
             profile_from({"plates": {"t": {"friction": "Reibung", "normal": "Normalkraft"}}}),
         )
+
+
+@pytest.mark.parametrize("who", ["operator", "walker", "Prüfperson", "person"])
+@pytest.mark.parametrize("head", ["angle (deg)", "Akzeptanzwinkel [°]"])
+def test_whoever_walks_a_tile_has_one_class(tmp_path, who, head):
+    walks = [(1, "18,9"), (1, "19"), (1, "18,8"), (2, "19,3")]
+    rows = "".join(f"tile;{p};{v}\n" for p, v in walks)
+    (tmp_path / "x.csv").write_text(f"sample;{who};{head}\n{rows}")
+    found = study(tmp_path, "en_16165_shod_ramp")[0].study
+    (table,) = (one for one in found.tables if one.name == "walkers")
+    assert table.rows[0][table.columns.index("angle (deg)")] == pytest.approx(19.1)
+    (samples,) = (one for one in found.tables if one.name == "samples")
+    assert "class" not in samples.columns
+
+
+@pytest.mark.parametrize("sign", ["\u00b5", "\u03bc"])
+def test_a_micro_sign_is_the_greek_letter(tmp_path, sign):
+    (tmp_path / "x.csv").write_text(f"surface;Gleitreibwert {sign}\ntile;0,45\ntile;0,47\n")
+    assert study(tmp_path, "machine_cof")[0].files[0].main["cof"] == pytest.approx(0.46)

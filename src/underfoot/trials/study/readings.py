@@ -26,16 +26,21 @@ NOTED = {
     "direction": ("direction", "richtung"),
 }
 """What a protocol can ask to be noted, with the headings that say it."""
-_LABELS = (*NOTED["slider"], *NOTED["direction"], "operator", "laboratory", "sample", "date")
 _RUN = ("run", "type of run", "kind of run", "lauf")
 _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
+_WALKERS = (
+    "operator", "walker", "test person", "person", "subject", "tester", "prüfer", "prüferin",
+    "prüfperson", "testperson", "begeher",
+)  # fmt: skip
+"""Headings of who walked on a ramp: two of them make one angle."""
 _BOARD = (
     "standard angle", "board angle", "angle of the board", "sollwinkel", "standardwinkel",
 )  # fmt: skip
 """Headings of the angle that a calibration board of the ramp has by its certificate."""
+_LABELS = (*NOTED["slider"], *NOTED["direction"], *_WALKERS, "laboratory", "sample", "date")
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -113,6 +118,9 @@ def reading_results(
         and k != column
         and (k not in numbers or k.casefold() in _LABELS)
     }
+    walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
+    if walker:
+        texts = {"operator" if k == walker else k: v for k, v in texts.items()}
     one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
     boards = _boards(name, cells, units, texts, values) if quantity == "angle" else None
     checks: dict[tuple[str, str], list[int]] = {}
