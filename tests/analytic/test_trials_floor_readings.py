@@ -332,3 +332,13 @@ def test_whoever_walks_a_tile_has_one_class(tmp_path, who, head):
 def test_a_micro_sign_is_the_greek_letter(tmp_path, sign):
     (tmp_path / "x.csv").write_text(f"surface;Gleitreibwert {sign}\ntile;0,45\ntile;0,47\n")
     assert study(tmp_path, "machine_cof")[0].files[0].main["cof"] == pytest.approx(0.46)
+
+
+@pytest.mark.parametrize("head", ["Swing {}", "{}", "Messung {}"])
+def test_a_record_sheet_has_its_readings_beside_each_other(tmp_path, head):
+    heads = ",".join(head.format(n) for n in range(1, 9))
+    rows = "tile,96,wet,along,40,38,36,34,35,36,35,35\ntile,96,wet,across,41,38,36,30,31,32,31,31\n"
+    (tmp_path / "x.csv").write_text(f"surface,slider,condition,direction,{heads}\n{rows}")
+    found = study(tmp_path, "en_16165_pendulum")[0].files
+    assert {f.conditions["direction"]: f.main["ptv"] for f in found} == {"along": 35, "across": 31}
+    assert all(f.verdict == "accepted" for f in found)

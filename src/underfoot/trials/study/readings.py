@@ -30,6 +30,10 @@ _RUN = ("run", "type of run", "kind of run", "lauf")
 _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
+_NTH = re.compile(
+    r"((swing|reading|test|run|value|messung|schwung|wert|r|s)[ _.]?)?#?\d{1,2}", re.I
+)
+_FEWEST_BESIDE = 3  # numbered columns of a record sheet
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
 _WALKERS = (
     "operator", "walker", "test person", "person", "subject", "tester", "prüfer", "prüferin",
@@ -90,7 +94,7 @@ def reading_results(
     column can be recognised as readings, impossible values and one condition in two spellings are a
     `DataError` or `InputError`.
     """
-    columns, lines = table_columns(path)
+    columns, lines = _one_a_row(*table_columns(path), protocol.text("quantity"))
     cells = {head: column for head, _, column in columns}
     units = {head: unit for head, unit, _ in columns}
     numbers = {
@@ -153,6 +157,21 @@ def reading_results(
         )
         results.append(draft.finished(protocol))
     return results
+
+
+def _one_a_row(
+    columns: list[tuple[str, str, list[str]]], lines: list[int], quantity: str
+) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
+    """Return a record sheet ("Swing 1", "Swing 2" ... beside each other) with a reading a row."""
+    wide = [one for one in columns if _NTH.fullmatch(one[0])]
+    beside = [one for one in columns if not _NTH.fullmatch(one[0])]
+    named = any(head.casefold() in QUANTITIES[quantity] for head, _, _ in beside) if quantity else 1
+    if len(wide) < _FEWEST_BESIDE or named:
+        return columns, lines
+    every = len(wide)
+    readings = [cell for row in zip(*(cells for _, _, cells in wide), strict=True) for cell in row]
+    repeated = [(head, unit, [c for c in cells for _ in wide]) for head, unit, cells in beside]
+    return [*repeated, (quantity, wide[0][1], readings)], [n for n in lines for _ in range(every)]
 
 
 @dataclass(frozen=True, slots=True)
