@@ -111,6 +111,20 @@ def test_counts_that_contradict_the_bytes_are_told():
     assert notes == ["frames are counted in two ways (the header 100): the data hold 195, all read"]
 
 
+def test_plates_that_are_described_and_not_used_are_told(tmp_path):
+    data = walk_forms._c3d(("N", 1.0), ("Nmm", 1e-3))
+    group = data.index(b"FORCE_PLATFORM")
+    at = data.index(b"USED", group) + 4
+    kind, dimensions = data[at + 2], data[at + 3]
+    assert (kind, dimensions) == (2, 0)
+    (tmp_path / "a.c3d").write_bytes(data[: at + 4] + b"\1\0" + data[at + 6 :])
+    trial = read_trial(tmp_path / "a.c3d")
+    assert len(trial.plates) == 1
+    assert any("1 more" in note for note in trial.notes)
+    (tmp_path / "b.c3d").write_bytes(data)
+    assert not any("left out" in note for note in read_trial(tmp_path / "b.c3d").notes)
+
+
 @pytest.mark.parametrize("word", ["slug", "tonf-ish", "V"])
 def test_a_unit_that_is_not_known_stops_the_plate(word, tmp_path):
     (tmp_path / "a.c3d").write_bytes(walk_forms._c3d((word, 1.0), ("Nmm", 1e-3)))
