@@ -199,6 +199,7 @@ form("off", "colours of faces")(lambda: off(tail=" 0.5 0.5 0.5"))
 form("off", "COFF")(lambda: off("COFF\n", "{:.4f} {:.4f} {:.4f} 255 0 0 255"))
 form("off", "NOFF")(lambda: off("NOFF\n", "{:.4f} {:.4f} {:.4f} 0 0 1"))
 form("off", "4OFF")(lambda: off("4OFF\n", "{:.4f} {:.4f} {:.4f} 2", points=lambda p: 2 * p))
+form("off", "without a word at its head")(lambda: off(""))
 form("off", "nOFF")(lambda: off("nOFF\n3\n"))
 
 
@@ -252,6 +253,37 @@ form("ply", "vertex_index")(lambda: ply(name="vertex_index"))
 form("ply", "strips")(
     lambda: ply("binary_little_endian", lists="int int", faces=strips, element="tristrips")
 )
+
+
+def _with_lists(order, uneven=0):
+    """A camera first; a list in each vertex (of ``uneven`` more in every second), two in a face."""
+    points, polygons = joined(parts())
+    head = (
+        f"ply\nformat {order} 1.0\nelement camera 2\nproperty double a\n"
+        "property list uchar short w\n"
+        f"element vertex {len(points)}\nproperty double x\nproperty list uchar float more\n"
+        f"property double y\nproperty double z\nelement face {len(polygons)}\n"
+        "property list uchar ushort vertex_indices\nproperty list uchar float texcoord\n"
+        "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+    )
+    rows = [("dB3h", (1, 3, 1, 2, 3)), ("dB", (1, 0))]
+    for n, (x, y, z) in enumerate(points):
+        count = 1 + n % 2 * uneven
+        rows.append((f"dB{count}fdd", (x, count, *[9] * count, y, z)))
+    for one in polygons:
+        n = len(one)
+        rows.append((f"B{n}HB{2 * n}f", (n, *one, 2 * n, *[0] * 2 * n)))
+    rows.append(("2i", (0, 1)))
+    if order == "ascii":
+        return (head + "\n".join(" ".join(map(str, row)) for _, row in rows) + "\n").encode()
+    return head.encode() + b"".join(struct.pack(">" + code, *row) for code, row in rows)
+
+
+for _order in ("ascii", "binary_big_endian"):
+    for _uneven in (0, 2):
+        form("ply", f"{_order}, lists, {_uneven} uneven")(
+            lambda order=_order, uneven=_uneven: _with_lists(order, uneven)
+        )
 
 
 # glTF

@@ -291,6 +291,8 @@ def workbook() -> bytes:
     return out.getvalue()
 
 
+_BODY = {"x": "Mediolateral", "y": "Anterior-posterior", "z": "Vertical"}
+_SHORT = {"x": "ML", "y": "AP", "z": "Vert"}
 _N, _NMM = ("N", 1.0), ("Nmm", 1e-3)
 # Name of a form, its file, and the file of the same recording beside it.
 FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], str]] | None]] = {
@@ -381,6 +383,32 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
     ),
     "plates before the axis": (
         "a.csv", lambda: table(heads=lambda plate, axis: f"FP{plate}_F{axis}"), None),
+    "Vicon, semicolons": (
+        "a.csv", lambda: vicon().replace(",", ";").replace(".", ","), None),
+    "ends of lines twice": ("a.csv", lambda: table().replace("\n", "\r\r\n"), None),
+    "every second line empty": ("a.csv", lambda: table().replace("\n", "\n\n"), None),
+    "axes of the body": (
+        "a.csv",
+        lambda: table(heads=lambda plate, axis: f"{_BODY[axis]} force {plate}"), None),
+    "axes of the body behind": (
+        "a.csv",
+        lambda: table(heads=lambda plate, axis: f"FP{plate}_GRF_{_SHORT[axis]}"), None),
+    "a clock by its unit": ("a.csv", lambda: table().replace("Time (ms)", "ms"), None),
+    "German": (
+        "a.csv",
+        lambda: table("", ";", ",", heads=lambda plate, axis: f"Kraft {axis.upper()} {plate}")
+        .replace("Time (ms)", "Zeit [ms]"),
+        None,
+    ),
+    "units behind a stroke": (
+        "a.csv", lambda: table().replace(" (", " / ").replace(")", ""), None),
+    "units behind in": (
+        "a.txt", lambda: table(separator="\t").replace(" (", " in ").replace(")", ""), None),
+    "units behind a low line": (
+        "a.csv", lambda: table(unit=("kN", 1e3), decimals=5).replace(" (", "_").replace(")", ""),
+        None,
+    ),
+    "cells between bars": ("a.txt", lambda: table(separator=" | "), None),
     "plates of one name": ("a.csv", lambda: table(heads=lambda plate, axis: f"F{axis}"), None),
     "UTF-16": ("a.csv", lambda: table(point=",", separator=";").encode("utf-16"), None),
     "workbook": ("a.xlsx", workbook, None),

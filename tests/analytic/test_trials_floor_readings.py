@@ -169,8 +169,9 @@ def test_a_check_of_the_other_slider_says_nothing(tmp_path):
     [
         ("en_16165_pendulum", "PTV", "0.355 0.36 0.35 0.36 0.35", "refused"),
         ("en_16165_shod_ramp", "angle", "0.35 0.36", "refused"),
-        ("en_16165_shod_ramp", "angle (rad)", "0.35 0.36", "accepted"),
-        ("en_16165_shod_ramp", "angle", "20.1 20.6", "accepted"),
+        ("en_16165_shod_ramp", "angle (rad)", "0.35 0.36 0.355", "accepted"),
+        ("en_16165_shod_ramp", "angle", "20.1 20.6 20.3", "accepted"),
+        ("en_16165_shod_ramp", "angle", "20.1 20.6", "caution"),
         ("en_16165_shod_ramp", "angle (gon)", "20.1 20.6", "refused"),
         ("machine_cof", "COF", "1.8 1.9", "caution"),
         ("machine_cof", "COF (%)", "42 44", "accepted"),
@@ -312,3 +313,32 @@ def test_units_of_a_heading_count(tmp_path):
             tmp_path / "run.csv",
             profile_from({"plates": {"t": {"friction": "Reibung", "normal": "Normalkraft"}}}),
         )
+
+
+@pytest.mark.parametrize("who", ["operator", "walker", "Prüfperson", "person"])
+@pytest.mark.parametrize("head", ["angle (deg)", "Akzeptanzwinkel [°]"])
+def test_whoever_walks_a_tile_has_one_class(tmp_path, who, head):
+    walks = [(1, "18,9"), (1, "19"), (1, "18,8"), (2, "19,3")]
+    rows = "".join(f"tile;{p};{v}\n" for p, v in walks)
+    (tmp_path / "x.csv").write_text(f"sample;{who};{head}\n{rows}")
+    found = study(tmp_path, "en_16165_shod_ramp")[0].study
+    (table,) = (one for one in found.tables if one.name == "walkers")
+    assert table.rows[0][table.columns.index("angle (deg)")] == pytest.approx(19.1)
+    (samples,) = (one for one in found.tables if one.name == "samples")
+    assert "class" not in samples.columns
+
+
+@pytest.mark.parametrize("sign", ["\u00b5", "\u03bc"])
+def test_a_micro_sign_is_the_greek_letter(tmp_path, sign):
+    (tmp_path / "x.csv").write_text(f"surface;Gleitreibwert {sign}\ntile;0,45\ntile;0,47\n")
+    assert study(tmp_path, "machine_cof")[0].files[0].main["cof"] == pytest.approx(0.46)
+
+
+@pytest.mark.parametrize("head", ["Swing {}", "{}", "Messung {}"])
+def test_a_record_sheet_has_its_readings_beside_each_other(tmp_path, head):
+    heads = ",".join(head.format(n) for n in range(1, 9))
+    rows = "tile,96,wet,along,40,38,36,34,35,36,35,35\ntile,96,wet,across,41,38,36,30,31,32,31,31\n"
+    (tmp_path / "x.csv").write_text(f"surface,slider,condition,direction,{heads}\n{rows}")
+    found = study(tmp_path, "en_16165_pendulum")[0].files
+    assert {f.conditions["direction"]: f.main["ptv"] for f in found} == {"along": 35, "across": 31}
+    assert all(f.verdict == "accepted" for f in found)

@@ -104,6 +104,7 @@ def test_series_that_are_none(tmp_path, text, says):
         ("Angular Frequency (1/s)", 1.0), ("w (1/s)", 1.0), ("omega [s^-1]", 1.0),
         ("Kreisfrequenz (rad/s)", 1.0), ("ω / rad s^-1", 1.0), ("w [rad.s-1]", 1.0),
         ("Frequency (rad/s)", 1.0), ("Frequency (Hz)", 2 * np.pi), ("Frequency (1/s)", 2 * np.pi),
+        ("Frequency [1/min]", np.pi / 30), ("w (min-1)", 1 / 60),
         ("f (s^-1)", 2 * np.pi), ("Frequenz / Hz", 2 * np.pi), ("Frequency, kHz", 2e3 * np.pi),
     ],
 )  # fmt: skip

@@ -1,5 +1,6 @@
 """Outsole files as designers have them: read right without an option, or refused in words."""
 
+import math
 import os
 import zipfile
 
@@ -134,6 +135,33 @@ def test_loose_triangles_are_no_sole():
     corners = np.random.default_rng(2).uniform((0, 0, 0), (290, 95, 30), (20_000, 3, 3))
     with pytest.raises(DataError, match="no two of its faces share an edge"):
         read(corners)
+
+
+@pytest.mark.parametrize("place", [(900, 900, 0), (-150, 0, 40), (150, 10, -200)])
+def test_a_speck_apart_from_the_sole_is_left_out(place):
+    sole = plain_sole(lugs=made.bars)
+    speck = np.array(place) + np.array([[[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]])
+    found = read(np.concatenate([sole, speck]), HALF)
+    alone = read(sole, HALF)
+    assert tread_measures(found.surface).land_ratio == pytest.approx(
+        tread_measures(alone.surface).land_ratio, abs=1e-3
+    )
+    assert (found.down, found.forward) == (alone.down, alone.forward)
+    assert "specks apart" in said(found)
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.3, 1.0])
+def test_lugs_that_float_under_their_base_are_no_pair(gap):
+    base = made.slab(PLAN, 4.0, 4.0 + made.SLAB)
+    lugs = [
+        made.prism(part.simplify(1e-3), -gap, 4.0 - gap)
+        for lug in made.bars(PLAN)
+        for part in made._polygons(lug.intersection(PLAN))
+        if part.area > 1
+    ]
+    measures = tread_measures(read(np.concatenate([base, *lugs]), HALF).surface)
+    assert measures.land_ratio == pytest.approx(0.600, abs=0.006)
+    assert measures.channel_depth[1] * 1e3 == pytest.approx(4.0 + gap, abs=0.05)
 
 
 def test_stray_corner_is_named_with_its_place():
@@ -353,6 +381,26 @@ def test_heel_piece_is_assumed_and_can_be_swapped(length):
     assert found.forward == "+x"
     assert "Assumed: a heel piece, cut at its front" in said(found)
     assert read(piece, FileSettings(spacing=1e-3, forward="flip")).forward == "-x"
+
+
+def heel_cut(degrees, sides=35.5, width=70.0):
+    """A heel rounded behind whose sides run straight for ``sides`` mm to an oblique front."""
+    shapely = made.shapely
+    round_end = shapely.Point(35, 0).buffer(35, quad_segs=32)
+    body = shapely.union_all([round_end, shapely.box(35, -width / 2, 35 + 2 * sides, width / 2)])
+    lean = math.tan(math.radians(degrees)) * width / 2
+    front = [(-9, -width), (35 + sides - 2 * lean, -width), (35 + sides + 2 * lean, width)]
+    return body.intersection(shapely.Polygon([*front, (-9, width)]))
+
+
+@pytest.mark.parametrize("turned", [0, 90])
+@pytest.mark.parametrize(
+    ("degrees", "sides"), [(0, 34), (7.3, 31), (-12, 28), (20, 35.5), (15, 42)]
+)
+def test_a_heel_as_wide_as_long_points_to_its_cut(degrees, sides, turned):
+    plan = made.shapely.affinity.rotate(heel_cut(degrees, sides), turned, origin=(0, 0))
+    found = read(plain_sole(plan, made.bars))
+    assert found.forward == ("+x", "+y")[turned // 90]
 
 
 @pytest.mark.parametrize("height", [10.0, 0.0], ids=("behind the sole", "level with its land"))

@@ -111,6 +111,20 @@ def test_counts_that_contradict_the_bytes_are_told():
     assert notes == ["frames are counted in two ways (the header 100): the data hold 195, all read"]
 
 
+def test_plates_that_are_described_and_not_used_are_told(tmp_path):
+    data = walk_forms._c3d(("N", 1.0), ("Nmm", 1e-3))
+    group = data.index(b"FORCE_PLATFORM")
+    at = data.index(b"USED", group) + 4
+    kind, dimensions = data[at + 2], data[at + 3]
+    assert (kind, dimensions) == (2, 0)
+    (tmp_path / "a.c3d").write_bytes(data[: at + 4] + b"\1\0" + data[at + 6 :])
+    trial = read_trial(tmp_path / "a.c3d")
+    assert len(trial.plates) == 1
+    assert any("1 more" in note for note in trial.notes)
+    (tmp_path / "b.c3d").write_bytes(data)
+    assert not any("left out" in note for note in read_trial(tmp_path / "b.c3d").notes)
+
+
 @pytest.mark.parametrize("word", ["slug", "tonf-ish", "V"])
 def test_a_unit_that_is_not_known_stops_the_plate(word, tmp_path):
     (tmp_path / "a.c3d").write_bytes(walk_forms._c3d((word, 1.0), ("Nmm", 1e-3)))
@@ -315,6 +329,7 @@ def _machine(
     normal = np.where((time >= before) & (time < before + 40.0), load, 0.0)
     way = np.tanh(8.0 * np.sin(2 * np.pi * time)) if stroke else np.ones(len(time))
     way = np.abs(way) if stroke == "rectified" else way
+    way = (time % 2.0 < 1.2) * 1.0 if stroke == "rests" else way
     push = 0.35 * normal * way + offset + drift * time / time[-1]
     return Trial("run", channels={
         "Fx": Channel(push + rng.normal(0, 0.1, len(time)), "N", rate),
@@ -330,6 +345,8 @@ def _machine(
         {"offset": 2.0, "before": 100.0, "after": 60.0}, {"stroke": "signed"},
         {"stroke": "signed", "offset": 9.0}, {"stroke": "rectified"},
         {"stroke": "signed", "offset": 9.0, "before": 0.0, "after": 0.0},
+        {"stroke": "rests"}, {"stroke": "rests", "offset": -3.0},
+        {"stroke": "rests", "before": 0.0, "after": 0.0},
     ],
 )  # fmt: skip
 def test_zero_and_strokes_of_a_pin(given):
@@ -346,6 +363,34 @@ def test_the_uncertainty_tells_what_the_zero_adds():
     assert steady == pytest.approx(0.0004, abs=0.0003)
     # A zero that may go from 0 to 3 N at any time: 3 N / sqrt(12) of 21 N, less at its ends.
     assert 0.02 < drifting < 3.0 / 12**0.5 / 21.0
+
+
+def _logged(heading, columns):
+    rows = "\n".join(";".join(f"{v:.4f}" for v in row) for row in columns(*_forces()))
+    return f"{heading}\n{rows}\n"
+
+
+def _forces():
+    run = _machine(offset=1.0)
+    return np.arange(len(run.channels["Fz"].values)) / 50.0, *(
+        run.channels[name].values for name in ("Fz", "Fx")
+    )
+
+
+@pytest.mark.parametrize(
+    ("heading", "columns"),
+    [
+        ("Time (s);Load (kg);Friction (N)", lambda t, n, f: np.c_[t, -n / 9.80665, f]),
+        ("Zeit in s;Last in g;Reibkraft in mN", lambda t, n, f: np.c_[t, -n * 101.97162, 1e3 * f]),
+        ("Time (s);COF", lambda t, n, f: np.c_[t, np.where(n < -2.0, (1.0 - f) / n, 0.0)]),
+    ],
+    ids=["weights", "German weights", "a COF of zero off the disk"],
+)
+def test_a_log_has_the_friction_of_its_pressed_part(tmp_path, heading, columns):
+    (tmp_path / "log.csv").write_text(_logged(heading, columns))
+    cof = friction_point(read_trial(tmp_path / "log.csv")).cof
+    assert cof.value == pytest.approx(0.35, abs=0.0015)
+    assert not cof.flags
 
 
 @pytest.mark.parametrize("name", ["pin_offset.csv", "pin_reciprocating.csv"])

@@ -145,6 +145,7 @@ BAD = {
     "a negative volume of Prusa": ("3mf", lambda: made.prusa("NegativeVolume"), "takes material"),
     "a negative part of Bambu": ("3mf", lambda: made.bambu("negative_part"), "takes material"),
     "a kind of volume that is not known": ("3mf", lambda: made.prusa("Magic"), '"magic"'),
+    "nothing to be built": ("3mf", lambda: made.package(made.model(made.whole(), "")), "is empty"),
     "only supports": (
         "3mf",
         lambda: made.package(

@@ -207,6 +207,35 @@ def test_a_tile_has_one_class_of_all_who_walked_on_it(tmp_path):
     assert "1 of 2" in row
 
 
+def test_boards_correct_the_angles_of_their_walkers(tmp_path):
+    rows = [("tile", "A", "", a) for a in (19.4, 19.5, 19.6)]
+    rows += [("tile", "B", "", a) for a in (18.6, 18.7, 18.8)]
+    # A reads 0.8 deg too high on the lower board and 1.2 on the upper, B right on both
+    for standard, off in ((8.7, 0.8), (27.3, 1.2)):
+        rows += [(f"board {standard}", "A", standard, standard + off + e) for e in (-0.1, 0, 0.1)]
+        rows += [(f"board {standard}", "B", standard, standard + e) for e in (-0.1, 0, 0.1)]
+    head = "sample,operator,standard angle (deg),angle (deg)\n"
+    text = head + "".join(",".join(map(str, row)) + "\n" for row in rows)
+    found = readings(tmp_path, "en_16165_shod_ramp", text)
+    (table,) = (one for one in found.study.tables if one.name == "walkers")
+    told = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
+    assert [one["sample"] for one in told] == ["tile"]  # boards are no samples
+    off = 0.8 + 0.4 * (19.5 - 9.5) / (28.5 - 9.5)
+    assert told[0]["angle (deg)"] == pytest.approx((19.5 - 0.5 * off + 18.7) / 2)
+    assert told[0]["class"] == "R10"  # 19.1 as read: R11
+    lone = [line for line in text.splitlines() if not (line.startswith("board") and ",B," in line)]
+    found = readings(tmp_path, "en_16165_shod_ramp", "\n".join(lone))
+    (table,) = (one for one in found.study.tables if one.name == "walkers")
+    assert dict(zip(table.columns, table.rows[0], strict=True))["angle (deg)"] == pytest.approx(
+        19.1
+    )
+    (refused,) = readings(
+        tmp_path, "en_16165_shod_ramp", text.replace("operator", "walked by")
+    ).files
+    assert not refused.usable
+    assert "nobody walks" in " ".join(refused.reasons)
+
+
 @pytest.mark.parametrize(
     ("values", "told"),
     [

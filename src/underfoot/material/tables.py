@@ -75,6 +75,7 @@ UNITS = {
 PURE = ("loss factor", "fraction", "set")
 _CYCLES = {"hz": 1.0, "khz": 1e3, "mhz": 1e-3, "cycles/s": 1.0, "cps": 1.0}
 _PER_SECOND = {"1/s", "s^-1", "s-1", "s⁻¹", "1/sec", "sec^-1", "sec-1", "/s", "s**-1", "s^{-1}"}
+_PER_MINUTE = {"1/min", "min^-1", "min-1", "min⁻¹", "/min", "min**-1", "min^{-1}"}
 _RADIANS = re.compile(r"rad(ians?)?(/s(ec)?|[.·*]?s(ec)?(\^?-1|⁻¹))")
 _SHEAR = re.compile(r"(^|[|\s(_])(G|J|η|eta)t?(?![a-z])|shear|schub|viscosity|viskosit", re.I)
 _YOUNG = re.compile(r"(^|[|\s(_])(E|D)t?(?![a-z])|young|tensile|dehn|zug|elongation|bending", re.I)
@@ -201,8 +202,9 @@ class Table:
             )
         if _RADIANS.fullmatch(unit):
             return values
-        if unit in _PER_SECOND:
-            return values * (1.0 if angular else 2.0 * np.pi)
+        if unit in _PER_SECOND | _PER_MINUTE:
+            seconds = 1.0 if unit in _PER_SECOND else 60.0
+            return values * ((1.0 if angular else 2.0 * np.pi) / seconds)
         if written != "MHz" and unit in _CYCLES:
             if angular and column.name.casefold() not in ("w", "omega", "ω"):
                 raise DataError(
@@ -297,7 +299,19 @@ def _is_unit(cell: str) -> bool:
     plain = cell.strip().strip("[](){}").strip()
     if _RADIANS.fullmatch(plain.casefold().replace(" ", "")):
         return True
-    if plain.casefold() in (*_CYCLES, *_PER_SECOND, "-", "1", "%", "°", "deg", "grad", "°c", "c"):
+    if plain.casefold() in (
+        *_CYCLES,
+        *_PER_SECOND,
+        *_PER_MINUTE,
+        "-",
+        "1",
+        "%",
+        "°",
+        "deg",
+        "grad",
+        "°c",
+        "c",
+    ):
         return True
     if not plain or len(plain) > 12 or (quantity_of(plain) and plain not in ("K", "s")):
         return False

@@ -27,8 +27,8 @@ _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
 SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
-    r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|mm|m|inch(?:es)?|mils?|[uµμ]in"
-    r"|Å|angstroms?)(?![A-Za-z])",
+    r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|[cm]m|m|inch(?:es)?|mils?|[uµμ]in"
+    r"|Å|angstroms?|(?<=[\[(])in(?=[\])]))(?![A-Za-z])",
     re.I,
 )
 
@@ -45,16 +45,20 @@ class TextNumbers:
     where: str
 
     def units(self) -> list[str]:
-        """Return the length units of the headings, in order; none where headings name none.
+        """Return the length units of the headings, in order; none where headings name none."""
+        return _units(self.header)
 
-        Only the last two lines above the numbers count, and only if they hold no digits: a line
-        such as "Length 12.5 mm" says nothing about the columns.
-        """
-        for line in reversed(self.header[-2:]):
-            units = _LENGTH.findall(line)
-            if units and not re.search(r"\d", line):
-                return units
-        return []
+
+def _units(header: tuple[str, ...]) -> list[str]:
+    """Return the units of the last two lines above the numbers that hold no digits.
+
+    A line such as "Length 12.5 mm" says nothing about the columns.
+    """
+    for line in reversed(header[-2:]):
+        units = _LENGTH.findall(line)
+        if units and not re.search(r"\d", line):
+            return units
+    return []
 
 
 def read_numbers(path: Path | str) -> TextNumbers:
@@ -102,6 +106,7 @@ def read_numbers(path: Path | str) -> TextNumbers:
                     where=where,
                     allowed="numbers",
                 ) from None
+    numbered = _is_numbered(values, len(_units(header)))
     decimals = tuple(
         max(len(form.plain(cell).partition(".")[2]) for cell in cells)
         if not any("e" in cell.lower() for cell in cells)
@@ -112,9 +117,21 @@ def read_numbers(path: Path | str) -> TextNumbers:
         "decimal commas read as decimal points": any(form.decimal == "," for form in forms),
         "signs between thousands left out": any(form.thousands for form in forms),
         f"lines of words below the numbers left out: {count - len(rows)}": len(rows) < count,
+        "the first column counts the rows: left out": numbered,
     }
     notes = tuple(note for note, holds in said.items() if holds)
-    return TextNumbers(values, header, decimals, start + 1, notes, where)
+    first = 1 if numbered else 0
+    return TextNumbers(values[:, first:], header, decimals[first:], start + 1, notes, where)
+
+
+def _is_numbered(values: np.ndarray, units: int) -> bool:
+    """Whether the first column counts the rows, beside positions and heights or a matrix."""
+    rows, width = values.shape
+    if rows < 10 or width < 3 or units >= width or (np.diff(values[:, 0]) != 1.0).any():
+        return False
+    steps = np.diff(values[:, 1])
+    even = bool((np.abs(steps - steps.mean()) < 0.5 * abs(steps.mean())).all())
+    return values[0, 0] in (0.0, 1.0) and (width > 3 or even)
 
 
 def _plain_numbers(lines: list[str], separator: str | None) -> np.ndarray | None:
@@ -307,6 +324,13 @@ def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, tuple[float,
     np.add.at(filled_in, (places[0], places[1]), 1)
     if np.any(filled_in > 1):
         raise DataError("a point is given more than once", where=data.where)
+    if z.size < 0.5 * filled_in.size:
+        raise DataError(
+            f"x, y and z of {z.size} points are no map: a grid of their places has "
+            f"{filled_in.size}",
+            where=data.where,
+            remedy="For a profile export positions and heights alone",
+        )
     heights = np.full(shape, np.nan)
     heights[places[0], places[1]] = z
     return heights, spacings_of(spacings)

@@ -123,7 +123,10 @@ class Scan(Presentable):
             return numbers
         return (
             *numbers,
-            f"The surface has a lay ({self.texture}): Ra, Rz, Rt are across it, Rq is of the map.",
+            f"The surface has a lay ({self.texture}): Ra, Rz, Rt are across it, Rq is of the map."
+            if len(self.texture.lays) == 1
+            else f"The surface has crossed lays ({self.texture}): Ra, Rz, Rt are of lines at "
+            f"{math.degrees(self.texture.across):.0f}°, between them, Rq is of the map.",
         )
 
     def cautions(self) -> tuple[str, ...]:
@@ -162,8 +165,8 @@ class Scan(Presentable):
                 ("Str", f"{least}{self.texture.ratio:.2g}", "texture aspect ratio: 1 without a lay")
             )
             if self.texture.has_lay:
-                lay = f"{math.degrees(self.texture.direction):.0f}°"
-                rows.append(("Lay", lay, "of the grooves from x, the direction of sliding (Std)"))
+                lay = "of the grooves from x, the direction of sliding (Std)"
+                rows.append(("Lay", self.texture.named_lays, lay))
         return Table("Roughness", ("Quantity", "Value", "Remark"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
@@ -183,9 +186,7 @@ class Scan(Presentable):
             "hurst_error": self.hurst.uncertainty,
             "roll_off_m": self.roll_off,
             "texture_aspect_ratio": None if self.texture is None else self.texture.ratio,
-            "lay_deg": math.degrees(self.texture.direction)
-            if self.texture is not None and self.texture.has_lay
-            else None,
+            "lays_deg": [] if self.texture is None else [*map(math.degrees, self.texture.lays)],
             "cutoff_m": self.cutoff,
             "longest_wave_m": self.waves[0],
             "shortest_wave_m": self.waves[1],
@@ -246,7 +247,7 @@ def read_scan(
         found = texture(rough)
         lay = found if found is not None and found.has_lay else None
         if lay is not None:
-            lines = lines_across(surface, lay.direction + 0.5 * math.pi, LINES)
+            lines = lines_across(surface, lay.across, LINES)
             chosen, short = _cutoff(lines, cutoff, str(path))
             if min(surface.size) >= chosen:
                 areal = _behind(surface, chosen).rms_height
@@ -409,7 +410,8 @@ def _numbers(
         pieces += [np.std(rough[n * size : (n + 1) * size]) for n in range(count)]
     beside, alike = shortest, cutoff
     if lay is not None and isinstance(surface, HeightMap):
-        beside = min(s / max(abs(c), 1e-9) for s, c in zip(surface.size, lay.along, strict=True))
+        along = math.sin(lay.across), math.cos(lay.across)
+        beside = min(s / max(abs(c), 1e-9) for s, c in zip(surface.size, along, strict=True))
         alike = max(cutoff, 2 * lay.length) if not lay.bounded else math.inf
     apart = max(1, round(beside / alike)) if len(lines) > 1 else 1
     independent = min(len(pieces), count * apart)

@@ -234,7 +234,8 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
         f"extrapolated beyond {q[-1]:.4g} rad/m with the power {exponent:.3g} for the inversion",
     )
     if changed > 0.0:
-        notes += (f"rises of the profile spectrum levelled (by up to {100 * changed:.0f} %)",)
+        most = f"up to {100 * changed:.0f} %" if changed < 10.0 else "more than tenfold"
+        notes += (f"rises of the profile spectrum levelled (by {most})",)
     return IsotropicSpectrum(
         q, density, np.pi * np.diff(edges**2), (float(q[0]), float(q[-1])), notes
     )

@@ -27,6 +27,7 @@ OTHER_NAMES = re.compile(
 )
 _PLAINLY = re.compile(r"out.?sole|lauf.?sohle", re.IGNORECASE)
 _STRAY_REACH = 3.0  # sizes of the box around nearly all corners
+_ISLAND, _APART = 1e-4, 0.3  # of the area; of the size, from the box of all else
 _STRAY_SHARE = 1e-3  # of the corners
 _ON_TABLE = 0.1  # of a plate: what stands on it
 _BIG = (0.5, 0.4)  # of the longest body's extent along and across
@@ -104,7 +105,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
         return Found((mesh,), away, tuple(remarks))
     bodies = _measured(mesh)
     others = ~keep
-    for without in (_without_supports, _without_plates):
+    for without in (_without_islands, _without_supports, _without_plates):
         keep, told = without(bodies, keep)
         remarks += told
     down = None
@@ -170,6 +171,20 @@ def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
     )
     body = None if mesh.body is None else mesh.body[~faces]
     return replace(mesh, triangles=mesh.triangles[~faces], body=body), [remark]
+
+
+def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+    """Leave out specks of a scan that lie apart from all that has a size."""
+    speck = keep & (bodies.area < _ISLAND * bodies.area[keep].sum())
+    rest = keep & ~speck
+    if not speck.any() or not rest.any():
+        return keep, []
+    low, high = bodies.low[rest].min(axis=0), bodies.high[rest].max(axis=0)
+    gap = np.maximum(low - bodies.high, bodies.low - high).max(axis=1)
+    off = speck & (gap > _APART * float((high - low).max()))
+    if not off.any():
+        return keep, []
+    return keep & ~off, [f"{np.count_nonzero(off)} specks apart from all else were left out."]
 
 
 def _measured(mesh: Mesh) -> _Bodies:
@@ -310,7 +325,9 @@ def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:
             sizes = [bodies.high[g].max(axis=0) - bodies.low[g].min(axis=0) for g in groups]
             areas = [float(bodies.area[g].sum()) for g in groups]
             same = np.abs(sizes[0] - sizes[1]) <= _SAME * np.maximum(*sizes)
-            if same[:2].all() and abs(areas[0] - areas[1]) <= 0.1 * max(areas):
+            # one above the other: a plate and its lugs are as long and wide, but not as high
+            alike = same if axis == 2 else same[:2]
+            if alike.all() and abs(areas[0] - areas[1]) <= 0.1 * max(areas):
                 return groups
     return None
 

@@ -30,6 +30,8 @@ _WIDEST_HEEL = 0.085  # m
 _CUT_PLACES, _CUT = (4e-3, 16e-3), 0.8  # m from an end; width there over that farther in
 _END = 0.25  # of the length: where its end is looked for
 _LINE_OVER, _LINE = 0.8, 0.02  # of the width: over which, and within which, an end is a line
+ONE_STRAIGHT_END = 0.2
+"""More of the width straight at one end than at the other: a cut against a rounded end."""
 _MOST_OBLIQUE = math.tan(math.radians(25))
 _BEND = 0.006  # of the length
 _BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
@@ -264,25 +266,34 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
     )
 
 
-def cut_ends(plan: Mask, axis: int, spacing: float, *, oblique: bool = True) -> tuple[bool, bool]:
+def cut_ends(plan: Mask, axis: int, spacing: float) -> tuple[bool, bool]:
     """Return whether the near and the far end along ``axis`` are cut straight, not rounded.
 
-    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it; or, with
-    ``oblique``, its rim there is a line, up to 25 degrees off square, over 80 % of its width within
-    2 % of it.
+    4 mm from a cut the plan form is more than 0.8 times as wide as 16 mm from it; or its rim there
+    is a line, up to 25 degrees off square, over 80 % of what lies near that end.
     """
     widths = np.trim_zeros(plan.sum(axis=1 - axis))
     near, far = (min(round(place / spacing), widths.size - 1) for place in _CUT_PLACES)
-    square = [bool(each[near] > _CUT * each[far]) for each in (widths, widths[::-1])]
-    if not oblique:
-        return square[0], square[1]
     turned = plan if axis == 0 else plan.T
-    low, high = (square[0] or _is_line(turned)), (square[1] or _is_line(turned[::-1]))
+    low, high = (
+        bool(each[near] > _CUT * each[far]) or _line_shares(rim)[0] > _LINE_OVER
+        for each, rim in ((widths, turned), (widths[::-1], turned[::-1]))
+    )
     return low, high
 
 
-def _is_line(plan: Mask) -> bool:
-    """Return whether the rim at the first rows is a line, square or oblique."""
+def straight_ends(plan: Mask, axis: int) -> tuple[float, float]:
+    """Return the shares of the width over which the near and the far end along ``axis`` are a line.
+
+    A cut runs over the whole width, square or up to 25 degrees off it; the sides of a rounded heel
+    are lines over a part.
+    """
+    turned = plan if axis == 0 else plan.T
+    return _line_shares(turned)[1], _line_shares(turned[::-1])[1]
+
+
+def _line_shares(plan: Mask) -> tuple[float, float]:
+    """Return the share of the rim at the first rows that is a line: of that rim, of the width."""
     columns = np.flatnonzero(plan.any(axis=0))
     rim_row = np.argmax(plan[:, columns], axis=0).astype(np.float64)
     end = rim_row < _END * plan.shape[0]
@@ -290,12 +301,14 @@ def _is_line(plan: Mask) -> bool:
     near, off, slope = np.ones(columns.size, dtype=bool), np.zeros(columns.size), 0.0
     for _ in range(5):  # the sides of the end fall out
         if np.count_nonzero(near) < 3:
-            return False
+            return 0.0, 0.0
         slope, level = np.polyfit(columns[near], rim_row[near], 1)
         off = np.abs(rim_row - slope * columns - level)
         near = off < max(_LINE * width, np.quantile(off, _LINE_OVER)) + 1e-9
-    near = off < _LINE * width + 1
-    return bool(abs(slope) < _MOST_OBLIQUE and near.sum() > _LINE_OVER * end.sum() > width / 3)
+    straight = int(np.count_nonzero(off < _LINE * width + 1))
+    if abs(slope) >= _MOST_OBLIQUE or columns.size <= width / 3:
+        return 0.0, 0.0
+    return straight / columns.size, straight / width
 
 
 def off_centre(plan: Mask, axis: int) -> float:

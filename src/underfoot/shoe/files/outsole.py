@@ -171,7 +171,8 @@ def _outsole(
         thickness=float(np.median(thickness[np.isfinite(height)])),
         tallness=float(high[2] - low[2]),
         standing=orientation.standing_share(height, seen.spacing),
-        noise=height_noise(height),
+        # bars across one axis are quiet along the other
+        noise=min(height_noise(height), height_noise(height.T)),
     )
     check_sole(shape, where)
     height, part, region_remarks = _region(height, seen.spacing, chosen, where)
@@ -231,17 +232,12 @@ def _sides(
     square = max(size) < _NEARLY_SQUARE * min(size)
     free = chosen.forward not in DIRECTIONS and square
     offsets = [abs(orientation.off_centre(plan, axis)) for axis in (0, 1)]
-    # one straight end is the cut of a piece
-    cut = [False, False]
-    for oblique in (
-        False,
-        True,
-    ):  # a side that is nearly a line is no oblique cut beside a square one
-        if cut[0] == cut[1]:
-            ends = (orientation.cut_ends(plan, n, coarse, oblique=oblique) for n in (0, 1))
-            cut = [len(set(each)) == 2 for each in ends]
-    plainly = offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE)
-    if free and (cut[1] if cut[0] != cut[1] else plainly):
+    ends = [np.ptp(orientation.straight_ends(plan, axis)) for axis in (0, 1)]
+    if max(ends) > orientation.ONE_STRAIGHT_END:  # the cut of a piece
+        turn = ends[1] > ends[0]
+    else:
+        turn = offsets[1] > _PLAINLY_OFF * max(offsets[0], orientation.OFF_CENTRE)
+    if free and turn:
         along, across, plan = across, -along, plan.T[:, ::-1]
     toe = orientation.toe_end(plan, coarse, chosen)
     if toe.sign < 0:

@@ -138,16 +138,25 @@ def _of_text(values: np.ndarray, place: int, element: _Element) -> tuple[Columns
         lengths = table[:, at].astype(np.float64)
         if (lengths == width - len(element.properties)).all():
             corners = table[:, at + 1 : at + 1 + first].astype(np.float64).astype(np.int64)
-            counts = lengths.astype(np.int64)
-            return {lists[0].name: corners.ravel(), "\0counts": counts}, place + rows.size
+            beside = np.delete(table, np.arange(at, at + 1 + first), axis=1).astype(np.float64)
+            names = [each.name for each in element.properties if not each.length]
+            lengths = lengths.astype(np.int64)
+            single = dict(zip(names, beside.T, strict=True))
+            return {
+                **single,
+                lists[0].name: corners.ravel(),
+                "\0counts": lengths,
+            }, place + rows.size
     if not lists:
         raise ValueError(f"it ends within its {element.count} {element.name} lines")
     found: list[np.ndarray] = []
     counts = np.zeros(element.count, dtype=np.int64)
+    singles = {each.name: np.zeros(element.count) for each in element.properties if not each.length}
     wanted = next((each for each in lists if each.name in _CORNERS), lists[0])
     for n in range(element.count):
         for each in element.properties:
             if not each.length:
+                singles[each.name][n] = float(values[place])
                 place += 1
                 continue
             length = int(values[place])
@@ -157,7 +166,8 @@ def _of_text(values: np.ndarray, place: int, element: _Element) -> tuple[Columns
                 found.append(values[place + 1 : place + 1 + length])
                 counts[n] = length
             place += 1 + length
-    return {wanted.name: np.concatenate(found).astype(np.int64), "\0counts": counts}, place
+    corners = np.concatenate(found).astype(np.float64).astype(np.int64)
+    return {**singles, wanted.name: corners, "\0counts": counts}, place
 
 
 def _of_bytes(data: bytes, place: int, element: _Element, order: str) -> tuple[Columns, int]:
@@ -190,20 +200,28 @@ def _of_bytes(data: bytes, place: int, element: _Element, order: str) -> tuple[C
         rows = np.frombuffer(data, record, element.count, place)
         if all((rows[f"\0{name}"] == length).all() for name, length in lengths.items()):
             end = place + element.count * record.itemsize
-            if wanted is None:
-                native = {each.name: rows[each.name] for each in element.properties}
-                return {n: v.astype(v.dtype.newbyteorder("=")) for n, v in native.items()}, end
-            counts = np.full(element.count, lengths[wanted.name])
-            corners = rows[wanted.name].astype(np.int64).ravel()
-            return {wanted.name: corners, "\0counts": counts}, end
+            names = [each.name for each in element.properties if not each.length]
+            columns: Columns = {n: rows[n].astype(rows[n].dtype.newbyteorder("=")) for n in names}
+            if wanted is not None:
+                columns[wanted.name] = rows[wanted.name].astype(np.int64).ravel()
+                columns["\0counts"] = np.full(element.count, lengths[wanted.name])
+            return columns, end
     if wanted is None:
         raise ended
     found: list[np.ndarray] = []
     counts = np.zeros(element.count, dtype=np.int64)
+    singles = {
+        each.name: np.zeros(element.count, each.kind)
+        for each in element.properties
+        if not each.length
+    }
     for n in range(element.count):
         for each in element.properties:
             kind = np.dtype(order + each.kind)
             if not each.length:
+                if place + kind.itemsize > len(data):
+                    raise ended
+                singles[each.name][n] = np.frombuffer(data, kind, 1, place)[0]
                 place += kind.itemsize
                 continue
             head = np.dtype(order + each.length)
@@ -217,4 +235,5 @@ def _of_bytes(data: bytes, place: int, element: _Element, order: str) -> tuple[C
                 found.append(np.frombuffer(data, kind, length, place))
                 counts[n] = length
             place += length * kind.itemsize
-    return {wanted.name: np.concatenate(found).astype(np.int64), "\0counts": counts}, place
+    corners = np.concatenate(found).astype(np.int64)
+    return {**singles, wanted.name: corners, "\0counts": counts}, place

@@ -189,7 +189,8 @@ def _format_of(head: bytes, path: Path) -> str | None:
     if _IGES_LINE.match(head.split(b"\n")[0].rstrip(b"\r")):
         return "IGES"
     first = next((line for line in head.splitlines() if line.split(b"#")[0].strip()), b"")
-    if re.match(rb"\s*(ST)?C?N?4?n?OFF\b", first):
+    counts = path.suffix.lower() == ".off" and re.fullmatch(rb"\s*\d+\s+\d+(\s+\d+)?\s*", first)
+    if counts or re.match(rb"\s*(ST)?C?N?4?n?OFF\b", first):
         return "OFF"
     if start.startswith(b"{") and _is_gltf(path):
         return "GLTF"

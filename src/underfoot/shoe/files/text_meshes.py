@@ -177,6 +177,8 @@ def read_off(path: Path) -> MeshFile:
     where = str(path)
     lines = [line.partition(b"#")[0].split() for line in path.read_bytes().splitlines()]
     lines = [line for line in lines if line]
+    if lines and lines[0][0].isdigit():  # the word at its head may be left out
+        lines.insert(0, [b"OFF"])
     kind = _OFF.match(lines[0][0]) if lines else None
     if kind is None or lines[0][1:2] == [b"BINARY"]:
         raise DataError("a binary OFF file is not read", where=where, remedy="Export it as text")

@@ -148,6 +148,8 @@ class _Package:
         items = root.findall(f"{{{_CORE}}}build/{{{_CORE}}}item")
         if root.find(f"{{{_CORE}}}build") is None:
             raise self._error("the 3MF file has no build section, which says what is made")
+        if not items:
+            raise self._error("the build section of the 3MF file is empty: nothing is to be made")
         bodies: list[Body] = []
         asked = [(self._key(item, start, "item"), item) for item in items]
         if sum(self._count(key, ()) for key, _ in asked) > MOST_UNFOLDED:

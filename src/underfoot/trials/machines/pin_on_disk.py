@@ -78,7 +78,8 @@ def correlated_error(values: np.ndarray) -> float | None:
 
 
 NORMAL = (
-    "normal force", "normal", "load", "fz", "fn", "force z", "daq.fz", "normalkraft",
+    "normal force", "normal", "load", "fz", "fn", "force z", "daq.fz", "normalkraft", "last",
+    "auflast", "normal load",
 )  # fmt: skip
 SHEAR = (
     "friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft", "daq.fx",
@@ -95,6 +96,7 @@ _KEPT = 0.2, 0.8  # part of such a stretch, away from where the pin touches and 
 _STROKE = 0.25, 0.75  # part of a stroke, away from where it turns
 _STROKES = "the middle half of each, in both directions"
 _FEWEST_TURNS = 4
+_LONGEST_REST = 0.45  # of the time: the middle half between rests slides
 _REGULAR = 0.2  # relative scatter of the strokes of a machine
 
 
@@ -236,10 +238,21 @@ def _ratio(
         channel = _channel(trial, COF)
         if channel is None:
             raise problem from None
-        choices, ratio = {"cof": "column of the file"}, np.abs(channel.values)
-        if (strokes := _strokes(channel.values)) is not None:
+        choices, values = {"cof": "column of the file"}, channel.values.astype(float)
+        size = np.abs(values)
+        away = [
+            (a, b)
+            for a, b in _unloaded_stretches(size, channel.rate)
+            if size[a:b].max() < _LIFTED * np.nanpercentile(size, 99)
+        ]
+        for start, stop in away:
+            values[start:stop] = np.nan
+        if away:
+            choices["unloaded"] = f"{sum(b - a for a, b in away)} samples without friction left out"
+        ratio = np.abs(values)
+        if (strokes := _strokes(values, zeroed=False)) is not None:
             choices["strokes"] = _STROKES
-            ratio = np.where(strokes[0], np.abs(channel.values - strokes[1]), np.nan)
+            ratio = np.where(strokes[0], np.abs(values - strokes[1]), np.nan)
         return ratio, None, None, channel, choices, [], None
     if len(normal.values) != len(shear.values):
         raise DataError("normal and shear force differ in length", where=trial.name)
@@ -262,7 +275,7 @@ def _ratio(
     if not level > 0:
         raise DataError("the normal force is zero", where=trial.name)
     pressed = size > _LIFTED * level
-    strokes = _strokes(np.where(pressed, push, np.nan))
+    strokes = _strokes(np.where(pressed, push, np.nan), zeroed=zero_error is not None)
     if strokes is not None:
         sliding, middle = strokes
         if zero_error is None:
@@ -332,11 +345,12 @@ def _zero_line(
     return np.interp(time, times, means), float(np.hypot(max(errors), wander))
 
 
-def _strokes(push: np.ndarray) -> tuple[np.ndarray, float] | None:
+def _strokes(push: np.ndarray, *, zeroed: bool) -> tuple[np.ndarray, float] | None:
     """Return the samples (n,) in the middle of strokes, and the mean of both directions (N).
 
-    ``push``: friction (n,), NaN without load. None where the pin does not go to and fro: then the
-    friction neither changes its sign at even times nor falls to nothing at even times.
+    ``push``: friction (n,), NaN without load. ``zeroed``: its zero is known. None where the pin
+    neither goes to and fro nor rests between strokes: then the friction neither changes its sign at
+    even times nor falls to nothing at even times.
     """
     seen = np.flatnonzero(np.isfinite(push))
     if len(seen) < 40:
@@ -345,15 +359,17 @@ def _strokes(push: np.ndarray) -> tuple[np.ndarray, float] | None:
     low, high = np.percentile(values, (10, 90))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     both = np.mean(np.abs(np.abs(values - middle) - half) < 0.5 * half) > 0.7 and half > 0
+    # one level at zero is a pin that rests between its strokes
+    both &= abs(middle) < 0.5 * half if zeroed else abs(abs(middle) - half) > _LIFTED * half
     turns = _changes(values - middle, 0.3 * half) if both else np.zeros(0, dtype=int)
     if not _even(turns):
         size = np.abs(values)
-        usual = float(np.median(size))
+        usual = float(np.percentile(size, 75))
         turns, middle = (
             np.array([(a + b) // 2 for a, b in runs(size < 0.5 * usual)], dtype=int),
             0.0,
         )
-        narrow = np.mean(size < 0.5 * usual) < 0.3
+        narrow = np.mean(size < 0.5 * usual) < _LONGEST_REST
         deep = all(size[max(t - 2, 0) : t + 3].min() < 0.3 * usual for t in turns)
         if not (_even(turns) and narrow and deep):
             return None

@@ -199,7 +199,7 @@ def _finish(
     axes.spines[["top", "right"]].set_visible(False)
     if small:
         axes.set_title(small, fontsize=9)
-    if beside:
+    if beside and axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False, fontsize=beside, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 

@@ -364,6 +364,7 @@ def read_c3d(draft: Draft) -> Trial:
     draft.rate = raw.analog_rate
     for index in range(_plate_count(raw)):
         _plate(draft, raw, index, units, scale)
+    draft.notes += _unused_plates(raw)
     labels = _labels(raw, "ANALOG", "channel", raw.analog.shape[1])
     counts = _raw_columns(raw)
     for i, name in enumerate(draft.names(labels, "channel")):
@@ -415,6 +416,19 @@ def _plate_count(raw: C3DFile) -> int:
     used = raw.number("FORCE_PLATFORM", "USED")
     kinds = raw.numbers("FORCE_PLATFORM", "TYPE").size
     return int(min(max(used, 0), max(kinds, used if used < 32 else 0)))
+
+
+def _unused_plates(raw: C3DFile) -> list[str]:
+    """Return a note on plates that have a type and corners, and that USED leaves out."""
+    used = _plate_count(raw)
+    kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")[used:]
+    corners = raw.numbers("FORCE_PLATFORM", "CORNERS").ravel(order="F")[12 * used :]
+    left = sum(
+        int(kind in plates.CHANNELS and bool(corners[12 * i : 12 * i + 12].any()))
+        for i, kind in enumerate(kinds)
+    )
+    said = f"FORCE_PLATFORM:USED is {used}: {left} more that are described are left out"
+    return [said] if left else []
 
 
 def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:

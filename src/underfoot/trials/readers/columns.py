@@ -16,15 +16,23 @@ from .sheet import Sheet, sheet_from
 from .text import clock_time, force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
+_CLOCK_UNITS = ("s", "ms", "sec", "msec", "us")
+"""What a column of times is called where its unit stands alone."""
+_BODY_AXES = {
+    "x": r"medio[ -]?lateral|lateral|ml|m-l",
+    "y": r"anterior[ -]?posterior|antero[ -]?posterior|ap|a-p",
+    "z": r"vertical|vert",
+}
+"""Axes of a plate in words of the body; which way they count is found as of any plate."""
 _PLATE = re.compile(
-    r"^(?:(?P<before>(?:.*[^a-z])?)(?P<kind>f|grf|force|m|mom|moment|t|torque|a|p|cop|cent(?:re|er)"
-    r"[ _]?of[ _]?pressure)[ _.]?(?P<number>\d*)[ _.]?"
+    r"^(?:(?P<before>(?:.*[^a-z])?)(?P<kind>f|grf|force|kraft|fuerza|forza|m|mom|moment|t|torque|a|p|"
+    r"cop|cent(?:re|er)[ _]?of[ _]?pressure)[ _.]?(?P<number>\d*)[ _.]?"
     r"|(?P<ground>.*(?:ground|grf).*[^a-z])(?P<vector>[vp]))(?P<axis>[xyz])(?P<after>.*)$",
     re.I,
 )
 """Fx1, Force_x, FP1_Fx, F1X (AMTI), GRF1x, ground_force_1_vx (OpenSim)."""
 # Names of a tribometer's columns, letters only.
-_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load"}
+_NORMAL = {"normalforce", "normalload", "normalkraft", "fz", "fn", "load", "last", "auflast"}
 _SHEAR = {
     "frictionforce",
     "shearforce",
@@ -65,11 +73,15 @@ def read_columns(draft: Draft) -> Trial:
 
 def _is_known(sheet: Sheet) -> bool:
     """Whether the columns tell by themselves what they are: a time, and forces or a COF."""
-    folded = {re.sub("^daq|[^a-z\u03bc]", "", name.casefold()) for name in sheet.numbers}
+    folded = {_folded(name) for name in sheet.numbers}
     forces = folded & _NORMAL and folded & _SHEAR
     return any(_is_time(sheet, name) for name in sheet.numbers) and bool(
         forces or folded & _COF or _plate_groups(sheet)
     )
+
+
+def _folded(name: str) -> str:
+    return re.sub("^daq|[^a-z\u03bc]", "", name.casefold())
 
 
 def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
@@ -85,8 +97,15 @@ def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
         written, values = unit or sheet.units.get(column, ""), _column(sheet, column)
         draft.channel(name, values, written, scale=scale, note=f'column "{column}"')
     for name, values in sheet.numbers.items():
-        if name not in draft.channels:
-            draft.channel(name, values, sheet.units.get(name, ""))
+        if name in draft.channels:
+            continue
+        written = sheet.units.get(name, "")
+        force = force_unit(written) if _folded(name) in _NORMAL | _SHEAR else None
+        if force and not si_unit(written):  # a mass, which stands for its weight
+            note = f'in "{written}" in the file'
+            draft.channel(name, values, unit="N", scale=force[1], note=note)
+        else:
+            draft.channel(name, values, written)
     plates = profile.plates or _plate_columns(draft, sheet)
     if plates and draft.times is not None:
         draft.notes.append("samples are not equally spaced: no plates were made")
@@ -139,7 +158,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
         draft.notes.append(f"sampling rate {draft.rate:g} Hz from the header")
         return
     values = _column(sheet, name)
-    written = profile.time_unit or sheet.units.get(name, "")
+    written = profile.time_unit or sheet.units.get(name, "") or name * (name in _CLOCK_UNITS)
     unit = si_unit(written or "s")
     if unit is None or unit[0] != "s":
         raise draft.error(f'the time column has the unit "{written}"')
@@ -168,6 +187,8 @@ def _is_time(sheet: Sheet, name: str) -> bool:
     written = sheet.units.get(name, "")
     if written and (si_unit(written) or ("",))[0] != "s":
         return False
+    if not written and name in _CLOCK_UNITS:
+        return True
     return name.casefold().replace("_", " ") in _TIME and (name != "T" or bool(written))
 
 
@@ -177,14 +198,26 @@ def _rate_in(header: Sequence[str]) -> float:
     return next((float(w) for w in words if is_number(w) and 0 < float(w) < 1e6), 0.0)
 
 
+def _with_axis(name: str) -> str:
+    """Return "Force z 1" of "Vertical force 1": axes in words of the body as letters."""
+    for axis, words in _BODY_AXES.items():
+        word = rf"(?:^|(?<=[\s_.-]))(?:{words})(?:$|(?=[\s_.-]))"
+        rest = re.sub(word, "", name, flags=re.IGNORECASE)
+        if rest != name:
+            return re.sub(
+                r"(?i)(?<![a-z])(force|grf)[\s_.-]*", rf"\1 {axis} ", rest.strip(" _.-"), count=1
+            )
+    return name
+
+
 def _plate_groups(sheet: Sheet) -> dict[tuple[str, str], dict[str, dict[str, str]]]:
     """Names of columns by plate (what stands before and behind), quantity (f, m, c) and axis."""
     groups: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
     for name in sheet.numbers:
-        match = _PLATE.match(name)
+        match = _PLATE.match(_with_axis(name))
         if match:
             letter = (match["kind"] or match["vector"])[0].casefold()
-            kind = {"f": "f", "g": "f", "v": "f", "m": "m", "t": "m"}.get(letter, "c")
+            kind = {"f": "f", "g": "f", "k": "f", "v": "f", "m": "m", "t": "m"}.get(letter, "c")
             before = match["ground"] or match["before"] + match["number"]
             key = _WHAT.sub("", before.casefold()), match["after"].casefold()
             columns = groups.setdefault(key, {}).setdefault(kind, {})

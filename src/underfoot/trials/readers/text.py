@@ -12,6 +12,11 @@ from underfoot.core.numbers_text import NumberForm, number_forms
 from underfoot.core.text import cells_of
 
 _WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
+_BEHIND = re.compile(
+    r"^(?P<name>.*?\S)(?:(?:\s*/\s*|,\s*|\s+in\s+)(?P<unit>[^\s/,_]+)"
+    r"|_(?P<short>k?N|m?s|[cm]m|Nm|Nmm|lbf|kgf))$"
+)
+_BEHIND_UNITS = ("N", "N*m", "s", "m", "Pa", "V")
 NOTHING = ("nan", "na", "n/a", "-", "--", "null", "none", "#n/a")
 _NUMBER = re.compile(r"^\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?\s*$")
 _CLOCK = re.compile(
@@ -23,8 +28,13 @@ _WRITTEN = re.compile(r"[+\-−]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+\-�
 
 
 def lines_of(text: str) -> list[str]:
-    """Return the lines without line ends; only CR and LF count as ends."""
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    """Return the lines without line ends; only CR and LF count as ends.
+
+    Of a text in which every second line is empty (ends written twice) the others.
+    """
+    lines = text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    twice = len(lines) > 4 and not any(map(str.strip, lines[1::2]))
+    return lines[::2] if twice else lines
 
 
 def is_number(cell: str) -> bool:
@@ -38,15 +48,24 @@ def is_written_number(cell: str) -> bool:
 
 
 def name_and_unit(label: str) -> tuple[str, str]:
-    """Return the name and the unit in ``"Fx (N)"`` or ``"Fx [N]"``; the unit may be empty."""
+    """Return name and unit of a heading; the unit may be empty.
+
+    "Fx (N)", "Fx [N]"; with a unit that is known also "Fx / N", "Fx, N", "Fx in N", "Fx_N".
+    """
     match = _WITH_UNIT.match(label.strip())
-    return (match[1].strip(), match[2].strip()) if match else (label.strip(), "")
+    if match:
+        return match[1].strip(), match[2].strip()
+    match = _BEHIND.match(label.strip())
+    unit = (match["unit"] or match["short"]) if match else ""
+    if match and (force_unit(unit) or ("",))[0] in _BEHIND_UNITS:
+        return match["name"].strip(), unit
+    return label.strip(), ""
 
 
 def delimiter_of(lines: Sequence[str]) -> str:
-    """Return the delimiter (tab, semicolon, comma or blank ``""``) that divides most lines."""
+    """Return the delimiter (tab, semicolon, bar, comma or blank ``""``) that divides most lines."""
     sample = [line for line in lines if line.strip()][:60]
-    for candidate in ("\t", ";", ","):
+    for candidate in ("\t", ";", "|", ","):
         if sum(candidate in line for line in sample) > 0.5 * len(sample):
             return candidate
     return ""

@@ -8,7 +8,7 @@ from underfoot.core import DataError
 
 from ..recording.trial import Trial, Vertical
 from .draft import Draft
-from .text import is_number, number_after, si_unit, split, truncated
+from .text import delimiter_of, is_number, number_after, si_unit, split, truncated
 
 
 def read_trc(draft: Draft) -> Trial:
@@ -318,12 +318,13 @@ _PLATE = re.compile(r"^(?P<device>.*?)\s*-\s*(?P<what>force|moment|cop)$", re.IG
 def read_vicon_csv(draft: Draft) -> Trial:
     """Return devices (force plates, channels) and trajectories of a Nexus export as one trial."""
     lines = draft.lines()
-    kinds = [line.strip(' ,"').casefold() for line in lines]
+    kinds = [line.strip(' ,;\t"').casefold() for line in lines]
+    delimiter = delimiter_of(lines) or ","
     starts = [i for i, kind in enumerate(kinds) if kind in BLOCKS]
     if not starts:
         raise draft.error("no block of devices or trajectories")
     for start, stop in zip(starts, [*starts[1:], len(lines)], strict=True):
-        names, axes, units, numbers = _block(draft, lines[start:stop], start)
+        names, axes, units, numbers = _block(draft, lines[start:stop], start, delimiter)
         if kinds[start] == "devices":
             _devices(draft, names, axes, units, numbers)
         elif kinds[start] == "trajectories":
@@ -338,19 +339,19 @@ def read_vicon_csv(draft: Draft) -> Trial:
 
 
 def _block(
-    draft: Draft, lines: list[str], start: int
+    draft: Draft, lines: list[str], start: int, delimiter: str
 ) -> tuple[list[str], list[str], list[str], np.ndarray]:
-    rate = split(lines[1], ",")[0] if len(lines) > 1 else ""
+    rate = split(lines[1], delimiter)[0].replace(",", ".") if len(lines) > 1 else ""
     if not is_number(rate) or not 0 < float(rate) < 1e6 or len(lines) < 6:
         where = f"{draft.name}, line {start + 2}"
         raise DataError("a block has no rate or no rows", where=where)
     draft.rate = float(rate)
-    names, axes, units = (split(line, ",") for line in lines[2:5])
+    names, axes, units = (split(line, delimiter) for line in lines[2:5])
     width = len(axes)
     names, units = ((row + [""] * width)[:width] for row in (names, units))
     for i in range(3, width):
         names[i] = names[i] or names[i - 1]  # a name stands over the first of its columns only
-    return names, axes, units, draft.table(lines[5:], ",", width, start + 6)
+    return names, axes, units, draft.table(lines[5:], delimiter, width, start + 6)
 
 
 def _devices(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import InputError, unknown_name
+from underfoot.core import DataError, InputError, unknown_name
 
 from .samples import KINDS, t_test
 from .shares import is_share, score, share_difference
@@ -38,7 +38,7 @@ def effect_size(
     Paired: mean difference over the SD of the differences (g_z). Otherwise over the pooled SD.
     The bias of Cohen's d is removed by J = Gamma(df/2) / (sqrt(df/2) Gamma((df-1)/2)).
 
-    DataError: as ``t_test``.
+    DataError: as ``t_test``; one degree of freedom, for which J is zero.
 
     Source: L. V. Hedges, J. Educ. Stat. 6 (1981) 107; G. Cumming, S. Finch, Educ. Psychol. Meas.
     61 (2001) 532.
@@ -51,6 +51,8 @@ def effect_size(
     sizes = len(np.asarray(first)), len(np.asarray(second))
     scale = np.sqrt(1.0 / sizes[0] if paired else 1.0 / sizes[0] + 1.0 / sizes[1])
     df, tail = test.df, 0.5 - confidence / 2
+    if df < 2:
+        raise DataError("two persons have no unbiased effect size", where="effect size")
 
     def centre(probability: float) -> float:
         def beyond(c: float) -> float:  # the library gives NaN where the answer is 0 or 1

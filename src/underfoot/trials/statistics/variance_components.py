@@ -128,7 +128,9 @@ def variance_components(
                 coefficients, scale**2 * (plain + added), scale**2 * plain, variances,
                 state.slopes, scale**4 * uncertainty,
             )  # fmt: skip
-    raise DataError("no scatter is left to test with", where="mixed model")
+    if theta.max() < _LEAST:  # variances over that of all values
+        raise DataError("no scatter is left to test with", where="mixed model")
+    raise DataError("the variances between persons can't be estimated", where="mixed model")
 
 
 def _singular(information: np.ndarray, told: np.ndarray) -> bool:

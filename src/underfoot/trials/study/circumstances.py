@@ -7,7 +7,7 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from ..statistics import mixed_model, person_means
+from ..statistics import ROUNDING, mixed_model, person_means
 from .conditions import NUMBERS
 from .file_result import FileResult
 from .tables import Cell, Table, grouped, mean_and_interval
@@ -138,6 +138,8 @@ def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, M
         of = np.array(own.factors[key])
         groups = [own.mean[of == level] for level in levels]
         means = {level: float(np.mean(one)) for level, one in zip(levels, groups, strict=True)}
+        if np.ptp(list(means.values())) <= ROUNDING * max(map(abs, means.values())):
+            continue
         try:
             if name == "speed":
                 (test,) = mixed_model(numbers, {key: column}, who).tests

@@ -27,11 +27,14 @@ FILE = ("file", "filename", "file name", "datei", "dateiname")
 MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
         "körpergewicht")  # fmt: skip
 QUANTITIES = {
-    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert"),
-    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel"),
+    "ptv": ("ptv", "srv", "bpn", "pendulum test value", "pendulum", "pendelwert", "srt-wert",
+            "ptv wet", "ptv dry"),
+    "angle": ("angle", "ramp angle", "acceptance angle", "angle of slip", "winkel",
+              "akzeptanzwinkel", "neigungswinkel"),
     "cof": (
-        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "µ",
+        "cof", "dcof", "scof", "coefficient of friction", "friction", "slip resistance", "mu", "μ",
         "slip index", "reibwert", "reibzahl", "gleitreibwert", "gleitreibungskoeffizient",
+        "gleitreibwert μ",
     ),
 }  # fmt: skip
 LARGEST = {"ptv": 150.0, "angle": 45.0, "cof": 3.0}  # no ramp goes beyond 45 deg

@@ -26,12 +26,25 @@ NOTED = {
     "direction": ("direction", "richtung"),
 }
 """What a protocol can ask to be noted, with the headings that say it."""
-_LABELS = (*NOTED["slider"], *NOTED["direction"], "operator", "laboratory", "sample", "date")
 _RUN = ("run", "type of run", "kind of run", "lauf")
 _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
+_NTH = re.compile(
+    r"((swing|reading|test|run|value|messung|schwung|wert|r|s)[ _.]?)?#?\d{1,2}", re.I
+)
+_FEWEST_BESIDE = 3  # numbered columns of a record sheet
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
+_WALKERS = (
+    "operator", "walker", "test person", "person", "subject", "tester", "prüfer", "prüferin",
+    "prüfperson", "testperson", "begeher",
+)  # fmt: skip
+"""Headings of who walked on a ramp: two of them make one angle."""
+_BOARD = (
+    "standard angle", "board angle", "angle of the board", "sollwinkel", "standardwinkel",
+)  # fmt: skip
+"""Headings of the angle that a calibration board of the ramp has by its certificate."""
+_LABELS = (*NOTED["slider"], *NOTED["direction"], *_WALKERS, "laboratory", "sample", "date")
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -75,12 +88,13 @@ def reading_results(
     Every text column is a condition; rows that agree in all of them are readings of one sample (of
     one direction, with one slider). A column "run" may say "zero" (the mean of these readings is
     taken off the sample's others), "conditioning" (left out) or "check" (a surface of known PTV: a
-    failed check refuses the readings of its slider). The protocol may leave out the first readings
-    (``conditioning``) where more than ``readings`` are given. A table in which no column can be
-    recognised as readings, impossible values and one condition in two spellings are a `DataError`
-    or `InputError`.
+    failed check refuses the readings of its slider). Of a ramp a row with a "standard angle" is a
+    calibration board, which shows how far its operator reads off. The protocol may leave out the
+    first readings (``conditioning``) where more than ``readings`` are given. A table in which no
+    column can be recognised as readings, impossible values and one condition in two spellings are a
+    `DataError` or `InputError`.
     """
-    columns, lines = table_columns(path)
+    columns, lines = _one_a_row(*table_columns(path), protocol.text("quantity"))
     cells = {head: column for head, _, column in columns}
     units = {head: unit for head, unit, _ in columns}
     numbers = {
@@ -108,10 +122,16 @@ def reading_results(
         and k != column
         and (k not in numbers or k.casefold() in _LABELS)
     }
+    walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
+    if walker:
+        texts = {"operator" if k == walker else k: v for k, v in texts.items()}
     one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
+    boards = _boards(name, cells, units, texts, values) if quantity == "angle" else None
     checks: dict[tuple[str, str], list[int]] = {}
     rows: dict[tuple[str, ...], list[int]] = {}
     for i, run in enumerate(runs):
+        if boards is not None and i in boards.rows:
+            continue
         key = tuple(text[i] for text in texts.values())
         if quantity == "ptv" and _CHECK.search(run):
             checks.setdefault(
@@ -130,11 +150,89 @@ def reading_results(
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
         check_surfaces = "; ".join(c.description for c in used) or "none in the table"
+        if boards is not None:
+            draft.curves["boards"] = boards.read.get(conditions.get("operator", ""), [])
         _one_sample(
             draft, values[members], [runs[i] for i in members], quantity, protocol, check_surfaces
         )
         results.append(draft.finished(protocol))
     return results
+
+
+def _one_a_row(
+    columns: list[tuple[str, str, list[str]]], lines: list[int], quantity: str
+) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
+    """Return a record sheet ("Swing 1", "Swing 2" ... beside each other) with a reading a row."""
+    wide = [one for one in columns if _NTH.fullmatch(one[0])]
+    beside = [one for one in columns if not _NTH.fullmatch(one[0])]
+    named = any(head.casefold() in QUANTITIES[quantity] for head, _, _ in beside) if quantity else 1
+    if len(wide) < _FEWEST_BESIDE or named:
+        return columns, lines
+    every = len(wide)
+    readings = [cell for row in zip(*(cells for _, _, cells in wide), strict=True) for cell in row]
+    repeated = [(head, unit, [c for c in cells for _ in wide]) for head, unit, cells in beside]
+    return [*repeated, (quantity, wide[0][1], readings)], [n for n in lines for _ in range(every)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Boards:
+    """Rows of calibration boards; by operator (standard angle, angle read, its u), degrees."""
+
+    rows: frozenset[int]
+    read: Mapping[str, list[list[float]]]
+
+
+def _boards(
+    name: str,
+    cells: Mapping[str, Sequence[str]],
+    units: Mapping[str, str],
+    texts: Mapping[str, Sequence[str]],
+    values: np.ndarray,
+) -> _Boards | None:
+    head = next((one for one in cells if one.casefold() in _BOARD), None)
+    if head is None:
+        return None
+    rows = [i for i, cell in enumerate(cells[head]) if cell and np.isfinite(values[i])]
+    if "operator" not in texts:
+        raise DataError(
+            f'"{head}" tells calibration boards, but nobody walks on them',
+            where=name,
+            allowed="a column operator",
+            remedy="Name the walker of each reading",
+        )
+    factor = _UNITS["angle"].get(units[head].casefold(), 1.0)
+    own: dict[str, dict[float, list[float]]] = {}
+    for i in rows:
+        standard = float(cells[head][i].replace(",", ".")) * factor
+        own.setdefault(texts["operator"][i], {}).setdefault(standard, []).append(float(values[i]))
+    read = {
+        operator: [
+            [
+                standard,
+                float(np.mean(angles)),
+                float(np.std(angles, ddof=1) / np.sqrt(len(angles))) if len(angles) > 1 else 0.0,
+            ]
+            for standard, angles in sorted(angles_of.items())
+        ]
+        for operator, angles_of in own.items()
+    }
+    return _Boards(frozenset(rows), read)
+
+
+def board_correction(
+    angle: float, boards: Sequence[Sequence[float]], share: float
+) -> tuple[float, float]:
+    """Return what is added to an angle that a walker read, and its standard uncertainty, degrees.
+
+    ``share`` of the walker's deviation on the calibration boards, on straight lines between the
+    angles that the walker read there, that of the nearest board beyond them.
+
+    ``boards``: (standard angle, angle read, u of that) each.
+    """
+    if not len(boards):
+        return 0.0, 0.0
+    standard, read, error = np.array(sorted(map(list, boards), key=lambda one: one[1])).T
+    return share * float(np.interp(angle, read, standard - read)), share * float(error.max())
 
 
 def _slider(noted: Mapping[str, Any]) -> str:
@@ -187,6 +285,9 @@ def _one_sample(
             f"{len(counted)} readings, {len(readings)} of them used; expected are {last}{several}"
         )
         flags.append(caution(words))
+    fewest = int(protocol.number("fewest", "1", 0.0))
+    if len(readings) < fewest:
+        flags.append(caution(f"{len(readings)} readings; expected are {fewest} of each walker"))
     low, high, words = _MISTAKEN[quantity]
     if low <= float(readings.min()) and float(readings.max()) < high and high > 0:
         text = f"readings of {readings.min():g} to {readings.max():g}: {words}"

@@ -20,7 +20,7 @@ from .conditions import NUMBERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
-from .readings import NOTED
+from .readings import NOTED, board_correction
 from .study_tests import comparison_findings, persons_of, slip_findings, varying
 from .tables import Finding, Table, condition_table, quantity_name
 
@@ -418,7 +418,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     title = f"Samples, {quantity_name(quantity)}"
     made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
     if quantity == "angle":
-        made += _walkers(files, keys, places)
+        made += _walkers(files, keys, places, protocol.number("board_share", "1", 1.0))
     made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
     findings: list[Finding] = []
     for by in ("laboratory", "operator", "machine"):
@@ -448,28 +448,47 @@ def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None
     return own, ", ".join(sorted(others)) or None
 
 
-def _walkers(files: Sequence[FileResult], keys: tuple[str, ...], places: int) -> list[Table]:
+def _walkers(
+    files: Sequence[FileResult], keys: tuple[str, ...], places: int, share: float
+) -> list[Table]:
     """Return each sample with the angle of all who walked on it, which gives its class."""
     others = tuple(k for k in keys if k != "operator")
-    rows = []
+    rows, corrected = [], False
     for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
-        angles = {str(f.conditions.get("operator", "")): f.main["angle"] for f in members}
-        mean = float(np.mean(list(angles.values())))
+        boards = [f.curves.get("boards", ()) for f in members]
+        changes = [
+            board_correction(f.main["angle"], own, share)
+            for f, own in zip(members, boards, strict=True)
+        ]
+        everybody = all(len(own) for own in boards)
+        corrected |= everybody
+        # one walker without boards: the angles of both as they were read
+        added = [change if everybody else 0.0 for change, _ in changes]
+        angles = [f.main["angle"] + change for f, change in zip(members, added, strict=True)]
+        mean = float(np.mean(angles))
         inside = [f.measurements[0]["uncertainty"] or 0.0 for f in members]
-        apart = float(np.std(list(angles.values()), ddof=1)) if len(angles) > 1 else 0.0
-        u = max(float(np.hypot.reduce(inside)) / len(inside), apart / np.sqrt(len(angles)))
-        told = "; ".join(f"{name} {value:.{places}f}" for name, value in angles.items())
+        inside += [error for _, error in changes if everybody]
+        apart = float(np.std(angles, ddof=1)) if len(angles) > 1 else 0.0
+        u = max(float(np.hypot.reduce(inside)) / len(members), apart / np.sqrt(len(angles)))
+        told = "; ".join(
+            f"{f.conditions.get('operator', '')} {f.main['angle']:.{places}f}"
+            + (f" {change:+.{places}f}" if everybody else "")
+            for f, change in zip(members, added, strict=True)
+        )
         scheme = members[0].curves.get("scheme")
         number = {"value": mean, "uncertainty": u}
         classes = _classes(class_scheme(scheme), number) if scheme else (None, None)
-        few = "1 of 2" if len(angles) < 2 else ""
+        few = "1 of 2" if len(members) < 2 else ""
         rows.append((*level, told, mean, u, *classes, few))
     if not rows:
         return []
     columns = (*others, "walkers", "angle (deg)", "u", "class", "2 u reaches", "walkers measured")
     notes = (
         "The class of a sample is that of the mean angle of its walkers, two of them.",
-        "Angles are as read: the walkers' correction by calibration boards is not applied.",
+        f"Angles are corrected by {100 * share:.0f} % of what each walker reads off on the "
+        "calibration boards, between boards by straight lines."
+        if corrected
+        else "Angles are as read: no calibration boards of all walkers (a column standard angle).",
     )
     decimals = {"angle (deg)": places, "u": places}
     title = "Samples, all walkers, angle"

@@ -50,6 +50,12 @@ def comparison_findings(
     """
     factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
+    if not factors and confounded:
+        why = DataError(
+            f"{'; '.join(map(str, confounded))}: nothing is left to compare", where=response
+        )
+        return [not_done(f"anova_{response}", f"Comparisons of {quantity_name(response)}", why),
+                *repeated]  # fmt: skip
     if not factors:
         return repeated
     if margin:

@@ -1,0 +1,94 @@
+"""Studies with too little in them: what can be told is told, the rest has its reason."""
+
+import numpy as np
+import pytest
+
+from underfoot.core import DataError
+from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.statistics import effect_size
+from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.study import study_of
+from underfoot.trials.study.study_guard import study_doubts
+
+LEVEL = protocol("level_walking")
+
+
+def files_of(rows):
+    """One file a row of (conditions, RCOF); a scatter of 0.004 is added to each."""
+    rng = np.random.default_rng(0)
+    return [
+        FileResult(
+            f"f{n:03d}.c3d",
+            main={"rcof": rcof + rng.normal(0, scatter)},
+            conditions=conditions,
+            steps=({"rcof": rcof, "walking_speed": 1.3, "contact": 0.1, "peak_force": 700.0},),
+        )
+        for n, (conditions, rcof, scatter) in enumerate(rows)
+    ]
+
+
+def crossed(persons, shoes, floors=("",), trials=2, scatter=0.004, kept=lambda *cell: True):
+    return [
+        ({"subject": f"S{i:02d}", "shoe": shoe, **({"floor": floor} if floor else {})},
+         0.2 + 0.02 * k, scatter)
+        for i in range(persons)
+        for k, shoe in enumerate(shoes)
+        for floor in floors
+        if kept(i, shoe, floor)
+        for _ in range(trials)
+    ]  # fmt: skip
+
+
+STUDIES = {
+    "one person": crossed(1, "abc", trials=4),
+    "one person and one shoe": crossed(1, "a", trials=4),
+    "one trial of each": [({"subject": f"S{i:02d}", "shoe": "ab"[i % 2]}, 0.2, 0.01)
+                          for i in range(10)],
+    "all the same value": crossed(6, "a", scatter=0.0),
+    "the same value in a shoe": crossed(6, "abc", scatter=0.0),
+    "a factor of one level": crossed(6, "ab", ("tile",)),
+    "30 conditions of two persons": crossed(2, [f"s{k}" for k in range(30)], trials=1),
+    "empty cells": crossed(6, "abc", "xy", kept=lambda i, shoe, floor: shoe + floor != "cy"),
+    "empty cells of persons": crossed(6, "abc", "xy", kept=lambda i, shoe, f: (i + ord(shoe)) % 3),
+    "every person an own shoe": [({"subject": f"S{i:02d}", "shoe": f"s{i}"}, 0.2, 0.004)
+                                 for i in range(6) for _ in range(3)],
+    "one person in a group": [({**c, "group": "old" if c["subject"] == "S00" else "young"}, v, s)
+                              for c, v, s in crossed(5, "ab")],
+    "no persons": [({"shoe": c["shoe"]}, v, s) for c, v, s in crossed(5, "ab")],
+    "no conditions": [({}, 0.2, 0.004)] * 5,
+    "one file": crossed(1, "a", trials=1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_what_can_be_told_is_told_and_the_rest_has_its_reason(name):
+    files = files_of(STUDIES[name])
+    study = study_of(files, LEVEL)
+    assert not study.notes
+    (conditions,) = (table for table in study.tables if table.name == "conditions")
+    assert conditions.rows
+    for one in study.findings:
+        if "not done" in one.table.columns:
+            assert all(one.table.rows[0])
+            continue
+        for row in one.table.rows:
+            shown = [cell for cell in row if isinstance(cell, float)]
+            assert np.isfinite(shown).all(), (one.name, row)
+    for doubt in study_doubts(files, LEVEL):
+        told = str(doubt).split('"')
+        if "early" in str(doubt):  # one level is not early and late
+            assert told[1] != told[3]
+
+
+def test_a_comparison_that_nothing_is_left_of_says_why():
+    study = study_of(files_of(STUDIES["every person an own shoe"]), LEVEL)
+    (lost,) = (one for one in study.findings if "not done" in one.table.columns)
+    assert "shoe" in lost.table.rows[0][0]
+
+
+def test_two_persons_have_no_effect_size():
+    with pytest.raises(DataError, match="effect size"):
+        effect_size([0.2, 0.21], [0.22, 0.24], paired=True)
+    study = study_of(files_of(crossed(2, "ab", trials=1)), LEVEL)
+    (tukey,) = (one for one in study.findings if one.name.startswith("tukey"))
+    assert tukey.table.rows[0][-3:] == (None, None, None)
