@@ -14,6 +14,7 @@ from nicegui.events import GenericEventArguments
 
 from underfoot.case import Case, unit_at
 from underfoot.core import InputError
+from underfoot.core.typed import split_quantity
 from underfoot.core.units import to_si
 
 from .session import Session
@@ -59,8 +60,8 @@ class Input:
         factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
         return None if value is None else float(value) / factor
 
-    def read(self, typed: str, units: str, *, comma: bool) -> float:
-        """Return what was typed, in the unit of the input; without a unit it is in that shown.
+    def read(self, typed: str, units: str, *, comma: bool) -> str | float:
+        """Return what was typed as a case takes it; without a unit it is in that shown.
 
         Raises:
             InputError: No number, a unit of another quantity, or a number that can be two.
@@ -70,12 +71,12 @@ class Input:
         si, shown = unit_at(self.path), self.unit
         if units == "us" and self.unit in CUSTOMARY:
             shown = CUSTOMARY[self.unit][1]
-        return to_si(typed, si, where="", usual=shown, comma=comma) / to_si(
-            f"1 {self.unit}", si, where=""
-        )
+        to_si(typed, si, where="", usual=shown, comma=comma)  # refuses what is no such quantity
+        number, unit = split_quantity(typed, comma=comma)
+        return f"{repr(number).removesuffix('.0')} {unit or shown}"
 
     def written(self, value: float) -> str | float:
-        """Return a value in the unit as a case takes it."""
+        """Return where a slider stands as a case takes it."""
         return f"{value:.6g} {self.unit}" if self.unit else float(f"{value:.6g}")
 
 
@@ -201,7 +202,7 @@ def number_field(
             field.error = str(error)
             return
         field.error = None
-        change({each.path: each.written(value)})
+        change({each.path: value})
 
     field.on("change", typed)
     hint, source = _origin(session, case, each.path)
