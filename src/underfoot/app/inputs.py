@@ -72,7 +72,9 @@ class Input:
         if units == "us" and self.unit in CUSTOMARY:
             shown = CUSTOMARY[self.unit][1]
         to_si(typed, si, where="", usual=shown, comma=comma)  # refuses what is no such quantity
-        number, unit = split_quantity(typed, comma=comma)
+        parts = split_quantity(typed, comma=comma)
+        assert parts is not None  # else it was refused above
+        number, unit = parts
         return f"{repr(number).removesuffix('.0')} {unit or shown}"
 
     def written(self, value: float) -> str | float:
