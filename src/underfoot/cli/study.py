@@ -53,7 +53,15 @@ def check(
     with bar(chosen.plan.name) as progress:
         if timed:
             chosen.compute_some(timed, progress)
-    finish(study_check(chosen.plan, store=chosen.store), None, json=json, everything=True)
+    checked = study_check(chosen.plan, store=chosen.store)
+    finish(checked, None, json=json, everything=True)
+    if not json:
+        measure = (
+            ""
+            if checked.cost
+            else f"To measure the cost: underfoot study check {study} --timed 10\n"
+        )
+        print(f"{measure}Next: underfoot study run {study}")
 
 
 def run(

@@ -86,16 +86,6 @@ class Walker:
         low, high = (n / a / DAYS_A_MONTH for n, a in zip(steps, STEPS_A_DAY[::-1], strict=True))
         return Walked(distance, (low, high))
 
-    @property
-    def caution(self) -> str:
-        """What the distance is worth."""
-        if self.pair is not None:
-            return "distance walked: from the measured pair, for its wearer and floors"
-        return (
-            "distance walked: a lower bound, k is that of an abrasive sheet and floors are "
-            "far gentler by a factor that no source here gives; --worn-pair calibrates it"
-        )
-
 
 def worn_pair(text: str | None) -> WornPair | None:
     """Return a measured pair from text, as "1.2 mm after 300 km"."""

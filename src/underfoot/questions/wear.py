@@ -181,8 +181,8 @@ class WearSeries(Presentable):
         failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
         if failed:
             reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
-        if self.walker is not None:
-            reasons.append(self.walker.caution[0].upper() + self.walker.caution[1:] + ".")
+        if self.walker is not None and self.walker.pair is not None:
+            reasons.append("Distance walked: from the measured pair, for its wearer and floors.")
         if self.quick:
             reasons.append("Coarse grid (--full for the fine one).")
         return tuple(reasons)
