@@ -149,7 +149,7 @@ def inspected(tmp_path_factory):
         shutil.copy(SOLES / file, folder)
         done = called("outsole", "inspect", file, "--out", "out", *words, folder=folder)
         assert done.returncode == 0, done.stderr
-        return folder / "out" / "case.toml"
+        return folder / "out" / f"{Path(file).stem}.toml"
 
     return case_of
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -59,9 +60,9 @@ def check(
         measure = (
             ""
             if checked.cost
-            else f"To measure the cost: underfoot study check {study} --timed 10\n"
+            else f"To measure the cost: underfoot study check {quote(str(study))} --timed 10\n"
         )
-        print(f"{measure}Next: underfoot study run {study}")
+        print(f"{measure}Next: underfoot study run {quote(str(study))}")
 
 
 def run(
