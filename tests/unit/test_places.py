@@ -14,7 +14,7 @@ import underfoot as uf
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
-from underfoot.compute.sole import new_sole
+from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, RangeError
 from underfoot.core.arrays import Array
 from underfoot.film import wedge_film
@@ -709,12 +709,13 @@ def test_files_of_a_place_count_from_its_folder(tmp_path, monkeypatch):
     shutil.copy(sole, folder / "soles" / "sole.3mf")
     (folder / "place.toml").write_text(
         '[fluids]\nglycerol_90pct = 1.0\n[[floor]]\nname = "hall"\nroughness = { rq = "2 um" }\n'
-        '[[shoe]]\nname = "own"\nfrom = "work_shoe_half_tread"\noutsole = { file = "soles/sole.3mf" }\n'
+        '[[shoe]]\nname = "own"\nfrom = "work_shoe_half_tread"\n'
+        'outsole = { file = "soles/sole.3mf" }\n'
     )
     monkeypatch.chdir(other)
     place = read_place(folder / "place.toml")
     case = place.case(place.shoes[0], place.floors[0], "glycerol_90pct")
-    assert new_sole(case).length == pytest.approx(0.06, abs=0.002)
+    assert bottom_surface(case).length == pytest.approx(0.075)
     (folder / "soles" / "sole.3mf").unlink()
     with pytest.raises(InputError, match=r"place/soles/sole\.3mf"):
         read_place(folder / "place.toml")
