@@ -163,6 +163,20 @@ def _row(session: Session, each: Input, value: float, origin: str) -> str:
     )
 
 
+def read_field(field: ui.input, read: Callable[[str], float]) -> float:
+    """Return what ``read`` makes of the text of a field; its error is told there, too.
+
+    Raises:
+        InputError: As ``read``.
+    """
+    field.error = None
+    try:
+        return read(field.value or "")
+    except InputError as error:
+        field.error = str(error)
+        raise
+
+
 def read_count(session: Session, field: ui.input) -> int | None:
     """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
 
