@@ -14,6 +14,7 @@ from nicegui.events import GenericEventArguments
 
 from underfoot.case import Case, unit_at
 from underfoot.core import InputError
+from underfoot.core.errors import UnderfootError
 from underfoot.core.typed import split_quantity
 from underfoot.core.units import to_si
 
@@ -199,7 +200,10 @@ def read_count(session: Session, field: ui.input) -> int | None:
 def number_field(
     session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
 ) -> None:
-    """Show a value with its unit and where it comes from; ``change`` gets what is typed."""
+    """Show a value with its unit and where it comes from; ``change`` gets what is typed.
+
+    An empty field takes back what a person gave: the catalogue's value returns.
+    """
     value = each.given(case)
     if value is None and case.value(each.path.rpartition(".")[0]) is None:
         return
@@ -210,15 +214,20 @@ def number_field(
     field.props(f'dense outlined suffix="{sign}" inputmode="decimal"').classes("number")
 
     def typed(_: GenericEventArguments) -> None:
-        if not field.value or field.value == text:
+        if field.value == text:
+            return
+        given = (field.value or "").strip()
+        origin = case.origins.get(each.path)
+        if not given and (origin is None or origin.kind != "given"):
+            field.error, field.value = None, text  # there is nothing of one's own to take away
             return
         try:
-            value = each.read(field.value, session.units, comma=session.text.comma)
-        except InputError as error:
+            comma = session.text.comma
+            change({each.path: each.read(given, session.units, comma=comma) if given else None})
+        except UnderfootError as error:  # the file stays as it was
             field.error = str(error)
             return
         field.error = None
-        change({each.path: value})
 
     field.on("change", typed)
     hint, source = _origin(session, case, each.path)
