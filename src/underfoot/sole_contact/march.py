@@ -51,6 +51,7 @@ class Counts:
 
     time_steps: int = 0
     rejected: int = 0
+    inexact: int = 0
     newton: int = 0
     krylov: int = 0
     cells: int = 0
@@ -60,14 +61,16 @@ class Counts:
 class Demand:
     """What holds at the end of a step: load N, floor speed m/s and clearance of the sole m.
 
-    ``tolerance`` is how exactly, relative; ``leaps``: only what comes after the step matters;
-    ``settles``: nothing changes but the contact, on its way to a steady state.
+    ``tolerance`` is how exactly, relative, ``passable`` where that can't be; ``leaps``: only what
+    comes after the step matters; ``settles``: nothing changes but the contact, on its way to a
+    steady state.
     """
 
     load: float
     wall_speed: float
     clearance: Array
     tolerance: float
+    passable: float
     leaps: bool
     settles: bool = False
 
@@ -147,6 +150,7 @@ class March:
                 film=film[cells.numbers],
                 content=self._content()[cells.numbers],
                 tolerance=demand.tolerance,
+                passable=demand.passable,
                 leaps=demand.leaps,
                 upstream=self._upstream(problem, cells, start),
                 inlet=self._inlet(problem, cells, start),
@@ -163,6 +167,7 @@ class March:
                 self._settling = (first, self.state) if demand.settles else None
                 self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1
+                self.counts.inexact += attempt.error > demand.tolerance
                 grown = duration * (GROWTH if attempt.newton < EASY else 1.0)
                 if demand.settles and attempt.newton <= STILL:
                     grown = duration * FASTER

@@ -51,6 +51,7 @@ class Attempt:
     state: State | None
     newton: int
     krylov: int
+    error: float = np.inf  # of the state
     residuals: list[float] = field(default_factory=list)
 
 
@@ -159,6 +160,7 @@ def implicit_step(
     film: Mask,
     content: Array,
     tolerance: float,
+    passable: float,
     leaps: bool,
     upstream: Upwinding | None,
     inlet: Inlet | None,
@@ -167,9 +169,10 @@ def implicit_step(
     """Return the state after ``duration`` under ``load``, if Newton finds it.
 
     All are on the cells given. ``film`` marks the cells that the pool reaches, ``content`` (m)
-    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance; for
-    ``leaps`` and ``upstream`` (None on a dry floor) see ``FilmBalance``; ``tick`` receives the
-    residual of each Newton step.
+    is the liquid that they hold at the start, ``tolerance`` the largest relative imbalance and
+    ``passable`` that of a state which is returned where Newton is stuck; for ``leaps`` and
+    ``upstream`` (None on a dry floor) see ``FilmBalance``; ``tick`` receives the residual of each
+    Newton step.
     """
     faces, size = cells.faces, cells.size
     area = problem.spacing**2
@@ -221,7 +224,8 @@ def implicit_step(
         error = max(error, 0.01 * float(np.abs(lacking).max()) / problem.decay)
         attempt.residuals.append(error)
         tick(error)
-        if error < tolerance:
+        if error < max(tolerance, min(passable, attempt.error)):
+            attempt.error = error
             attempt.state = State(
                 pressure,
                 approach,
@@ -231,8 +235,10 @@ def implicit_step(
                 film & ~padded(full),
                 np.ones_like(gap) if rows is None else np.minimum(rows.fraction, 1.0),
             )
+        enough = attempt.state is not None and _stuck(attempt.residuals)
+        if error < tolerance or enough or _hopeless(attempt.residuals):
             return attempt
-        if iteration == problem.settings.most_newton or _hopeless(attempt.residuals):
+        if iteration == problem.settings.most_newton:
             break
 
         linear = Linearisation(faces, stiffness, full, rows)

@@ -18,6 +18,7 @@ from .march import Counts, History
 from .sole_state import SoleState, SolverSettings
 from .stepping import Bookmark, Reporting, SlidingSole
 
+AFTER = 3.0  # lengths that a sole slides in a step after a change
 PIECES, FINEST = 6.0, 8.0
 """Pieces of land that the floor passes in as many time steps as a stage takes at least, and how
 many times as many it takes at most: with longer steps the film of lugs near starvation is off by up
@@ -175,7 +176,7 @@ def solve_on(
         start: Contact of a sole on the same grid.
         sole, compliance, law, viscosity, speed, normal_force: As in ``solve_sliding``, changed.
         turn: Change of the shoe angle since the map was made, rad.
-        duration: Of one step, s.
+        duration: Of one step, s; a sole that slides takes at most ``AFTER`` times its length.
         steps: How many; the contact after each is returned.
         inlet: As in ``SlidingSole``.
 
@@ -193,6 +194,8 @@ def solve_on(
         before=start.instant.march[0],
         inlet=inlet,
     )
+    if speed:  # the film has its new state then, and longer steps often fail
+        duration = min(duration, AFTER * sliding.sliding_time(speed))
     sliding.take_over(start.instant, duration)
     found = []
     for step in range(steps):

@@ -28,15 +28,15 @@ from .sole_state import CellState, SoleState, SolverSettings
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
 FIRST_STEP = 1 / 30  # of the rise time
 PASSED = (10.0, 1e-3)  # times the tolerance, at most the second: a balance that is only passed
+INEXACT = 3.0  # times the tolerance: where Newton is stuck on the way to a steady state
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
 LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
 STEADY_CHANGE = 1e-4  # share of the load by which that on the film may change over such a step
 STEADY_MOVE = 3e-3  # share of the load that may change its place then
-MOST_REJECTED = 20  # steps on the way to a steady state, beyond which ``SLOW`` is enough
-CREEPING = 100.0  # s in which a sole slides its length, from which half the elapsed time counts
-SLOW = 0.01  # share of film, and of contact, that changes while the sole slides twice its length
+MOST_HARD = 20  # steps that fail or are inexact on the way to rest, from which ``SLOW`` is enough
+SLOW = 0.01  # share of film, and of contact, by which a film that rests may change where steps fail
 HOVERING = 10  # steps that lie within ``SLOW`` where a film never rests
 LIFTED = 2.4e-3  # m, how far pressure may lift a film, from a thin pool too
 MEMORY = 0.5  # of the time in which a sole slides its length: what a film remembers
@@ -206,25 +206,26 @@ class SlidingSole:
 
         At rest: over a step of a quarter of the elapsed time, in which the sole slides its own
         length, the load on the film changes by less than 1e-4 of the whole, and less than 3e-3 of
-        it moves to another place. Where long steps keep failing, a film is at rest that changes by
-        less than 1 % while the sole slides twice its length; after ``LONGEST_TIME`` one whose last
-        ten steps lie within that.
+        it moves to another place. For each step that failed or was inexact, up to ``MOST_HARD``, a
+        film may change by 0.05 % over half the elapsed time, in which the sole slides at least
+        twice its length; after ``LONGEST_TIME`` one is at rest whose last ten steps lie within 1 %.
+
         """
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
         self._load = normal_force
         load = self._march.problem.load
         loading = max(2 * self.settings.rise_time, self._time)
-        passing, rejected = self.sliding_time(speed), self.counts.rejected
+        passing, hard = self.sliding_time(speed), self._hard
 
-        def slow() -> bool:
-            begin = self._time - (2 * passing if passing < CREEPING else 0.5 * self._time)
+        def slow(share: float = SLOW) -> bool:
+            begin = self._time - max(2 * passing, 0.5 * self._time)
             film = self.history.fluid_load
             if not film:
                 return False
             change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
             least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
-            return begin > loading and change < SLOW * least
+            return begin > loading and change < share * least
 
         def hovers() -> bool:
             film = np.array(self.history.fluid_load[-HOVERING:])
@@ -233,7 +234,7 @@ class SlidingSole:
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
-            if self.counts.rejected - rejected > MOST_REJECTED and slow():
+            if slow(SLOW * min((self._hard - hard) / MOST_HARD, 1.0)):
                 return True
             change = load(np.abs(after.pressure - before.pressure))
             moved = abs(load(after.fluid - before.fluid))
@@ -293,6 +294,10 @@ class SlidingSole:
         march.state, march.film, march.step = state, film, first_step
         self._load, self._speed = mark.load, mark.speed
         self._leaps = True
+
+    @property
+    def _hard(self) -> int:
+        return self.counts.rejected + self.counts.inexact
 
     def sliding_time(self, speed: float) -> float:
         """Return the time (s) in which the sole slides its own length at a speed; 0 at rest."""
@@ -358,7 +363,9 @@ class SlidingSole:
                     settles |= duration > MEMORY * self.sliding_time(speed)
                 last = settled is not None or self._time + duration > end * (1 - 1e-12)
                 leaps = self._leaps or settles
-                return Demand(load, -speed, clearance, exact if last else passed, leaps, settles)
+                tolerance = exact if last else passed
+                passable = max(INEXACT * exact, tolerance) if settles else tolerance
+                return Demand(load, -speed, clearance, tolerance, passable, leaps, settles)
 
             fraction = self._fraction(min(start + march.step, end))
             state = march.state
