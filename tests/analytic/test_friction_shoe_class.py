@@ -40,7 +40,7 @@ def test_a_class_raises_and_its_absence_lowers_and_both_are_every_shoe():
     assert passed.passing + failed.passing == pytest.approx(1.0)
     assert 0.05 < passed.passing < 0.6
     assert "EN ISO 20345 SR" in passed.law.spread_basis
-    assert law.spread_basis == "without a reading of this pair or a slip class of the shoe"
+    assert law.spread_basis == "without a measurement of this sole on this floor"
     assert any("at least 0.19" in line for line in passed.law.assumptions)
     stricter = replace(shoe_class("EN ISO 20345 SR"), readings=(
         certified("tile_glycerine", 0.27, "lower", None, "here"),

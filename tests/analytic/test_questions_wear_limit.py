@@ -1,6 +1,7 @@
 """Where a load passes a limit, on loads made up with a known answer."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from underfoot.case import Case
 from underfoot.questions.wear import WearSeries, trends, worn_cases
 from underfoot.questions.wear_limit import Crossing, WearPoint, first_exceeding, limit_crossing
+from underfoot.report.question_figures import wear_figure
 from underfoot.shoe.worn import WearMeasures
 
 OUTSOLES = Path(__file__).parents[2] / "examples" / "outsoles"
@@ -155,3 +157,19 @@ def test_worn_cases_keep_what_the_case_says_of_its_wear():
         for each in worn_cases(case, "patch", 4, 1e-3)[1:]
     ]
     assert areas == pytest.approx([0.25e-3, 0.5e-3, 0.75e-3, 1e-3])
+
+
+def test_the_last_state_is_drawn_in_curve_and_table_and_gives_the_verdict():
+    """Friction that rises to the last tread and is gone with it rises first, then falls."""
+    points = states([1, 1, 1])
+    for point, value in zip(points, (0.10, 0.11, 0.12), strict=True):
+        point.outcome.values["cof"] = value
+    rising = WearSeries("x", "plane", 5.0, tuple(points), {}, ())
+    assert trends(rising)[2].agrees is False
+    series = replace(rising, untreaded=Loads(30.0, 0.047))
+    assert trends(series)[2].agrees
+    friction = wear_figure(series).axes[2]
+    drawn = np.concatenate([line.get_ydata() for line in friction.get_lines()])
+    assert 0.047 in drawn
+    assert len(series.table().rows) == 4
+    assert "0.047" in series.table().rows[-1]

@@ -206,7 +206,7 @@ def test_tested_range_of_the_logistic_models_is_that_of_their_studies():
         assert not model.breaches(0.3 + 0.5 * (low + high), 0.3)
         for outside in (low - 0.01, high + 0.01):
             (breach,) = model.breaches(0.3 + outside, 0.3)
-            assert breach.quantity == "ACOF - RCOF"
+            assert breach.quantity == "available less required friction"
 
 
 def test_risk_of_plain_numbers_and_arrays():

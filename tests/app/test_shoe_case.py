@@ -178,13 +178,15 @@ def test_inspect_prints_and_writes_a_case_that_checks(folder):
     done = called("outsole", "inspect", "my_sole.stl", "--out", out, folder=folder)
     assert done.returncode == 0, done.stderr
     assert "Largest untreaded patch" in done.stdout
+    # a run goes to the folder of its case's name: another sole's does not meet it
+    assert done.stdout.splitlines()[-1] == f"Next: underfoot run {out / 'my_sole.toml'}"
     assert "Determined, assumed and repaired" in done.stdout
     names = {path.name for path in out.iterdir()}
-    assert {"outsole.png", "measures.csv", "heights.csv.gz", "case.toml"} <= names
+    assert {"outsole.png", "measures.csv", "heights.csv.gz", "my_sole.toml"} <= names
     assert (out / "outsole.png").stat().st_size > 20_000
     heights = np.loadtxt(out / "heights.csv.gz", delimiter=",")
     assert np.nanmax(heights) == pytest.approx(3.0, abs=0.01)
-    case = Case.load(out / "case.toml")
+    case = Case.load(out / "my_sole.toml")
     assert Path(case.shoe.outsole.file or "").name == "my_sole.stl"
     assert case.shoe.sole.outsole_thickness == pytest.approx(15e-3, abs=1e-4)
 

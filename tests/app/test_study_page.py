@@ -82,3 +82,19 @@ def test_a_click_on_a_point_shows_its_values_and_its_sole(page):
         session.value("document.querySelector('.study svg').scrollIntoView()")
         picture, _ = session.picture(".study svg")
         assert picture.std() > 0.01
+
+
+@pytest.mark.browser
+def test_the_page_in_german_has_no_english_sentence(page, monkeypatch):
+    text = pytest.importorskip("underfoot.app.text")
+    from test_web_language import assert_german, english, seen
+    from web_app import page_of
+
+    monkeypatch.setenv(text.LANGUAGE_VARIABLE, "de")
+    spoken = page.with_name("german.html")
+    spoken.write_bytes(page.read_bytes())
+    text.put_language(spoken)
+    own = {"Depth and <pattern>", "1 x the sole is gone & <b>lost</b>"}  # what a person named
+    with page_of(spoken.as_uri()) as shown:
+        lines = set(seen(shown, fold=False)) - own
+        assert_german({"study": lines}, english.__wrapped__())

@@ -52,3 +52,27 @@ def test_a_viscosity_is_read_as_it_is_typed(tmp_path, language):
             accepted(f"{value} Pa s", value)
         assert page.locator("input[type=number]").count() == 0
         assert not page.complaints
+
+
+def test_an_emptied_field_takes_back_what_was_given(tmp_path):
+    project = project_of(tmp_path / "project", "heel")
+    file = project.path("heel")
+    usual = load(file).value("contaminant.viscosity")
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "design?variant=heel")
+        page.get_by_role("tab", name="Spill").click()
+        field = page.get_by_label("Viscosity", exact=True)
+        shown = field.input_value()
+        for typed, drawn_anew in (("55 cP", "55"), ("", shown)):
+            field.fill(typed)
+            field.press("Enter")
+            field.blur()
+            wanted = pytest.approx(0.055 if typed else usual)
+            until(lambda wanted=wanted: load(file).value("contaminant.viscosity") == wanted)
+            until(lambda text=drawn_anew: field.input_value() == text)
+        field.fill("")  # of the catalogue: nothing to take away
+        field.press("Enter")
+        field.blur()
+        until(lambda: field.input_value() == shown)
+        assert load(file).value("contaminant.viscosity") == pytest.approx(usual)
+        assert not page.complaints

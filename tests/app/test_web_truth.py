@@ -1,6 +1,7 @@
 """What a page shows is of the inputs it stands beside: revisions, previews, two tabs, ways out."""
 
 import contextlib
+import csv
 import json
 import os
 import random
@@ -180,6 +181,28 @@ def test_two_tabs_that_move_sliders_at_once_end_as_the_file(app, project):
             moved = pytest.approx([value + step * 1e-4 for value in before])
             until(lambda moved=moved: [project.case("heel").value(n) for n in names] == moved)
             until(as_the_file)
+        assert page.complaints == []
+
+
+def test_one_worn_shoe_gives_the_life_in_months(app, project):
+    with page_of(app.link) as page:
+        computed(page, app)
+        page.get_by_text("How long it lasts").click()
+        lost, months = page.get_by_label("Thickness lost"), page.get_by_label("In months")
+        lost.fill("0,5 kg")
+        page.get_by_role("button", name="Compute its wear").click()
+        page.locator(".q-field--error").wait_for()
+        lost.fill("1,2")
+        months.fill("5")
+        page.get_by_role("button", name="Compute its wear").click()
+        page.get_by_text("The last state has lost").wait_for()
+        with (project.folder / "studies" / "heel, wear" / "wear.csv").open() as file:
+            life = float(list(csv.DictReader(file))[-1]["months_low"])
+        assert life > 5  # it goes on beyond what that shoe lost
+        text = page.get_by_text("The last state has lost").inner_text()
+        assert f"{float(f'{life:.1g}'):.0f} months" in text
+        rows = page.locator("table", has_text="Walked").locator("tr")
+        assert rows.count() == 9  # a head, new, six worn states and the one without tread
         assert page.complaints == []
 
 

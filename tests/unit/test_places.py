@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import re
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import underfoot as uf
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
 from underfoot.compute.run import run
+from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, RangeError
 from underfoot.core.arrays import Array
 from underfoot.film import wedge_film
@@ -32,7 +34,7 @@ from underfoot.places.machines import (
     predicted_reading,
     rq_of_rz,
 )
-from underfoot.places.place import place_of
+from underfoot.places.place import place_of, read_place
 from underfoot.questions.method import method_name, method_prediction
 from underfoot.rough_contact import ExponentialLaw
 
@@ -697,3 +699,23 @@ def test_readings_that_contradict_each_other_are_refused():
 
     with pytest.raises(InputError, match="draws agree"):
         learned((4.0, 140.0) * 4)
+
+
+def test_files_of_a_place_count_from_its_folder(tmp_path, monkeypatch):
+    sole = Path(__file__).parents[1] / "data" / "soles" / "b_heel_bars.3mf"
+    folder, other = tmp_path / "place", tmp_path / "other"
+    (folder / "soles").mkdir(parents=True)
+    other.mkdir()
+    shutil.copy(sole, folder / "soles" / "sole.3mf")
+    (folder / "place.toml").write_text(
+        '[fluids]\nglycerol_90pct = 1.0\n[[floor]]\nname = "hall"\nroughness = { rq = "2 um" }\n'
+        '[[shoe]]\nname = "own"\nfrom = "work_shoe_half_tread"\n'
+        'outsole = { file = "soles/sole.3mf" }\n'
+    )
+    monkeypatch.chdir(other)
+    place = read_place(folder / "place.toml")
+    case = place.case(place.shoes[0], place.floors[0], "glycerol_90pct")
+    assert bottom_surface(case).length == pytest.approx(0.075)
+    (folder / "soles" / "sole.3mf").unlink()
+    with pytest.raises(InputError, match=r"place/soles/sole\.3mf"):
+        read_place(folder / "place.toml")

@@ -59,3 +59,14 @@ def test_a_wear_rate_of_the_case_is_taken():
     changes = {"mode": "archard", "angle": "10 deg", "abrasion": "DIN 250 mm3"}
     worn = case.replace({f"shoe.wear.{name}": value for name, value in changes.items()})
     assert worn.value("shoe.wear.wear_rate") == pytest.approx(0.625e-9)
+
+
+def test_a_pair_worn_for_months_tells_the_life_in_months():
+    known = worn_pair("1.5 mm after 6 months")
+    assert known.walked is None
+    assert known.months == pytest.approx(6, rel=1e-3)
+    half = Walker(1e-10, known).walked(VOLUMES[-1], VOLUMES, LOST)
+    first = Walker(1e-10, WornPair(1.5e-3, 300e3)).walked(VOLUMES[-1], VOLUMES, LOST)
+    times = first.distance[0] / 300e3
+    assert half.months == pytest.approx((6 * times, 6 * times), rel=1e-3)
+    assert half.distance[0] < half.distance[1]

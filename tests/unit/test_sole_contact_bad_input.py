@@ -77,7 +77,7 @@ def test_channel_narrower_than_the_grid_names_the_spacing_needed():
 def test_coarse_channel_is_listed():
     heel = Heel(**GOOD, tread=Tread("grid", 5 * MM, 2.4 * MM, 3 * MM))
     found = heel_map(heel, shoe_angle=0.1, spacing=1 * MM).breaches
-    assert [b.quantity for b in found] == ["cells across the channel"]
+    assert [b.quantity for b in found] == ["cells of the grid across the channel"]
     assert found[0].low == pytest.approx(2.4)
     assert not heel_map(heel, shoe_angle=0.1, spacing=0.6 * MM).breaches
 

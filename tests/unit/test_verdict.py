@@ -31,9 +31,9 @@ def test_a_pressure_that_rubber_cannot_bear_leaves_a_doubt():
 def test_it_says_what_it_means_for_steps():
     assert verdict_sentence(slips(0.5, 0.0, 0.99), {}) == (
         "doubtful",
-        "below 0.1 % to 99 % of steps slip, 95 %",
+        "from below 0.1 % to 99 % of steps may slip (95 % interval)",
     )
     word, steps = verdict_sentence(slips(0.5, 0.2, 0.9, "extrapolated: far"), {})
     assert word == "slips"
-    assert steps == "more than 1 of 20 steps slips, 95 %, extrapolated"
+    assert steps == "more than 1 of 20 steps slips (95 % interval, extrapolated)"
     assert verdict_sentence({}, {}) == ("", "")

@@ -14,6 +14,8 @@ from nicegui.events import GenericEventArguments
 
 from underfoot.case import Case, unit_at
 from underfoot.core import InputError
+from underfoot.core.errors import UnderfootError
+from underfoot.core.typed import split_quantity
 from underfoot.core.units import to_si
 
 from .session import Session
@@ -59,8 +61,8 @@ class Input:
         factor = to_si(f"1 {self.unit}", unit_at(self.path), where=self.path) if self.unit else 1.0
         return None if value is None else float(value) / factor
 
-    def read(self, typed: str, units: str, *, comma: bool) -> float:
-        """Return what was typed, in the unit of the input; without a unit it is in that shown.
+    def read(self, typed: str, units: str, *, comma: bool) -> str | float:
+        """Return what was typed as a case takes it; without a unit it is in that shown.
 
         Raises:
             InputError: No number, a unit of another quantity, or a number that can be two.
@@ -70,12 +72,14 @@ class Input:
         si, shown = unit_at(self.path), self.unit
         if units == "us" and self.unit in CUSTOMARY:
             shown = CUSTOMARY[self.unit][1]
-        return to_si(typed, si, where="", usual=shown, comma=comma) / to_si(
-            f"1 {self.unit}", si, where=""
-        )
+        to_si(typed, si, where="", usual=shown, comma=comma)  # refuses what is no such quantity
+        parts = split_quantity(typed, comma=comma)
+        assert parts is not None  # else it was refused above
+        number, unit = parts
+        return f"{repr(number).removesuffix('.0')} {unit or shown}"
 
     def written(self, value: float) -> str | float:
-        """Return a value in the unit as a case takes it."""
+        """Return where a slider stands as a case takes it."""
         return f"{value:.6g} {self.unit}" if self.unit else float(f"{value:.6g}")
 
 
@@ -160,6 +164,20 @@ def _row(session: Session, each: Input, value: float, origin: str) -> str:
     )
 
 
+def read_field(field: ui.input, read: Callable[[str], float]) -> float:
+    """Return what ``read`` makes of the text of a field; its error is told there, too.
+
+    Raises:
+        InputError: As ``read``.
+    """
+    field.error = None
+    try:
+        return read(field.value or "")
+    except InputError as error:
+        field.error = str(error)
+        raise
+
+
 def read_count(session: Session, field: ui.input) -> int | None:
     """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
 
@@ -182,7 +200,10 @@ def read_count(session: Session, field: ui.input) -> int | None:
 def number_field(
     session: Session, each: Input, case: Case, change: Callable[[dict[str, Any]], None]
 ) -> None:
-    """Show a value with its unit and where it comes from; ``change`` gets what is typed."""
+    """Show a value with its unit and where it comes from; ``change`` gets what is typed.
+
+    An empty field takes back what a person gave: the catalogue's value returns.
+    """
     value = each.given(case)
     if value is None and case.value(each.path.rpartition(".")[0]) is None:
         return
@@ -193,15 +214,20 @@ def number_field(
     field.props(f'dense outlined suffix="{sign}" inputmode="decimal"').classes("number")
 
     def typed(_: GenericEventArguments) -> None:
-        if not field.value or field.value == text:
+        if field.value == text:
+            return
+        given = (field.value or "").strip()
+        origin = case.origins.get(each.path)
+        if not given and (origin is None or origin.kind != "given"):
+            field.error, field.value = None, text  # there is nothing of one's own to take away
             return
         try:
-            value = each.read(field.value, session.units, comma=session.text.comma)
-        except InputError as error:
+            comma = session.text.comma
+            change({each.path: each.read(given, session.units, comma=comma) if given else None})
+        except UnderfootError as error:  # the file stays as it was
             field.error = str(error)
             return
         field.error = None
-        change({each.path: each.written(value)})
 
     field.on("change", typed)
     hint, source = _origin(session, case, each.path)

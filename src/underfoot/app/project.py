@@ -33,6 +33,8 @@ NAME = re.compile(r"[^\W_][\w .,+()'-]{0,59}")
 ALLOWED = "1 to 60 letters, digits, spaces and . , + ( ) ' - _, a letter or digit first"
 MOST_STATES = 500
 """States of a variant that undo goes back."""
+OWN = ("shoe.material", "shoe.roughness", "shoe.wear", "shoe.sole.midsole")
+"""Parts of a shoe that stay as the person set them where an outsole comes from a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +208,16 @@ class Project:
         case = self.case(name).replace(changes)
         self.write(name, case.to_toml())
         return case
+
+    def take_sole(self, name: str, shoe: Mapping[str, Any]) -> Case:
+        """Give a variant the shoe that a case of a file has; what a person set of it stays."""
+        case = self.case(name)
+        kept = {part: entry for part, entry in case.entries.items() if part.startswith(OWN)} | {
+            path: case.value(path)
+            for path, origin in case.origins.items()
+            if path.startswith(OWN) and origin.kind == "given"
+        }
+        return self.change(name, {"shoe": shoe, **kept})
 
     def write(self, name: str, text: str) -> None:
         """Replace the text of a variant."""

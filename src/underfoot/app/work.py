@@ -27,6 +27,8 @@ from underfoot.core.fields import Fields
 from underfoot.core.presentation import Presentable, quantity_text
 from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
+from underfoot.questions.walked import worn_pair
+from underfoot.questions.wear import wear_mode, wear_series
 from underfoot.report import write_report
 from underfoot.report.results import (
     DESIGNED,
@@ -123,6 +125,18 @@ def computed(
     result = result_of(case_of(path, changes), quick=quick, progress=progress)
     put_language(write_report(result, folder, overwrite=True).page)
     return result.scalars["cof"].value if result.usable else None
+
+
+def worn(path: str, folder: str, pair: str, *, progress: Progress) -> None:
+    """Write how a case wears, as ``underfoot wear --no-band`` does; ``shown.json`` is for the page.
+
+    ``pair`` is a worn one of the same make, as "1.2 mm after 5 months".
+    """
+    case, worn_shoe = Case.load(path), worn_pair(pair)
+    mode = wear_mode(None, case)
+    series = wear_series(case, mode=mode, band=False, pair=worn_shoe, progress=progress)
+    further = {"shown.json": write_text(json.dumps({**presented(series), "hash": case.hash}))}
+    put_language(write_report(series, folder, overwrite=True, further=further).page)
 
 
 def advised(path: str, folder: str, *, progress: Progress) -> None:

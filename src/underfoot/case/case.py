@@ -123,16 +123,26 @@ class Case(Presentable):
         return cls._from_text(text, catalogue, places, path.parent, settings or {})
 
     @classmethod
-    def from_text(cls, text: str, *, catalogue: Catalogue | None = None) -> Self:
-        """Return the case in a TOML text."""
-        return cls._from_text(text, catalogue or Catalogue.load(), toml.Places(), Path.cwd(), {})
+    def from_text(
+        cls, text: str, *, catalogue: Catalogue | None = None, folder: Path | None = None
+    ) -> Self:
+        """Return the case in a TOML text; its files count from ``folder``, the present one."""
+        there = folder or Path.cwd()
+        return cls._from_text(text, catalogue or Catalogue.load(), toml.Places(), there, {})
 
     @classmethod
     def from_mapping(
-        cls, mapping: Mapping[str, Any], *, catalogue: Catalogue | None = None
+        cls,
+        mapping: Mapping[str, Any],
+        *,
+        catalogue: Catalogue | None = None,
+        folder: Path | None = None,
     ) -> Self:
-        """Return the case in nested mappings, numbers as text with units as in a file."""
-        return cls.from_text(toml.written(mapping), catalogue=catalogue)
+        """Return the case in nested mappings, numbers as text with units as in a file.
+
+        Its files count from ``folder``, the present one.
+        """
+        return cls.from_text(toml.written(mapping), catalogue=catalogue, folder=folder)
 
     @classmethod
     def _from_text(

@@ -231,7 +231,7 @@ def wear(
         str | None,
         typer.Option(
             "--worn-pair",
-            help='A pair you measured, "1.2 mm after 300 km": gives the distance walked.',
+            help='A pair you measured, "1.2 mm after 300 km" or "after 5 months".',
             show_default=False,
         ),
     ] = None,

@@ -170,12 +170,12 @@ def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | Non
     from underfoot.core import InputError
 
     if path.is_dir():
-        inner = path / "case.toml"
+        inner = next(iter(sorted(path.glob("*.toml"))), None)
         raise InputError(
             f"{path} is a folder",
             where="case",
             allowed="a case file (TOML)",
-            nearest=str(inner) if inner.is_file() else None,
+            nearest=None if inner is None else str(inner),
         )
     changes = dict(map(setting, settings or ()))
     return Case.load(path, catalogue=catalogue_for(path, folders), settings=changes)

@@ -1,6 +1,7 @@
 """``underfoot outsole ...``: outsoles from files, and files from a few lengths."""
 
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -58,13 +59,15 @@ def inspect(
 ) -> None:
     """Measure the tread of an outsole file; list what was determined, assumed and repaired.
 
-    With --out: report.html, outsole.png, measures.csv, heights.csv.gz and case.toml, ready to run.
+    With --out: report.html, outsole.png, measures.csv, heights.csv.gz and a case named after
+    the sole, ready to run.
     """
     from underfoot.core import to_si
     from underfoot.report.outsole import case_text, inspected
     from underfoot.report.writing import write_text
     from underfoot.shoe.files import FileSettings
 
+    case = f"{file.stem}.toml"  # a run of it has the sole's name too
     length = None if region_length is None else to_si(region_length, "m", where="--region-length")
     settings = FileSettings(
         unit=unit,
@@ -86,10 +89,10 @@ def inspect(
         overwrite=overwrite,
         json=json,
         everything=everything,
-        further=lambda inspection, folder: {"case.toml": write_text(case_text(inspection, folder))},
+        further=lambda inspection, folder: {case: write_text(case_text(inspection, folder))},
     )
     if out is not None and not json:
-        print(f"Next: underfoot run {out / 'case.toml'}")
+        print(f"Next: underfoot run {quote(str(out / case))}")
 
 
 outsole_app.command()(guarded(inspect))

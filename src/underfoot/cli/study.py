@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -53,7 +54,15 @@ def check(
     with bar(chosen.plan.name) as progress:
         if timed:
             chosen.compute_some(timed, progress)
-    finish(study_check(chosen.plan, store=chosen.store), None, json=json, everything=True)
+    checked = study_check(chosen.plan, store=chosen.store)
+    finish(checked, None, json=json, everything=True)
+    if not json:
+        measure = (
+            ""
+            if checked.cost
+            else f"To measure the cost: underfoot study check {quote(str(study))} --timed 10\n"
+        )
+        print(f"{measure}Next: underfoot study run {quote(str(study))}")
 
 
 def run(

@@ -120,7 +120,9 @@ class FrictionLimit:
     def __str__(self) -> str:
         if self.kind == "no fluid":
             return "The case has no fluid: the friction of the pair, as given, is the limit."
-        limit = "the limit is the adhesion that the fluid blocks where the surfaces touch."
+        limit = (
+            "the rest touches the floor, where wet rubber sticks less than dry: that is the limit."
+        )
         if self.kind == "film":
             limit = (
                 "without the film the same surfaces would have a COF of about "
@@ -167,8 +169,8 @@ def verdict_sentence(
     steps = {
         "grips": f"fewer than 1 of {1 / GRIPS:.0f} steps slips",
         "slips": f"more than 1 of {1 / SLIPS:.0f} steps slips",
-    }.get(word, f"{low} to {high} of steps slip")
-    return word, f"{steps}, 95 %{', extrapolated' if slip.note else ''}"
+    }.get(word, f"from {low} to {high} of steps may slip")
+    return word, f"{steps} (95 % interval{', extrapolated' if slip.note else ''})"
 
 
 def headline(

@@ -146,7 +146,7 @@ class StudyCheck(Presentable):
         if self.cost:
             here += f", {size_text(self.cases * self.cost.disk)} of disk"
         if self.tasks == 1:
-            return (f"{here}; underfoot study run does.",)
+            return (f"{here}.",)
         took = time_text(self.seconds_left * self.workers / self.tasks)
         array = (
             f"An array job of {self.tasks} tasks takes about {took}: underfoot study work in each"
@@ -159,7 +159,7 @@ class StudyCheck(Presentable):
         """Return what reading the file decided, and what this machine lacks."""
         texts = list(self.plan.remarks)
         if not self.cost:
-            texts.append("The cost is a guess by the size of the grid: --timed 10 measures it.")
+            texts.append("The cost is a guess by the size of the grid until a case has ended.")
         elif self.cases * self.cost.disk > self.machine.disk:
             need, free = (size_text(x) for x in (self.cases * self.cost.disk, self.machine.disk))
             texts.append(f"The disk has {free} free, the study takes {need}.")

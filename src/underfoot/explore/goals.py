@@ -25,6 +25,8 @@ from underfoot.core.presentation import quantity_text
 from .record import Record
 
 STATISTICS = ("mean", "min", "max", "sd", "quantile")
+SAID = {"mean": "", "min": "lowest", "max": "highest", "sd": "standard deviation of"}
+"""Statistics as people say them."""
 OVER = ("conditions", "draws", "conditions and draws")
 LIFE = "wear_life"
 WEAR = "shoe.wear.depth"
@@ -62,6 +64,15 @@ class Goal:
         text = inner if self.statistic == "mean" else f"{self.statistic}({inner})"
         text += f" in {', '.join(self.within)}" if self.within else ""
         return text + (f" over {self.over}" if self.over != OVER[2] else "")
+
+    @property
+    def words(self) -> str:
+        """Return it as people say it: "lowest COF over conditions"."""
+        output = "COF" if self.output == "cof" else self.output.replace("_", " ")
+        how = SAID.get(self.statistic, f"{self.share:.0%} quantile of").strip()
+        where = f" in {', '.join(self.within)}" if self.within else ""
+        over = f" over {self.over}" if self.over != OVER[2] else ""
+        return f"{how} {output}{where}{over}".strip()
 
     @property
     def of_draws(self) -> bool:
@@ -140,6 +151,14 @@ class WearLife:
     def output(self) -> str:
         """The output that is bounded."""
         return self.requirement.goal.output
+
+    @property
+    def words(self) -> str:
+        """Return it as people say it: "wear life with COF > 0.12"."""
+        bound = self.requirement
+        sign = ">" if bound.sense > 0 else "<"
+        limit = quantity_text(bound.bound, bound.goal.unit)
+        return f"wear life with {bound.goal.words} {sign} {limit}"
 
     @property
     def of_draws(self) -> bool:

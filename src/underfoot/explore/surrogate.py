@@ -298,9 +298,9 @@ class Surrogate:
     def reliability(self) -> str:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
-        mark = "" if self.q2 >= TRUSTED else ", too rough to rank designs by"
-        runs = f"surrogate of {len(self.runs)} designs ({self.model.form})"
-        return f"{runs}: Q2 {self.q2:.3f}, error {error} (runs left out){mark}"
+        mark = "" if self.q2 >= TRUSTED else ": too much to rank designs by"
+        runs = f"a formula through {len(self.runs)} computed designs ({self.model.form})"
+        return f"{runs} misses designs left out by {error} (Q2 {self.q2:.3f}){mark}"
 
     def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:
         """Return mean and standard deviation (n,) at places (n, inputs) of the unit cube, SI.

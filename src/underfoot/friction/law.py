@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -21,7 +22,7 @@ SMALLEST_FILM = 2e-7
 REPORT = "final progress report on shoe-floor friction"
 PIN_PRESSURE = 266.1e3
 """Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
-FILM_RANGE = {"film thickness": Range(SMALLEST_FILM, 1.0, "m", "bound of the viscous part")}
+FILM_RANGE = {"film thickness": Range(SMALLEST_FILM, math.inf, "m", "bound of the viscous part")}
 PIN_RANGES = {
     "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
     "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),

@@ -405,7 +405,7 @@ class PairContactLaw(UncertainInputs):
     medians: Mapping[str, float] = field(default_factory=dict)
     name: str = field(default="pair", init=False)
     spread_basis: str = field(
-        default="without a reading of this pair or a slip class of the shoe", init=False
+        default="without a measurement of this sole on this floor", init=False
     )
 
     def __post_init__(self) -> None:
@@ -453,7 +453,7 @@ class PairContactLaw(UncertainInputs):
         words = [*self.draws.notes]
         if LABORATORY not in self.draws.errors:
             words.append(
-                "friction.pair: nobody measured the friction of this pair; a reading of your "
+                "friction.pair: nobody measured this sole on this floor; a reading of your "
                 "own narrows it (underfoot calibrate pair)."
             )
         if self.pair.family == "dry":

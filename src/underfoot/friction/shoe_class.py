@@ -199,7 +199,11 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     kept = wide.rows(generator.permutation(rows))
     kept = replace(kept, source=f"{start.source}; soles of class {known.name}")
     basis = f"of a sole of class {known.name}"
-    basis += ", calibrated to readings" if calibrated else ", without a reading of this pair"
+    basis += (
+        ", calibrated to readings"
+        if calibrated
+        else ", without a measurement of this sole on this floor"
+    )
     note = f"shoe.class: {known.name} ({known.source}): " + "; ".join(map(str, known.readings))
     note += " is not reached" if known.fails else ""
     note += f". Before that was known, {passing:.0%} of such soles would have it."

@@ -92,6 +92,7 @@ class Place:
     """A place with everything that the choice depends on.
 
     ``steps`` of a worker in a day; ``reported`` slips per 100 workers and year of today.
+    Files of shoes and floors count from ``folder``, that of the place's file.
     """
 
     name: str
@@ -102,6 +103,7 @@ class Place:
     steps: float
     assumed: tuple[str, ...]
     reported: float | None = None
+    folder: Path | None = None
 
     @property
     def wet_share(self) -> float:
@@ -147,7 +149,8 @@ class Place:
                 "motion": MOTION,
                 "friction": {"model": "pair"},
                 "numerics": {"tread_positions": 1},
-            }
+            },
+            folder=self.folder,
         )
 
 
@@ -158,11 +161,11 @@ def read_place(path: Path) -> Place:
         InputError: No such file; an unknown key; shares that do not add to 1; a floor, shoe or
             reading that cannot be.
     """
-    return place_of(toml.parsed(toml.read(path), str(path)), name=path.stem)
+    return place_of(toml.parsed(toml.read(path), str(path)), name=path.stem, folder=path.parent)
 
 
-def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
-    """Return the place of the contents of a file; raises as ``read_place``."""
+def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None = None) -> Place:
+    """Return the place of the contents of a file in ``folder``; raises as ``read_place``."""
     _check_keys(table, "", "")
     assumed: list[str] = []
     common = _shares(table.get("fluids"), "fluids") if "fluids" in table else None
@@ -210,6 +213,7 @@ def place_of(table: Mapping[str, Any], name: str = "place") -> Place:
         _number(people, "reported_slips", "people", 0.0, (0.0, 1e6))
         if "reported_slips" in people
         else None,
+        folder,
     )
     _check_cases(place)
     return place

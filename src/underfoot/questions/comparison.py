@@ -31,6 +31,8 @@ Z95 = 1.96
 _FILE, _CHECKSUM = "shoe.outsole.file", "shoe.outsole.sha256"
 LONGEST_CELL = 34
 """Characters of an input in a table; longer ones (paths, checksums) keep their end."""
+LEAST_SHOWN = 0.001
+"""Difference of two COF that is printed, the smallest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,17 +110,22 @@ class Comparison(Presentable):
         lead = (first.cof.value or 0.0) - (second.cof.value or 0.0)
         better, other = self.label(first.letter), self.label(second.letter)
         chance = first.better_than_next
+        apart = f"{lead:.3f}" if lead >= LEAST_SHOWN else f"less than {LEAST_SHOWN:.3f}"
         sure = f"probability {_chance(chance, 'not estimated')}"
         verdict = Verdict.OPEN if self.order is None else self.order.verdict
         if verdict is Verdict.EQUAL:
             return (
-                f"{better} and {other} are equal for every purpose: COF higher by {lead:.3f} "
-                f"({sure}), too small to see. Readings of one tester repeat within {SEEN:.0%}.",
+                f"{better} and {other} are equal for every purpose: COF {apart} apart "
+                f"({sure} that the first has more), too small to see. "
+                f"Readings of one tester repeat within {SEEN:.0%}.",
                 self._different(),
             )
         if verdict is not Verdict.HIGHER and self.order is not None:
-            order = f"The order of {better} and {other} is not decided: COF higher by {lead:.3f}"
-            return (f"{order} ({sure}).", *self._telling(second.cof.value or 0.0))
+            order = f"Whether {better} or {other} has more friction is open: COF {apart} apart"
+            return (
+                f"{order} ({sure} that the first has more).",
+                *self._telling(second.cof.value or 0.0),
+            )
         order = f"{better} has the higher COF than {other}, by {lead:.3f}"
         if len(self.results) > 2:
             order = f"{better} has the highest COF, {lead:.3f} above {other}"

@@ -21,20 +21,31 @@ STEP = (0.5, 0.75)
 STEPS_A_DAY = (4000.0, 18000.0)
 """Of healthy adults, both feet (Tudor-Locke et al. 2011, doi 10.1186/1479-5868-8-79)."""
 DAYS_A_MONTH = 365.25 / 12
+MONTH = DAYS_A_MONTH * 86400.0
+"""s."""
 SOURCES = (
     "walked: V / (k F s) landings of one shoe, k the wear rate of the case, F 180 N (Iraqi et al. "
     "2018), s 2 to 13 mm (McGorry et al. 2008), steps of 0.5 to 0.75 m (30 to 43 % of 1.7 m), "
     "4,000 to 18,000 steps a day, every day in these shoes (Tudor-Locke et al. 2011)"
 )
-_PAIR = re.compile(r"\s*(?P<lost>\S+\s*\S*m)\s+(?:after|in)\s+(?P<walked>\S+\s*km)\s*")
+_PAIR = re.compile(
+    r"\s*(?P<lost>\S+\s*\S*m)\s+(?:after|in)\s+(?P<walked>\S+\s*(?:km|months?|weeks?))\s*"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class WornPair:
-    """A pair of the same make that was measured: thickness lost and distance walked, m."""
+    """A pair of the same make that was measured.
+
+    Attributes:
+        lost: Thickness lost, m.
+        walked: Distance walked, m; None where the time is known.
+        months: In which it was worn.
+    """
 
     lost: float
-    walked: float
+    walked: float | None
+    months: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +86,13 @@ class Walker:
             InputError: The pair has lost more than the last state.
         """
         if self.pair is not None:
-            first_volume = _volume_at(self.pair.lost, volumes, lost)
-            length = volume / first_volume * self.pair.walked
+            times = volume / _volume_at(self.pair.lost, volumes, lost)
+            if self.pair.walked is None:
+                months = times * (self.pair.months or 0.0)
+                days = months * DAYS_A_MONTH
+                least, most = (days * a * step for a, step in zip(STEPS_A_DAY, STEP, strict=True))
+                return Walked((least, most), (months, months))
+            length = times * self.pair.walked
             distance = (length, length)
             steps = [length / step for step in reversed(STEP)]
         else:
@@ -86,30 +102,22 @@ class Walker:
         low, high = (n / a / DAYS_A_MONTH for n, a in zip(steps, STEPS_A_DAY[::-1], strict=True))
         return Walked(distance, (low, high))
 
-    @property
-    def caution(self) -> str:
-        """What the distance is worth."""
-        if self.pair is not None:
-            return "distance walked: from the measured pair, for its wearer and floors"
-        return (
-            "distance walked: a lower bound, k is that of an abrasive sheet and floors are "
-            "far gentler by a factor that no source here gives; --worn-pair calibrates it"
-        )
-
 
 def worn_pair(text: str | None) -> WornPair | None:
-    """Return a measured pair from text, as "1.2 mm after 300 km"."""
+    """Return a measured pair from text, as "1.2 mm after 300 km" or "after 5 months"."""
     if text is None:
         return None
     match = _PAIR.fullmatch(text)
     if match is None:
         raise InputError(
-            f'"{text}"', where="--worn-pair", allowed='loss and distance: "1.2 mm after 300 km"'
+            f'"{text}"', where="--worn-pair", allowed='"1.2 mm after 300 km" or "after 5 months"'
         )
-    lost, walked = (to_si(match[name], "m", where="--worn-pair") for name in ("lost", "walked"))
+    length = match["walked"].endswith("km")
+    lost = to_si(match["lost"], "m", where="--worn-pair")
+    walked = to_si(match["walked"], "m" if length else "s", where="--worn-pair")
     if not (lost > 0 and walked > 0):
         raise InputError(f'"{text}"', where="--worn-pair", allowed="both above 0")
-    return WornPair(lost, walked)
+    return WornPair(lost, walked) if length else WornPair(lost, None, walked / MONTH)
 
 
 def _volume_at(depth: float, volumes: Sequence[float], lost: Sequence[float]) -> float:

@@ -151,6 +151,11 @@ class WearSeries(Presentable):
             sentences.append(f"The last state has lost {volume}: {life}.")
         return tuple(sentences)
 
+    def curve(self, name: str) -> np.ndarray:
+        """Return a number of every state that is drawn: those of ``values``, then without tread."""
+        bare = [] if self.untreaded is None else [self.untreaded.number(name)]
+        return np.append(self.values(name), bare)
+
     def _sure(self) -> str:
         """Return the probability that COF changes as computed; empty where it is not known."""
         outcomes = [point.outcome for point in self.points if point.outcome.usable]
@@ -181,8 +186,8 @@ class WearSeries(Presentable):
         failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
         if failed:
             reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
-        if self.walker is not None:
-            reasons.append(self.walker.caution[0].upper() + self.walker.caution[1:] + ".")
+        if self.walker is not None and self.walker.pair is not None:
+            reasons.append("Distance walked: from the measured pair, for its wearer and floors.")
         if self.quick:
             reasons.append("Coarse grid (--full for the fine one).")
         return tuple(reasons)
@@ -190,21 +195,26 @@ class WearSeries(Presentable):
     def table(self) -> Table:
         measures = [each for each in MEASURES if each[0] in SCREEN]
         numbers = [each for each in NUMBERS if each[0] in SCREEN]
+        states = [
+            ([getattr(point.measures, name) for name, *_ in measures], point.outcome)
+            for point in self.points
+        ]
+        if self.untreaded is not None:  # as worn as the last state, without any tread
+            bare = {"removed_depth": self.points[-1].measures.removed_depth, "tread_left": 0.0}
+            states.append(([bare.get(name, math.nan) for name, *_ in measures], self.untreaded))
         rows = []
-        for point in self.points:
-            values = [
-                getattr(point.measures, name) / tread_unit(unit)[0] for name, unit, _ in measures
-            ]
-            values += [
-                point.outcome.number(name) / tread_unit(unit)[0] for name, unit, _ in numbers
-            ]
-            rows.append(["not determined" if math.isnan(v) else _short(v) for v in values])
+        for worn, outcome in states:
+            values = [*worn, *(outcome.number(name) for name, *_ in numbers)]
+            units = [unit for _, unit, _ in (*measures, *numbers)]
+            shown = [v / tread_unit(unit)[0] for v, unit in zip(values, units, strict=True)]
+            rows.append(["not determined" if math.isnan(v) else _short(v) for v in shown])
         heads = tuple(
             label if unit == "1" else f"{label} ({_unit_name(unit)})"
             for _, unit, label in (*measures, *numbers)
         )
         walks = self.walked()
         if walks and self.walker and self.walker.pair:
+            walks = [*walks, *[""] * (len(rows) - len(walks))]
             heads = (*heads, "Walked")
             rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
@@ -674,7 +684,7 @@ def _rises_first(series: WearSeries) -> bool | None:
 
     What differs by less than ``EVEN`` neither rises nor falls.
     """
-    cof = series.values("cof")
+    cof = series.curve("cof")
     if not np.isfinite(cof).all():
         return None
     highest = int(cof.argmax())

@@ -135,7 +135,7 @@ def _study_sections(
     best = result.best(8)
     if len(best) > 1:
         rows = [
-            (f"{a.number} above {b.number}", _chance(result.higher_cof(a, b)))
+            (f"Design {a.number} above design {b.number}", _chance(result.higher_cof(a, b)))
             for a, b in pairwise(best)
         ]
         intro = "Over shared draws: what both designs have in common cancels."
@@ -177,7 +177,13 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         numbers = [v for v in values if isinstance(v, float) and np.isfinite(v)]
         factor, shown_unit = display_unit(max(map(abs, numbers), default=1.0), unit)
         columns.append(
-            {"name": name, "unit": "" if shown_unit == "1" else shown_unit, "goal": goal}
+            {
+                "name": name,
+                "unit": ""
+                if shown_unit == "1"
+                else shown_unit.replace("^2", "²").replace("^3", "³"),
+                "goal": goal,
+            }
         )
         for row, value in zip(rows, values, strict=True):
             number = isinstance(value, float)
@@ -185,11 +191,11 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
 
     for path in paths:
         values = [one.changes.get(path) for one in designs]
-        add(path.split(".", 1)[-1], unit_at(path), values, False)
+        add(path.split(".", 1)[-1].replace("_", " "), unit_at(path), values, False)
     for goal, values in zip(
         plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
     ):
-        add(str(goal), goal.unit, values, goal in plan.goals)
+        add(goal.words, goal.unit, values, goal in plan.goals)
     listed = [
         {
             "number": one.number,
@@ -283,7 +289,7 @@ def effects_figure(effects: Effects) -> Figure:
 
 
 def _axis(goal: Any) -> str:
-    return str(goal) if goal.unit == "1" else f"{goal} ({goal.unit})"
+    return goal.words if goal.unit == "1" else f"{goal.words} ({goal.unit})"
 
 
 def _centre(result: StudyResult) -> np.ndarray:

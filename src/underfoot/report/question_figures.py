@@ -108,6 +108,11 @@ def wear_figure(series: WearSeries) -> Figure:
         axes.fill_between(place, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0)
         style = {"color": colour, "marker": "o", "markersize": 4}
         axes.plot(place, series.values(name) * scale, label=text, **style)
+        if series.untreaded is not None:  # as worn, without any tread
+            end = series.curve(name)[-2:] * scale
+            axes.plot(place[[-1, -1]], end, color=colour, linestyle=":", linewidth=1)
+            bare = "no tread at all" if axes is friction else ""
+            axes.plot(place[-1], end[-1], "o", mfc="white", color=colour, label=bare)
     load.axhline(series.limit, color="0.4", linestyle="--", linewidth=1)
     style = {"va": "bottom", "fontsize": 8, "color": "0.3"}
     corner = (0.02, series.limit)
@@ -121,7 +126,7 @@ def wear_figure(series: WearSeries) -> Figure:
         axes.set_ylim(bottom=0)
         axes.spines["right"].set_visible(False)
         axes.spines["top"].set_visible(axes is load)
-        if axes is not friction:
+        if axes is not friction or series.untreaded is not None:
             axes.legend(frameon=False, fontsize=8)
     return figure
 

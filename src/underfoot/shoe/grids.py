@@ -247,7 +247,7 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
                 allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
                 remedy=f"Use a grid spacing of {width / CELLS_WANTED * 1e3:.3g} mm or less",
             )
-        unresolved += _few_cells(f"cells across the {name}", cells)
+        unresolved += _few_cells(f"cells of the grid across the {name}", cells)
     return unresolved
 
 
@@ -468,7 +468,9 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
                 remedy=f"Use a grid spacing of {half / CELLS_WANTED * 1e3:.2g} mm or less",
             )
         cells = (narrow + surface.spacing / 2) / spacing
-        unresolved += _few_cells(f"cells across the narrowest tenth of the {name}s", cells)
+        unresolved += _few_cells(
+            f"cells of the grid across the narrowest tenth of the {name}s", cells
+        )
     return unresolved
 
 

@@ -16,6 +16,7 @@ LARGEST_ACOF = 5.0
 LOG_SLOPE_SD, FIFTY_PERCENT_SD = 0.2, 0.05
 """Standard deviation between publications of ln of a logistic's slope and of its ACOF - RCOF at
 even odds (report, G.6.3: slopes of -41.2 to -54.7; -0.06 and -0.11)."""
+LEFT_OVER = "available less required friction"
 _HALF_WIDTH = 9.0
 _WIDEST_STEP, _STEP_OVER_STRIP = 0.25, 0.79
 
@@ -110,7 +111,7 @@ class LogisticModel(PresentableModel):
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
         """Return whether ACOF - RCOF leaves that of the study (``tested``)."""
         difference = np.asarray(acof, dtype=float) - np.asarray(rcof, dtype=float)
-        return breaches(self.name, {"ACOF - RCOF": self.tested}, {"ACOF - RCOF": difference})
+        return breaches(self.name, {LEFT_OVER: self.tested}, {LEFT_OVER: difference})
 
     def _log_odds(self, acof: Any, rcof: Any) -> Any:
         return self.log_odds_slope * (acof - rcof - self.fifty_percent_at)

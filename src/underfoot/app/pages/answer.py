@@ -19,7 +19,7 @@ from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant, no_variant, variant_bar
-from . import repair
+from . import repair, wear
 
 ROUTE = "/answer"
 LIVE = (
@@ -146,6 +146,8 @@ class _Answer:
             self.help = ui.element("div")
             if current:
                 self._live()
+                if self.case.value("shoe.tread.depth") or self.case.shoe.outsole is not None:
+                    wear.build(self.session, self.name)
         if not current:  # what was computed is of other inputs than the file's
             for part in (self.verdict, self.summary, self.view, self.tables):
                 part.classes("stale")

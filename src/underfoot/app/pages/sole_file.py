@@ -22,8 +22,6 @@ from .repair import references
 ACCEPT = ".step,.stp,.iges,.igs,.brep,.stl,.obj,.ply,.off,.glb,.gltf,.3mf,.3dm"
 WORK = "underfoot.app.work_sole:inspected_sole"
 AXES = ("auto", "+x", "-x", "+y", "-y", "+z", "-z")
-OWN = ("shoe.material", "shoe.roughness", "shoe.wear", "shoe.sole.midsole")
-"""Parts of a shoe that stay as the person set them where an outsole comes from a file."""
 CHOICES = {
     "down": AXES,
     "forward": AXES,
@@ -194,10 +192,4 @@ class _Inspection:
         if not project.inside(self.path).is_file():
             raise InputError(f"there is no file {self.path}", where="sole")
         for name in names:  # undo brings back what was drawn with sliders
-            case = project.case(name)
-            kept = {part: entry for part, entry in case.entries.items() if part.startswith(OWN)} | {
-                path: case.value(path)
-                for path, origin in case.origins.items()
-                if path.startswith(OWN) and origin.kind == "given"
-            }
-            project.change(name, {"shoe": shoe, **kept})
+            project.take_sole(name, shoe)

@@ -161,7 +161,7 @@ function askLive(id, address, soleId, keep) {
   let asked = "{}", settled = "{}", busy = false, telling = false, held = false, resting = 0;
   const value = (input) => {
     if (!input.dataset.moved) return Number(input.dataset.given);
-    return input.dataset.log ? 10 ** Number(input.value) : Number(input.value);
+    return input.dataset.log ? Number((10 ** Number(input.value)).toPrecision(3)) : Number(input.value);
   };
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
     .map((i) => [i.name, value(i)])));

@@ -62,7 +62,7 @@ function startStudy(root) {
       const at = [x.place(d.values[across]), y.place(d.values[up])];
       if (at.includes(null)) return;
       const dot = element("circle", { cx: at[0], cy: at[1], r: d.front ? 6 : 4, class: kind(d), "data-design": k, "data-number": d.number, tabindex: 0, role: "button", "aria-label": `Design ${d.number}` });
-      dot.append(element("title", {}, `Design ${d.number}: ${label(across)} ${short(d.values[across])}, ${label(up)} ${short(d.values[up])}`));
+      dot.append(element("title", {}, `Design ${d.number}; ${label(across)} = ${short(d.values[across])}; ${label(up)} = ${short(d.values[up])}`));
       dot.addEventListener("click", () => choose(k));
       dot.addEventListener("keydown", (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); choose(k); } });
       shapes.push(dot);

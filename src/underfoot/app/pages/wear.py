@@ -1,0 +1,82 @@
+"""How long a variant lasts: its friction over wear, and months from one worn shoe."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from underfoot.core import InputError
+from underfoot.core.units import to_si
+
+from ..components import sentences, table, task_line
+from ..inputs import read_field
+from ..jobs import Task
+from ..session import Session
+
+WORN = "underfoot.app.work:worn"
+
+
+def build(session: Session, name: str) -> None:
+    """Show what was computed of the wear of a variant, and two fields that begin it."""
+    place = ui.element("div")
+
+    async def again(_: Task | None = None) -> None:
+        place.clear()
+        with place:
+            _filled(session, name, again)
+
+    with place:
+        _filled(session, name, again)
+
+
+def _filled(session: Session, name: str, again: Any) -> None:
+    text, project = session.text, session.project
+    folder = project.inside("studies", f"{name}, wear")
+    task = session.jobs.latest(name, WORN)
+    with ui.expansion(text("wear.title"), value=task is not None).classes("plain"):
+        ui.label(text("wear.lead")).classes("soft")
+        with ui.element("div").classes("row"):
+            lost = ui.input(text("wear.lost")).props('dense outlined suffix="mm"')
+            months = ui.input(text("wear.months")).props("dense outlined")
+            for field in (lost, months):
+                field.props('inputmode="decimal"').classes("number")
+
+        async def compute() -> None:
+            thickness = read_field(lost, partial(_above_0, session, unit="m", usual="mm"))
+            time = read_field(months, partial(_above_0, session, unit="1", usual=""))
+            pair = f"{1e3 * thickness!r} mm after {time!r} months"
+            arguments = (str(project.path(name)), str(folder), pair)
+            session.submit(text("wear.job"), WORN, *arguments, about=name)
+            await again()
+
+        button = ui.button(text("wear.compute"), on_click=compute).props("no-caps outline")
+        if task is not None and task.open:
+            button.disable()
+            task_line(session, task, again)
+        elif task is not None and task.problem:
+            ui.label(task.problem).classes("problem problem-what").props('role="alert"')
+        elif (shown := _stored(session, name)) is not None:
+            sentences(shown["headline"])
+            sentences(shown["cautions"], "caution")
+            for each in shown["tables"]:
+                table(each)
+
+
+def _above_0(session: Session, typed: str, *, unit: str, usual: str) -> float:
+    value = to_si(typed, unit, where="", usual=usual, comma=session.text.comma)
+    if value <= 0:
+        raise InputError(f"{typed} is nothing", allowed="above 0")
+    return value
+
+
+def _stored(session: Session, name: str) -> dict[str, Any] | None:
+    """Return what was computed of the present case; None where there is nothing."""
+    file = session.project.inside("studies", f"{name}, wear", "shown.json")
+    try:
+        shown = json.loads(file.read_text(encoding="utf-8"))
+        return shown if shown["hash"] == session.project.case(name).hash else None
+    except (OSError, ValueError, KeyError):
+        return None
