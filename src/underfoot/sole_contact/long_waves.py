@@ -118,7 +118,8 @@ def body_correction(
     sole, near = body.sole, body.plan & (body.sole.clearance < REACH)
     if known is not None and known.spacing == sole.spacing:
         return known
-    if not near.any() or min(map(_length, (near.any(axis=1), near.any(axis=0)))) < (
+    along, across = np.nonzero(near)
+    if not along.size or min(np.ptp(along), np.ptp(across)) + 1 < (
         LEAST_SIDES * SIDE / sole.spacing
     ):
         return None
@@ -135,12 +136,6 @@ def body_correction(
     inverse = np.linalg.inv(overlap + np.diag(FAINT * missing))
     matrix = inverse @ (work - layers(hats) * cell) @ inverse
     return BodyCorrection(x, y, chosen, work, sole.spacing, 0.5 * (matrix + matrix.T))
-
-
-def _length(reached: NDArray[np.bool_]) -> int:
-    """Return how many cells lie from the first that is reached to the last."""
-    places = np.flatnonzero(reached)
-    return int(places[-1] - places[0] + 1)
 
 
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Array, Array]:
