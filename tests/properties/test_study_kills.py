@@ -203,7 +203,7 @@ def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, mon
     result = Study(plan, tmp_path).run(workers=1)
     assert len(result.designs) == 12
     assert [one.number for one in result.front] == [0]
-    assert "cof 0.25" in " ".join(result.headline())
+    assert "COF 0.25" in " ".join(result.headline())
     (surrogate,) = result.surrogates(plan.goals)
     mean, deviation = surrogate.predicted(np.array([[0.3]]))
     assert mean == pytest.approx(0.25)

@@ -66,7 +66,7 @@ class Goal:
         return text + (f" over {self.over}" if self.over != OVER[2] else "")
 
     @property
-    def words(self) -> str:
+    def phrase(self) -> str:
         """Return it as people say it: "lowest COF over conditions"."""
         output = "COF" if self.output == "cof" else self.output.replace("_", " ")
         how = SAID.get(self.statistic, f"{self.share:.0%} quantile of").strip()
@@ -153,12 +153,12 @@ class WearLife:
         return self.requirement.goal.output
 
     @property
-    def words(self) -> str:
+    def phrase(self) -> str:
         """Return it as people say it: "wear life with COF > 0.12"."""
         bound = self.requirement
         sign = ">" if bound.sense > 0 else "<"
         limit = quantity_text(bound.bound, bound.goal.unit)
-        return f"wear life with {bound.goal.words} {sign} {limit}"
+        return f"wear life with {bound.goal.phrase} {sign} {limit}"
 
     @property
     def of_draws(self) -> bool:

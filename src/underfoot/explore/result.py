@@ -464,7 +464,7 @@ class StudyResult(Presentable):
             inputs = [value_text(path, one.changes.get(path)) for path in paths]
             texts = map(_goal_text, *values, units) if one.usable else [one.ending] * len(goals)
             rows.append([str(one.number), *inputs, *texts])
-        return Table(title, ("Design", *short, *(goal.words for goal in goals)), rows)
+        return Table(title, ("Design", *short, *(goal.phrase for goal in goals)), rows)
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return why cases have no numbers, the most frequent reason first."""
@@ -542,7 +542,7 @@ class StudyResult(Presentable):
     def _goals_text(self, design: Design) -> str:
         means, deviations = self.believed([design], self.plan.goals)
         return ", ".join(
-            f"{goal.words} {_goal_text(mean, deviation, goal.unit)}"
+            f"{goal.phrase} {_goal_text(mean, deviation, goal.unit)}"
             for goal, mean, deviation in zip(self.plan.goals, means[0], deviations[0], strict=True)
         )
 

@@ -195,7 +195,7 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     for goal, values in zip(
         plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
     ):
-        add(goal.words, goal.unit, values, goal in plan.goals)
+        add(goal.phrase, goal.unit, values, goal in plan.goals)
     listed = [
         {
             "number": one.number,
@@ -289,7 +289,7 @@ def effects_figure(effects: Effects) -> Figure:
 
 
 def _axis(goal: Any) -> str:
-    return goal.words if goal.unit == "1" else f"{goal.words} ({goal.unit})"
+    return goal.phrase if goal.unit == "1" else f"{goal.phrase} ({goal.unit})"
 
 
 def _centre(result: StudyResult) -> np.ndarray:
