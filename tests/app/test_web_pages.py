@@ -351,10 +351,10 @@ def test_a_wrong_value_is_told_with_its_remedy(app):
         field.fill("900")
         field.press("Enter")
         page.keyboard.press("Tab")
-        page.wait_for_selector(".problem")
-        said = page.locator(".problem").inner_text()
-        assert "motion.speed" in said
-        assert "Allowed" in said
+        told = page.locator(".q-field--error")  # at its own field
+        told.wait_for()
+        assert "motion.speed" in told.inner_text()
+        assert "Allowed" in told.inner_text()
 
 
 def test_without_webgl_words_and_numbers_stay(app):
