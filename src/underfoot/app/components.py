@@ -156,3 +156,16 @@ def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[Non
 
     timer = ui.timer(0.1, look)
     return line
+
+
+def refilled(fill: Callable[[Callable[..., Awaitable[None]]], None]) -> None:
+    """Show what ``fill`` shows in a place of its own; awaiting what it is given shows it anew."""
+    place = ui.element("div")
+
+    async def again(_: Task | None = None) -> None:
+        place.clear()
+        with place:
+            fill(again)
+
+    with place:
+        fill(again)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 from nicegui import ui
@@ -10,8 +11,7 @@ from nicegui import ui
 from underfoot.case import Case, assumptions, unit_at
 from underfoot.core import display
 
-from ..components import task_line
-from ..jobs import Task
+from ..components import refilled, task_line
 from ..session import Session
 
 EFFECTS = "underfoot.app.work:effects"
@@ -19,15 +19,7 @@ EFFECTS = "underfoot.app.work:effects"
 
 def build(session: Session, name: str) -> None:
     """Show the assumptions, those with the largest known effect first."""
-    place = ui.element("div")
-
-    async def again(_: Task | None = None) -> None:
-        place.clear()
-        with place:
-            _filled(session, name, again)
-
-    with place:
-        _filled(session, name, again)
+    refilled(partial(_filled, session, name))
 
 
 def _filled(session: Session, name: str, again: Any) -> None:

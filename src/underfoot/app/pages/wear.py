@@ -11,9 +11,8 @@ from nicegui import ui
 from underfoot.core import InputError
 from underfoot.core.units import to_si
 
-from ..components import sentences, table, task_line
+from ..components import refilled, sentences, table, task_line
 from ..inputs import read_field
-from ..jobs import Task
 from ..session import Session
 
 WORN = "underfoot.app.work:worn"
@@ -21,15 +20,7 @@ WORN = "underfoot.app.work:worn"
 
 def build(session: Session, name: str) -> None:
     """Show what was computed of the wear of a variant, and two fields that begin it."""
-    place = ui.element("div")
-
-    async def again(_: Task | None = None) -> None:
-        place.clear()
-        with place:
-            _filled(session, name, again)
-
-    with place:
-        _filled(session, name, again)
+    refilled(partial(_filled, session, name))
 
 
 def _filled(session: Session, name: str, again: Any) -> None:
