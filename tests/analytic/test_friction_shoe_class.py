@@ -129,7 +129,7 @@ def test_the_answer_of_a_run_knows_the_class_and_a_worn_sole_keeps_some_of_it():
     any_shoe, words = answer()
     classed, class_words = answer(**{"class": "EN ISO 20345 SR"})
     assert classed > 1.1 * any_shoe
-    assert "or a slip class of the shoe" in words
+    assert "without a measurement of this sole" in words
     assert "class EN ISO 20345 SR" in class_words
     worn, worn_classed = (
         answer(wear={"depth": "2.5 mm"}, **known)[0] for known in ({}, {"class": "EN ISO 20345 SR"})
