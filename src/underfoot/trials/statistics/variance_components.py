@@ -116,6 +116,8 @@ def variance_components(
         else:
             break
         theta, state = theta + step, better
+        if theta.max() < _LEAST:  # variances over that of all values
+            break
         if np.abs(step * np.sqrt(np.diagonal(state.expected))).max() <= _CLOSE:
             variances = np.full(len(parts), np.nan)
             variances[kept] = scale**2 * theta
@@ -128,7 +130,7 @@ def variance_components(
                 coefficients, scale**2 * (plain + added), scale**2 * plain, variances,
                 state.slopes, scale**4 * uncertainty,
             )  # fmt: skip
-    if theta.max() < _LEAST:  # variances over that of all values
+    if theta.max() < _LEAST:
         raise DataError("no scatter is left to test with", where="mixed model")
     raise DataError("the variances between persons can't be estimated", where="mixed model")
 
