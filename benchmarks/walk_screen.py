@@ -31,6 +31,7 @@ from underfoot.trials import (
     walkway_of,
 )
 from underfoot.trials.walking.likelihood import UNLIKELY, Reference, references
+from underfoot.trials.walking.plausibility import walking_speed
 from underfoot.trials.walking.step_features import VERTICAL, _shapes, step_features
 
 REPOSITORY = Path(__file__).parents[1]
@@ -53,6 +54,7 @@ _LINEAR = (
 _BOUND = ("mass by acceleration", "slope of the force line")
 _PELVIS_WORDS = ("force line", "shear in the")
 _NEEDS = {"mass by acceleration": "mass"}
+_SPEED = "speed (m/s)"
 Fault = Callable[[np.ndarray, float, np.random.Generator], np.ndarray]
 
 
@@ -114,11 +116,13 @@ def sound(trial: Trial, rng: np.random.Generator) -> Trial:
 
 
 def learned(rows: Sequence[tuple[int, dict[str, float]]]) -> tuple[Reference, ...]:
-    """References of each feature from (person, features) of sound steps."""
+    """References of each feature from (person, features and speed) of sound steps."""
     values: dict[str, list[tuple[int, float]]] = defaultdict(list)
     for person, features in rows:
         for name, value in features.items():
             values[name].append((person, value))
+    speeds = [speed for _, speed in values.pop(_SPEED)]
+    walked = min(speeds), max(speeds), float(np.std(speeds, ddof=1))
     found = []
     for name, pairs in values.items():
         numbers = np.array([value for _, value in pairs])
@@ -129,18 +133,23 @@ def learned(rows: Sequence[tuple[int, dict[str, float]]]) -> tuple[Reference, ..
                 Reference(
                     name, float(numbers.mean()), float(numbers.std(ddof=1)), persons, len(numbers),
                     name not in _LINEAR, name in _BOUND, need,
-                    f"{len(numbers)} recorded steps of {persons} persons",
+                    f"{len(numbers)} recorded steps of {persons} persons", *walked,
                 )
             )  # fmt: skip
     return tuple(found)
 
 
 def features_of(trial: Trial) -> list[dict[str, float]]:
-    """Features of the steps of a trial, whatever the packaged reference says of them."""
+    """Features and speed of the steps of a trial, whatever the packaged reference says of them."""
     walk = walkway_of(trial)
     with patch("underfoot.trials.walking.likelihood.references", tuple):
         steps = required_frictions(walk)
-    return [step_features(walk, s.stance) for s in steps if s.measurement.value is not None]
+    found = []
+    for step in steps:
+        speed = walking_speed(walk, step.stance)
+        if step.measurement.value is not None and speed is not None:
+            found.append(step_features(walk, step.stance) | {_SPEED: speed})
+    return found
 
 
 # ------------------------------------------------------------- faults of forces (n, 3), z up

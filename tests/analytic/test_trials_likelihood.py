@@ -15,7 +15,7 @@ from underfoot.trials.walking.likelihood import (
     references,
     unlikely_flags,
 )
-from underfoot.trials.walking.plausibility import judged_features
+from underfoot.trials.walking.plausibility import judged_features, walking_speed
 from underfoot.trials.walking.step_features import VERTICAL, step_features
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -188,8 +188,8 @@ def test_the_shape_of_the_normal_force_is_not_judged_in_fast_walks():
         for name, m in trial.markers.items()
     }
     slow, fast = (
-        judged_features(walkway_of(t), first.stance)
-        for t in (trial, replace(trial, markers=faster))
+        judged_features(w, first.stance, walking_speed(w, first.stance))
+        for w in map(walkway_of, (trial, replace(trial, markers=faster)))
     )
     assert set(slow) - set(fast) == set(VERTICAL)
 
