@@ -270,8 +270,8 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     note = f"Two-sided exact p {p_text(exact.p)}, by enumeration of all tables with these margins."
     if exact.p_error is not None:
         note = (
-            f"Two-sided p {p_text(exact.p)} ± {plain_number(exact.p_error, 1)} (standard error) from 100 000 "
-            "random tables with these margins: counting all would take too long."
+            f"Two-sided p {p_text(exact.p)} ± {plain_number(exact.p_error, 1)} (standard error) "
+            "from 100 000 random tables with these margins: counting all would take too long."
         )
     if exact.odds_ratio is not None:
         note += (

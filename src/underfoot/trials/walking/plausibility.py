@@ -237,9 +237,7 @@ _TOO_FAST = remark(
 )
 
 
-def judged_features(
-    walk: Walkway, stance: Stance, speed: float | None
-) -> dict[str, float]:
+def judged_features(walk: Walkway, stance: Stance, speed: float | None) -> dict[str, float]:
     """Return the features of a step that recorded steps can be compared with: on level ground.
 
     Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
