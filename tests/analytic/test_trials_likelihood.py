@@ -56,6 +56,18 @@ def test_likelihood_is_students_of_a_new_step_and_the_same_on_both_sides():
         assert flag.measured == pytest.approx(value)
 
 
+def test_a_speed_that_nobody_recorded_widens_the_limits_as_a_line_over_the_speed():
+    """z = (1.0 - 0.6) / 0.2 = 2: variance 1 + (1 + 4) / 8."""
+    one = Reference("x", 0.8, 0.05, 8, 16, False, True, "", "", 1.0, 1.6, 0.2)
+    t = stats.t(15).isf(UNLIKELY / 2)
+    assert one.limit(0.9, speed=0.6) == pytest.approx(0.8 + t * 0.05 * np.sqrt(1 + 5 / 8))
+    assert one.likelihood(one.limit(0.1, speed=1.8), 1.8) == pytest.approx(UNLIKELY, rel=1e-9)
+    assert one.limit(0.9, speed=1.3) == one.limit(0.9) < one.limit(0.9, speed=0.9)
+    value = 0.5 * (one.limit(0.9) + one.limit(0.9, speed=0.6))
+    assert [f for f in unlikely_flags({"x": value}, (one,)) if f.matters]
+    assert not [f for f in unlikely_flags({"x": value}, (one,), speed=0.6) if f.matters]
+
+
 @pytest.mark.parametrize("name", SOUND)
 def test_sound_recorded_steps_are_accepted(name):
     assert {step.verdict for step in required_frictions(read_trial(DATA / name))} == {"accepted"}

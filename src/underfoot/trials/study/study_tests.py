@@ -273,7 +273,7 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
             f"Two-sided p {p_text(exact.p)} ± {plain_number(exact.p_error, 1)} (standard error) "
             "from 100 000 random tables with these margins: counting all would take too long."
         )
-    if exact.odds_ratio is not None:
+    if exact.odds_ratio is not None and exact.low is not None and exact.high is not None:
         note += (
             f" Odds ratio {plain_number(exact.odds_ratio)} (conditional estimate; 95 % "
             f"{plain_number(exact.low)} to {plain_number(exact.high)})."

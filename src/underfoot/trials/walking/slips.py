@@ -172,7 +172,8 @@ def contact_from_heel(
     before = round(0.4 * marker.rate)
     found: list[int] = []
     here = height[1:-1]
-    for i in 1 + np.flatnonzero((height[:-2] > here) & (here <= height[2:]) & (here < limit)):
+    falls = (height[:-2] > here) & (here <= height[2:]) & (here < limit)
+    for i in (1 + np.flatnonzero(falls)).tolist():
         if np.nanmax(height[max(0, i - before) : i]) - height[i] <= 0.03:
             continue
         if not found or motion.time[i] - motion.time[found[-1]] > 0.3:
