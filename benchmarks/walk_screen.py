@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks._blind_walk_faults import BLIND_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
 from underfoot.trials import (
     LowPass,
@@ -393,6 +394,9 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
         name: partial(faulty, fault=fault) for name, fault in FAULTS.items()
     },
     "further kinds": MORE_FAULTS,
+    "kinds by somebody who had not read the checks": {
+        name: partial(faulty, fault=fault) for name, fault in BLIND_FAULTS.items()
+    },
 }
 
 
@@ -446,7 +450,7 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
         print(f"{len(kinds)} kinds, {count} faulty steps, {moved} moved by more than {MOVED} or "
               f"lost, {noticed} noticed ({100 * noticed / max(moved, 1):.1f} %)")  # fmt: skip
         sums = [sums[0] + moved, sums[1] + noticed]
-    print(f"\nboth: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %)")
+    print(f"\nall: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %)")
 
 
 def pressure_plate_steps() -> None:
