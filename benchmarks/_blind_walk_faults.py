@@ -274,6 +274,6 @@ BLIND_FAULTS: dict[str, Fault] = {
         lambda f, q, r, _: np.roll(f, round(r.uniform(0.05, 0.2) * q), axis=0)
     ),
     "six bits": lambda f, _, r: (
-        np.floor(f / (step := np.abs(f).max() / 127 * r.uniform(2, 4))) * step
+        np.floor(f / (step := max(np.abs(f).max(), 1.0) / 127 * r.uniform(2, 4))) * step
     ),
 }
