@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks._blind_walk_faults import BLIND_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
 from underfoot.trials import (
     LowPass,
@@ -31,6 +32,7 @@ from underfoot.trials import (
     walkway_of,
 )
 from underfoot.trials.walking.likelihood import UNLIKELY, Reference, references
+from underfoot.trials.walking.plausibility import walking_speed
 from underfoot.trials.walking.step_features import VERTICAL, _shapes, step_features
 
 REPOSITORY = Path(__file__).parents[1]
@@ -53,6 +55,7 @@ _LINEAR = (
 _BOUND = ("mass by acceleration", "slope of the force line")
 _PELVIS_WORDS = ("force line", "shear in the")
 _NEEDS = {"mass by acceleration": "mass"}
+_SPEED = "speed (m/s)"
 Fault = Callable[[np.ndarray, float, np.random.Generator], np.ndarray]
 
 
@@ -114,11 +117,13 @@ def sound(trial: Trial, rng: np.random.Generator) -> Trial:
 
 
 def learned(rows: Sequence[tuple[int, dict[str, float]]]) -> tuple[Reference, ...]:
-    """References of each feature from (person, features) of sound steps."""
+    """References of each feature from (person, features and speed) of sound steps."""
     values: dict[str, list[tuple[int, float]]] = defaultdict(list)
     for person, features in rows:
         for name, value in features.items():
             values[name].append((person, value))
+    speeds = [speed for _, speed in values.pop(_SPEED)]
+    walked = min(speeds), max(speeds), float(np.std(speeds, ddof=1))
     found = []
     for name, pairs in values.items():
         numbers = np.array([value for _, value in pairs])
@@ -129,18 +134,23 @@ def learned(rows: Sequence[tuple[int, dict[str, float]]]) -> tuple[Reference, ..
                 Reference(
                     name, float(numbers.mean()), float(numbers.std(ddof=1)), persons, len(numbers),
                     name not in _LINEAR, name in _BOUND, need,
-                    f"{len(numbers)} recorded steps of {persons} persons",
+                    f"{len(numbers)} recorded steps of {persons} persons", *walked,
                 )
             )  # fmt: skip
     return tuple(found)
 
 
 def features_of(trial: Trial) -> list[dict[str, float]]:
-    """Features of the steps of a trial, whatever the packaged reference says of them."""
+    """Features and speed of the steps of a trial, whatever the packaged reference says of them."""
     walk = walkway_of(trial)
     with patch("underfoot.trials.walking.likelihood.references", tuple):
         steps = required_frictions(walk)
-    return [step_features(walk, s.stance) for s in steps if s.measurement.value is not None]
+    found = []
+    for step in steps:
+        speed = walking_speed(walk, step.stance)
+        if step.measurement.value is not None and speed is not None:
+            found.append(step_features(walk, step.stance) | {_SPEED: speed})
+    return found
 
 
 # ------------------------------------------------------------- faults of forces (n, 3), z up
@@ -384,6 +394,9 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
         name: partial(faulty, fault=fault) for name, fault in FAULTS.items()
     },
     "further kinds": MORE_FAULTS,
+    "kinds by somebody who had not read the checks": {
+        name: partial(faulty, fault=fault) for name, fault in BLIND_FAULTS.items()
+    },
 }
 
 
@@ -437,7 +450,7 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
         print(f"{len(kinds)} kinds, {count} faulty steps, {moved} moved by more than {MOVED} or "
               f"lost, {noticed} noticed ({100 * noticed / max(moved, 1):.1f} %)")  # fmt: skip
         sums = [sums[0] + moved, sums[1] + noticed]
-    print(f"\nboth: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %)")
+    print(f"\nall: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %)")
 
 
 def pressure_plate_steps() -> None:

@@ -226,7 +226,8 @@ def test_impossible_or_missing_readings_are_refused(tmp_path):
     analysis, _ = study(tmp_path, "en_16165_pendulum")
     assert [f.verdict for f in analysis.files] == ["refused", "refused"]
     assert "410" in analysis.files[0].reasons[0]
-    assert "no column of readings" in analysis.files[1].reasons[0]
+    words = "no column of readings was recognised among height. Allowed: ptv"
+    assert words in analysis.files[1].reasons[0]
 
 
 def test_precision_over_operators(tmp_path):

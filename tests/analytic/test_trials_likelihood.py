@@ -15,7 +15,7 @@ from underfoot.trials.walking.likelihood import (
     references,
     unlikely_flags,
 )
-from underfoot.trials.walking.plausibility import judged_features
+from underfoot.trials.walking.plausibility import judged_features, walking_speed
 from underfoot.trials.walking.step_features import VERTICAL, step_features
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -54,6 +54,18 @@ def test_likelihood_is_students_of_a_new_step_and_the_same_on_both_sides():
         (flag,) = [f for f in unlikely_flags({"x": value}, (one,)) if f.matters]
         assert flag.likelihood < UNLIKELY
         assert flag.measured == pytest.approx(value)
+
+
+def test_a_speed_that_nobody_recorded_widens_the_limits_as_a_line_over_the_speed():
+    """z = (1.0 - 0.6) / 0.2 = 2: variance 1 + (1 + 4) / 8."""
+    one = Reference("x", 0.8, 0.05, 8, 16, False, True, "", "", 1.0, 1.6, 0.2)
+    t = stats.t(15).isf(UNLIKELY / 2)
+    assert one.limit(0.9, speed=0.6) == pytest.approx(0.8 + t * 0.05 * np.sqrt(1 + 5 / 8))
+    assert one.likelihood(one.limit(0.1, speed=1.8), 1.8) == pytest.approx(UNLIKELY, rel=1e-9)
+    assert one.limit(0.9, speed=1.3) == one.limit(0.9) < one.limit(0.9, speed=0.9)
+    value = 0.5 * (one.limit(0.9) + one.limit(0.9, speed=0.6))
+    assert [f for f in unlikely_flags({"x": value}, (one,)) if f.matters]
+    assert not [f for f in unlikely_flags({"x": value}, (one,), speed=0.6) if f.matters]
 
 
 @pytest.mark.parametrize("name", SOUND)
@@ -188,8 +200,8 @@ def test_the_shape_of_the_normal_force_is_not_judged_in_fast_walks():
         for name, m in trial.markers.items()
     }
     slow, fast = (
-        judged_features(walkway_of(t), first.stance)
-        for t in (trial, replace(trial, markers=faster))
+        judged_features(w, first.stance, walking_speed(w, first.stance))
+        for w in map(walkway_of, (trial, replace(trial, markers=faster)))
     )
     assert set(slow) - set(fast) == set(VERTICAL)
 

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.trials import finished_plate, read_trial, required_frictions, walkway_of
+from underfoot.trials import Marker, finished_plate, read_trial, required_frictions, walkway_of
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.study_guard import study_doubts
 from underfoot.trials.walking.likelihood import Reference, unseen_gain
 from underfoot.trials.walking.plausibility import rcof_flags
+from underfoot.trials.walking.slips import contact_from_heel
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 WALKS = ["biomechzoo/HC030A05.c3d", "bmc/Gait.c3d", "kineticstoolkit/c3d_sample.c3d"]
@@ -126,3 +127,13 @@ def test_a_slow_walk_may_need_less_friction():
     assert rcof_flags(0.08, speed=1.3)
     assert not rcof_flags(0.08, speed=0.6)
     assert rcof_flags(0.02, speed=0.6)
+
+
+def test_a_heel_that_hovers_lands_where_it_stands():
+    """A slow foot stops 4 mm above the floor, rises by 2 mm and lands 0.16 s later."""
+    time = np.arange(300) / 100.0
+    knots = {0.0: 60, 0.9: 60, 1.2: 4, 1.28: 6, 1.36: 0.2, 1.44: 2, 1.5: 1, 3.0: 1}
+    height = np.interp(time, list(knots), list(knots.values())) / 1000.0
+    marker = Marker(np.column_stack((0.5 * time, 0.0 * time, height)), 100.0)
+    (landing,) = contact_from_heel(marker, np.array([0.0, 0.0, 1.0]))
+    assert landing == pytest.approx(1.36, abs=0.02)

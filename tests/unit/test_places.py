@@ -647,6 +647,7 @@ def changed(**changes):
         ({"floor__reading": [{"machine": "pendulum-96", "value": 350}]}, "350 is no reading"),
         ({"floor__reading": [{"machine": "pendulum-96", "value": -3}]}, "-3 is no reading"),
         ({"floor__reading": [{"machine": "pendlum-96", "value": 36}]}, "pendulum-96"),
+        ({"floor__reading": [{"value": 36}]}, "without the machine"),
         (
             {"floor__reading": [{"machine": "pendulum-96", "value": 36, "fluid": "oil"}]},
             "does not read oil",

@@ -148,6 +148,20 @@ def test_a_change_that_does_nothing_is_no_row():
     assert found.remarks()["Tried without effect"] == ["do idle"]
 
 
+def test_a_toss_up_is_no_advice():
+    """Wider channels: COF 0.161 to 0.160, 41 % to 40 %, higher with 50 %, stood fourth."""
+
+    def tried(name, cof, slip, higher):
+        return dataclasses.replace(effect(name, cof, slip), higher=higher)
+
+    toss_up, same = tried("toss-up", 0.099, 0.59, 0.5), tried("same", 0.102, 0.6, 0.52)
+    good, unsure = tried("good", 0.2, 0.3, 0.8), tried("unsure", 0.15, 0.5, 0.56)
+    found = assessment(toss_up, same, good, unsure)
+    assert [each.change.name for each in found.best] == ["good", "unsure"]
+    assert [row[0] for row in found.table().rows] == ["1.", "2.", "-"]
+    assert found.remarks()["Tried without effect"] == ["do same"]
+
+
 def test_a_model_with_another_answer_is_told_with_its_reason():
     (other,) = assessment(present=outcome(slip=0.45)).apart
     assert other.name == "a"

@@ -1,9 +1,14 @@
 """Studies with too little in them: what can be told is told, the rest has its reason."""
 
+import itertools
+import re
+
 import numpy as np
 import pytest
 
 from underfoot.core import DataError
+from underfoot.core.units import plain_number
+from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size
 from underfoot.trials.study.file_result import FileResult
@@ -92,3 +97,28 @@ def test_two_persons_have_no_effect_size():
     study = study_of(files_of(crossed(2, "ab", trials=1)), LEVEL)
     (tukey,) = (one for one in study.findings if one.name.startswith("tukey"))
     assert tukey.table.rows[0][-3:] == (None, None, None)
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_page_prints_numbers_that_a_person_reads(name):
+    study = study_of(files_of(STUDIES[name]), LEVEL)
+    for table in (*study.tables, *(one.table for one in study.findings)):
+        page = page_table(table)
+        for text in (*itertools.chain(*page["rows"]), *page["notes"], *page["below"]):
+            assert not re.search(r"\de[-+]?\d", text), (table.name, text)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(9.19e-12, "below 0.000001"), (-9e-12, "above -0.000001"), (2.61e-5, "0.0000261"),
+     (0.0, "0"), (0.123, "0.123"), (5.8e16, "above 1,000,000"), (-np.inf, "below -1,000,000")],
+)  # fmt: skip
+def test_what_is_too_small_or_large_is_told_by_its_bound(value, text):
+    assert plain_number(value) == text
+
+
+def test_scatter_of_rounding_alone_is_none():
+    """Persons who all have the same value in each shoe: F was 5.8e16."""
+    study = study_of(files_of(STUDIES["the same value in a shoe"]), LEVEL)
+    mixed = next(one for one in study.findings if one.name == "mixed_rcof")
+    assert "not done" in mixed.table.columns

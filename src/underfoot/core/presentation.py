@@ -180,6 +180,11 @@ def probability_text(probability: float) -> str:
     return percent(min(max(probability, 1e-9), 1 - 1e-9))
 
 
+def p_text(p: float) -> str:
+    """Return the p of a test to four decimals; a smaller one is below them."""
+    return "< 0.0001" if p < 1e-4 else f"{p:.4f}"
+
+
 def drawn_probability_text(probability: float) -> str:
     """Return a probability in percent that is told to 1 % at most, as by hundreds of draws."""
     if probability < 0.01:

@@ -172,6 +172,27 @@ def number_text(value: float, digits: int) -> str:
     return f"{value:.0f}" if "e" in text and 1e-3 <= abs(value) < 1e6 else text
 
 
+_LEAST_SHOWN, _MOST_SHOWN = 1e-6, 1e6
+
+
+def plain_number(value: float, digits: int = 3) -> str:
+    """Return a number without a unit as people read it: no exponent, bounds of what is too far out.
+
+    >>> plain_number(9.19e-12), plain_number(2.61e-05), plain_number(5.8e16)
+    ('below 0.000001', '0.0000261', 'above 1,000,000')
+    """
+    if math.isnan(value):
+        return "not a number"
+    size = abs(value)
+    if 0.0 < size < _LEAST_SHOWN:
+        return f"below {_LEAST_SHOWN:.6f}" if value > 0 else f"above -{_LEAST_SHOWN:.6f}"
+    if size >= _MOST_SHOWN:
+        return f"above {_MOST_SHOWN:,.0f}" if value > 0 else f"below -{_MOST_SHOWN:,.0f}"
+    if 0.0 < size < 1e-4:
+        return f"{value:.{digits - 1 - math.floor(math.log10(size))}f}"
+    return number_text(value, digits)
+
+
 def unit_system() -> str:
     """Return the units of output: "si", or "us" where inches and pounds were asked for."""
     return os.environ.get(UNITS_VARIABLE, SYSTEMS[0])

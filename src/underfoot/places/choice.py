@@ -222,7 +222,7 @@ class Choice(Presentable):
         rows = [
             (
                 each.shoe.name,
-                probability_text(each.best),
+                probability_text(each.best) if len(self.shoes) > 1 else "",
                 probability_text(each.slips.value or 0.0),
                 interval_text("slip_probability", each.slips),
                 "" if each.shoe.price is None else f"{each.shoe.price:g}",
@@ -272,6 +272,7 @@ class Choice(Presentable):
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return what was assumed."""
         used = {each.machine for floor in self.place.floors for each in floor.readings}
+        read = used or any(shoe.readings or shoe.known_class for shoe in self.place.shoes)
         notes = [
             f"{each.title}: {each.standard}; settings and sources: underfoot explain "
             f"{each.entry.name}"
@@ -280,7 +281,7 @@ class Choice(Presentable):
         return {
             "Assumed": (
                 *self.place.assumed,
-                f"Readings leave {self.effective:.0f} of the draws",
+                *([f"Readings leave {self.effective:.0f} of the draws"] if read else []),
                 "Shoes are worn evenly over their months; half of them are new on the mean day",
             ),
             "Machines": notes,

@@ -414,8 +414,11 @@ def machine(name: str, where: str = "machine") -> Machine:
     """Return a machine by its name.
 
     Raises:
-        InputError: No such machine; the nearest and all are named.
+        InputError: No machine is named, or no such one; the nearest and all are named.
     """
+    if not name:
+        words = "a reading says nothing without the machine that read it"
+        raise InputError(words, where=where, allowed=", ".join(machines()))
     plain = name.replace("_", "-")
     if plain not in machines():
         raise unknown_name("machine", name, machines(), where=where)

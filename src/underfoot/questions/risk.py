@@ -38,8 +38,9 @@ if TYPE_CHECKING:
 MOST_CHANGES = 3
 APART = 0.1
 """Difference of two slip probabilities from which their models are said to differ."""
-LEAST_COF, LEAST_CHANCE = 5e-4, 5e-4
-"""Change of COF and of the slip probability below which a change does nothing that a page shows."""
+TOSS_UP = 0.05
+"""Distance from one half up to which the chance of a higher COF tells nothing: two standard errors
+of 400 draws."""
 RARE = 0.2
 """Slip probability below which people read odds ("1 in 12 steps") more easily than percent."""
 
@@ -88,9 +89,18 @@ class RiskAssessment(Presentable):
 
     @property
     def best(self) -> list[ChangeEffect]:
-        """Return the changes that reduce the slip probability, the most effective first."""
+        """Return the changes that reduce the slip probability, the most effective first.
+
+        As a page prints it; COF must be more probably higher than lower, where it changes.
+        """
         slip, present = "slip_probability", self.outcome.number("slip_probability")
-        useful = [each for each in self.effective if each.number(slip) < present]
+        useful = [
+            each
+            for each in self.effective
+            if each.number(slip) < present
+            and not self._same_chance(each)
+            and (not _sure(each) or (each.higher or 0.0) > 0.5 + TOSS_UP)
+        ]
         return sorted(useful, key=lambda each: (each.number(slip), -each.number("cof")))
 
     @property
@@ -200,11 +210,16 @@ class RiskAssessment(Presentable):
         return {**self.outcome.remarks(), "Tried without effect": idle}
 
     def _moves(self, effect: ChangeEffect) -> bool:
-        """Return whether a change does something that a page shows."""
-        return any(
-            abs(effect.number(name) - self.outcome.number(name)) >= least
-            for name, least in (("cof", LEAST_COF), ("slip_probability", LEAST_CHANCE))
-        )
+        """Return whether a change does something that a page shows, and no toss-up."""
+        if not self._same_chance(effect):
+            return True
+        toss_up = effect.higher is not None and abs(effect.higher - 0.5) <= TOSS_UP
+        return not toss_up and f"{effect.number('cof'):.3f}" != f"{self.outcome.number('cof'):.3f}"
+
+    def _same_chance(self, effect: ChangeEffect) -> bool:
+        """Return whether the slip probability prints as it does without the change."""
+        before, after = (one.number("slip_probability") for one in (self.outcome, effect))
+        return probability_text(before) == probability_text(after)
 
     def to_dict(self) -> dict[str, Any]:
         film_share = self.limit.film_share

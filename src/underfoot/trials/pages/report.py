@@ -17,12 +17,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from underfoot.core import Progress, display, silent
+from underfoot.core import Progress, silent
 from underfoot.core.files import check_writable_folder
 from underfoot.core.html import embedded, environment, png
 from underfoot.core.pool import in_processes
+from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
 from underfoot.core.text import harmless
+from underfoot.core.units import plain_number
 
 from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
 
@@ -288,8 +290,8 @@ def _shown(value: Any, column: str, decimals: Mapping[str, int]) -> str:
         return "–"
     if isinstance(value, str):
         return value
-    if column in ("p", "p adjusted"):
-        return "< 0.0001" if value < 1e-4 else f"{value:.4f}"
+    if column == "p" or column.startswith("p "):
+        return p_text(value)
     if isinstance(value, int):
         return str(value)
     if column in ("slip", "heel crossed the array"):
@@ -298,7 +300,7 @@ def _shown(value: Any, column: str, decimals: Mapping[str, int]) -> str:
         return f"{value:.{decimals[column]}f}"
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
-    return display(value, "1", 3)
+    return plain_number(value)
 
 
 def _svg(figure: Figure, path: Path) -> None:

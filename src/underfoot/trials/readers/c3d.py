@@ -235,11 +235,12 @@ def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tup
 
 
 def _points(raw: np.ndarray, scale: float, real: bool) -> np.ndarray:
-    positions = raw[:, :, :3].astype(np.float64)
-    if not real:
-        positions *= scale
-    lost = (raw[:, :, 3] < 0) | (positions == 0.0).all(axis=2)
-    positions[lost | ~(np.abs(positions) < _POSSIBLE).all(axis=2)] = np.nan
+    """Return positions (frames, points, 3); floats stay as short as they are in a long record."""
+    positions = raw[:, :, :3].astype("f4") if real else raw[:, :, :3] * scale
+    for i in range(positions.shape[1]):  # a point after the other: nothing else of that size
+        place = positions[:, i]
+        lost = (raw[:, i, 3] < 0) | (place == 0.0).all(axis=1)
+        place[lost | ~(np.abs(place) < _POSSIBLE).all(axis=1)] = np.nan
     return positions
 
 
@@ -377,7 +378,7 @@ def read_c3d(draft: Draft) -> Trial:
     computed = {label for group in _COMPUTED for label in raw.texts("POINT", group)}
     for i, name in enumerate(draft.names(labels, "marker")):
         if labels[i] not in computed:
-            draft.marker(name, raw.points[:, i] * scale)
+            draft.marker(name, raw.points[:, i].astype(float) * scale)
     draft.rate = raw.rotation_rate
     poses = raw.texts("ROTATION", "LABELS")
     for i in range(raw.rotations.shape[1]):

@@ -14,6 +14,7 @@ import numpy as np
 from underfoot.core import DataError
 
 _STEPS, _HALVINGS, _CLOSE = 100, 40, 1e-9
+_EXACT = 1e-12  # variances over that of all values: below is rounding
 _LEAST = 1e-8  # standard deviation over that of all values: below is rounding
 _TOLD = 1e-6  # to which degrees of freedom are found
 _ALIKE = 1e-9  # what is left of a grouping, or of what the data say of its variance: rounding
@@ -116,6 +117,8 @@ def variance_components(
         else:
             break
         theta, state = theta + step, better
+        if theta.max() < _EXACT:
+            break
         if np.abs(step * np.sqrt(np.diagonal(state.expected))).max() <= _CLOSE:
             variances = np.full(len(parts), np.nan)
             variances[kept] = scale**2 * theta
@@ -128,7 +131,7 @@ def variance_components(
                 coefficients, scale**2 * (plain + added), scale**2 * plain, variances,
                 state.slopes, scale**4 * uncertainty,
             )  # fmt: skip
-    if theta.max() < _LEAST:  # variances over that of all values
+    if theta.max() < _LEAST:
         raise DataError("no scatter is left to test with", where="mixed model")
     raise DataError("the variances between persons can't be estimated", where="mixed model")
 

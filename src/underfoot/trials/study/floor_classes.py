@@ -58,9 +58,10 @@ SCHEMES: dict[str, ClassScheme] = {
         ClassScheme(
             "din_51130", "Shod ramp with oil", "angle",
             ((6, "R9"), (10, "R10"), (19, "R11"), (27, "R12"), (35, "R13")),
-            "DIN 51130, BGR/GUV-R 181: R9 from 6 to 10 deg, R10 above 10, R11 above 19, R12 above "
-            "27, R13 above 35; in EN 16165:2021 only by the national foreword of DIN EN 16165",
-            "jasba.de, rutschhemmende Fliesen; rutschstop.com; ukslipresistance.org.uk", above=True,
+            "ASR A1.5/1,2, annex 1, Table 1, of the corrected mean angle (DIN 51130 alike): R9 "
+            "from 6 to 10 deg, R10 above 10, R11 above 19, R12 above 27, R13 above 35; in EN "
+            "16165:2021 only by the national foreword of DIN EN 16165",
+            "vorschriften.bgn-branchenwissen.de, ASR A1.5/1,2; ukslipresistance.org.uk", above=True,
         ),
         ClassScheme(
             "din_51097", "Barefoot ramp with soapy water", "angle",

@@ -378,9 +378,10 @@ def _value_column(
             raise DataError(text, where=where, remedy=remedy)
         if found and not named:
             return found[0], candidate
+    heads = list(QUANTITIES[quantity]) if quantity else [one[0] for one in QUANTITIES.values()]
     raise DataError(
-        "no column of readings was recognised",
+        f"no column of readings was recognised among {', '.join(names) or 'none'}",
         where=where,
-        allowed=", ".join(names) or "a column of numbers",
+        allowed=", ".join(heads),
         remedy=remedy,
     )

@@ -7,6 +7,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from underfoot.core import DataError, UnderfootError
+from underfoot.core.presentation import p_text
+from underfoot.core.units import plain_number
 
 from .. import statistics
 from ..recording.protocols import Protocol
@@ -112,7 +114,7 @@ def _mixed(
     except UnderfootError as error:
         return [not_done(key, title, error)], None
     spreads = ", ".join(
-        f"{what} {np.sqrt(max(variance, 0.0)):.3g}"
+        f"{what} {plain_number(float(np.sqrt(max(variance, 0.0))))}"
         for what, variance in model.variances.items()
         if np.isfinite(variance)
     )
@@ -151,7 +153,7 @@ def _power_note(model: statistics.MixedModel, factors: Mapping[str, Sequence[str
         count = statistics.persons_needed(
             lambda n, d=least / 2, sd=spread: statistics.power("paired", n, difference=d, sd=sd)
         )
-        found.append(f"{least:.2g} between two levels of {factor}")
+        found.append(f"{plain_number(least, 2)} between two levels of {factor}")
         half.append(str(count))
     if not found:
         return ""
@@ -267,16 +269,16 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     except UnderfootError as error:
         return not_done(name, title, error)
     rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
-    note = f"Two-sided exact p = {exact.p:.4g}, by enumeration of all tables with these margins."
+    note = f"Two-sided exact p {p_text(exact.p)}, by enumeration of all tables with these margins."
     if exact.p_error is not None:
         note = (
-            f"Two-sided p = {exact.p:.4g} ± {exact.p_error:.1g} (standard error) from 100 000 "
-            "random tables with these margins: counting all would take too long."
+            f"Two-sided p {p_text(exact.p)} ± {plain_number(exact.p_error, 1)} (standard error) "
+            "from 100 000 random tables with these margins: counting all would take too long."
         )
-    if exact.odds_ratio is not None:
+    if exact.odds_ratio is not None and exact.low is not None and exact.high is not None:
         note += (
-            f" Odds ratio {exact.odds_ratio:.3g} (conditional estimate; 95 % {exact.low:.3g} to "
-            f"{exact.high:.3g})."
+            f" Odds ratio {plain_number(exact.odds_ratio)} (conditional estimate; 95 % "
+            f"{plain_number(exact.low)} to {plain_number(exact.high)})."
         )
     warning = statistics.independence_warning(persons_of(having, person))
     return finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)

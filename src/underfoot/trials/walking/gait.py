@@ -202,8 +202,9 @@ def required_friction(
         if weight is None:
             return without("the gate is a share of body weight and the mass is not known")
         gate = definition.gate_body_weight * weight.newtons
-    features = judged_features(walk, stance) if checked else {}
-    reason = impossible(features)
+    speed = walking_speed(walk, stance) if checked else None
+    features = judged_features(walk, stance, speed) if checked else {}
+    reason = impossible(features, speed=speed)
     if reason:
         return without(reason)
     surface = axes.ramp.surface(axes.up, stance.walking)
@@ -227,10 +228,10 @@ def required_friction(
         flags += (remark(text),)
     uncertainty, parts = None, "not estimated"
     if checked:
-        flags += step_flags(walk, stance, definition.filter, features)
-        flags += rcof_flags(value, axes.ramp, walking_speed(walk, stance))
+        flags += step_flags(walk, stance, definition.filter, features, speed)
+        flags += rcof_flags(value, axes.ramp, speed)
         flags += push_off_flags(walk, stance)
-        flags += unseen_gain(features, value, mass=weight is not None)
+        flags += unseen_gain(features, value, mass=weight is not None, speed=speed)
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
         uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)

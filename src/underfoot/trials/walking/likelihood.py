@@ -22,6 +22,8 @@ _NEEDS = {
 class Reference:
     """Distribution of one feature over recorded steps: a normal one, known from ``persons``.
 
+    They walked at ``slowest`` to ``fastest`` (m/s), with a standard deviation of ``speed_sd``.
+
     ``logarithm``: of the natural logarithm. ``bound``: mechanics, not habit, sets it: a value that
     is impossible rejects the step. ``needs`` names what a recording must hold ("mass", "pelvis").
     """
@@ -35,25 +37,33 @@ class Reference:
     bound: bool
     needs: str
     source: str
+    slowest: float = 0.0
+    fastest: float = math.inf
+    speed_sd: float = 1.0
 
-    def likelihood(self, value: float) -> float:
+    def likelihood(self, value: float, speed: float | None = None) -> float:
         """Return the share of sound steps that lie as far from the mean as ``value``, two-sided.
 
         Student's t of a new step after ``steps`` with mean and deviation estimated from
-        ``persons``: t = (x - mean) / (sd sqrt(1 + 1 / persons)), steps - 1 degrees of freedom.
+        ``persons``, steps - 1 degrees of freedom: t = (x - mean) / (sd sqrt(1 + (1 + z^2) /
+        persons)). z is how far the ``speed`` (m/s) lies beyond those recorded, over their standard
+        deviation: the error of a line over the speed (whose slope is taken as 0) grows so.
         """
         from scipy.special import stdtr
 
-        t = abs(value - self.mean) / (self.sd * math.sqrt(1.0 + 1.0 / self.persons))
+        t = abs(value - self.mean) / self._spread(speed)
         return float(2.0 * stdtr(self.steps - 1, -t))
 
-    def limit(self, value: float) -> float:
+    def limit(self, value: float, speed: float | None = None) -> float:
         """Return the value on the same side whose likelihood is ``UNLIKELY``."""
         from scipy.special import stdtrit
 
         t = float(stdtrit(self.steps - 1, 1.0 - 0.5 * UNLIKELY))
-        reach = t * self.sd * math.sqrt(1.0 + 1.0 / self.persons)
-        return self.mean + math.copysign(reach, value - self.mean)
+        return self.mean + math.copysign(t * self._spread(speed), value - self.mean)
+
+    def _spread(self, speed: float | None) -> float:
+        beyond = 0.0 if speed is None else max(self.slowest - speed, speed - self.fastest, 0.0)
+        return self.sd * math.sqrt(1.0 + (1.0 + (beyond / self.speed_sd) ** 2) / self.persons)
 
     def shown(self, value: float) -> float:
         """Return a value of the feature as people read it."""
@@ -69,23 +79,29 @@ def references() -> tuple[Reference, ...]:
         Reference(
             row["feature"], float(row["mean"]), float(row["sd"]), int(row["persons"]),
             int(row["steps"]), row["logarithm"] == "yes", row["bound"] == "yes", row["needs"],
-            row["source"],
+            row["source"], *(float(row[name]) for name in ("slowest", "fastest", "speed_sd")),
         )
         for row in rows
     )  # fmt: skip
 
 
 def unlikely_flags(
-    features: Mapping[str, float], known: tuple[Reference, ...] | None = None
+    features: Mapping[str, float],
+    known: tuple[Reference, ...] | None = None,
+    *,
+    speed: float | None = None,
 ) -> tuple[Flag, ...]:
-    """Return a caution for each feature that is unlikely, and a remark on what can't be judged."""
+    """Return a caution for each feature that is unlikely, and a remark on what can't be judged.
+
+    ``speed``: of the walk (m/s), None where it is not known.
+    """
     flags = []
     known = references() if known is None else known
     for law in known:
         if law.feature not in features:
             continue
         value = features[law.feature]
-        likelihood = law.likelihood(value)
+        likelihood = law.likelihood(value, speed)
         if likelihood < UNLIKELY:
             rare = (
                 f"1 step in {1.0 / likelihood:.0f}" if likelihood > 1e-5 else "no step in 100 000"
@@ -94,7 +110,7 @@ def unlikely_flags(
                 f"{law.feature} {law.shown(value):.3g}, where sound steps have "
                 f"{law.shown(law.mean):.3g}: as far out lies {rare}"
             )
-            limit = law.shown(law.limit(value))
+            limit = law.shown(law.limit(value, speed))
             flags.append(
                 Flag(law.feature, text, True, law.shown(value), limit, "", law.source, likelihood)
             )
@@ -104,11 +120,16 @@ def unlikely_flags(
     return tuple(flags)
 
 
-def impossible(features: Mapping[str, float], known: tuple[Reference, ...] | None = None) -> str:
-    """Return why a step can't be one of walking, or nothing."""
+def impossible(
+    features: Mapping[str, float],
+    known: tuple[Reference, ...] | None = None,
+    *,
+    speed: float | None = None,
+) -> str:
+    """Return why a step at a ``speed`` (m/s) can't be one of walking, or nothing."""
     for one in references() if known is None else known:
         value = features.get(one.feature)
-        if one.bound and value is not None and one.likelihood(value) < IMPOSSIBLE:
+        if one.bound and value is not None and one.likelihood(value, speed) < IMPOSSIBLE:
             usual = one.shown(one.mean)
             return (
                 f"{one.feature} {one.shown(value):.3g} is impossible (sound steps {usual:.3g}): "
@@ -128,17 +149,19 @@ def unseen_gain(
     value: float,
     *,
     mass: bool,
+    speed: float | None = None,
     known: tuple[Reference, ...] | None = None,
 ) -> tuple[Flag, ...]:
     """Return by how much RCOF ``value`` may be off by gains that no check would notice.
 
     From a sound step the gain of the shear, or of the normal force, must grow to the limit of the
     narrowest feature that follows it; both together, as squares. ``mass``: body mass is known.
+    ``speed``: of the walk (m/s).
     """
     if not features:
         return ()
     reach = {
-        one.feature: one.limit(one.mean + 1e-12) - one.mean
+        one.feature: one.limit(one.mean + 1e-12, speed) - one.mean
         for one in (references() if known is None else known)
         if one.feature in features
     }

@@ -159,11 +159,18 @@ _MARGIN = 0.025  # s away from the load
 
 
 def step_flags(
-    walk: Walkway, stance: Stance, low_pass: LowPass, features: Mapping[str, float]
+    walk: Walkway,
+    stance: Stance,
+    low_pass: LowPass,
+    features: Mapping[str, float],
+    speed: float | None,
 ) -> tuple[Flag, ...]:
-    """Return what is doubtful about signals, markers and features of one accepted step."""
+    """Return what is doubtful about signals, markers and features of one accepted step.
+
+    ``speed``: of the walk (m/s), None where no marker tells it.
+    """
     plate = walk.plate(stance.plate)
-    forces = (*unknown_heel(walk), *_force_flags(walk, plate, stance))
+    forces = (*unknown_heel(walk), *_force_flags(walk, plate, stance, speed))
     if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
         features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
     return (
@@ -171,7 +178,7 @@ def step_flags(
         *_level_flags(plate, stance, walk.up, low_pass),
         *_path_flags(walk, stance),
         *_marker_flags(walk, stance),
-        *(unlikely_flags(features) if features else (_NOT_JUDGED,)),
+        *(unlikely_flags(features, speed=speed) if features else (_NOT_JUDGED,)),
         *([] if not features or VERTICAL[0] in features else [_TOO_FAST]),
     )
 
@@ -217,9 +224,11 @@ _NOT_JUDGED = remark(
 
 
 _FASTEST = 1.8  # m/s
+_USUAL_DURATION = 0.65  # s; the longest stance of the recorded steps
 _USUAL_SPEED = 1.3  # m/s; of the people whose RCOF and steps the limits are of
 _FLAT = math.log(0.9)  # of the valley over the peaks
 _PEAK_TIMES = {"time of first peak", "time of second peak"}
+_ONSETS = {"shear after normal at contact", "shear after normal at toe off"}  # s
 _LEAKS = {"shear in the sideways force", "shear in the mass"}
 _SHEAR_BY_SPEED = {"braking impulse": True, "driving impulse": True, "both impulses": True,
                    "driving ratio": False}  # logarithm or not  # fmt: skip
@@ -228,7 +237,7 @@ _TOO_FAST = remark(
 )
 
 
-def judged_features(walk: Walkway, stance: Stance) -> dict[str, float]:
+def judged_features(walk: Walkway, stance: Stance, speed: float | None) -> dict[str, float]:
     """Return the features of a step that recorded steps can be compared with: on level ground.
 
     Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
@@ -238,7 +247,9 @@ def judged_features(walk: Walkway, stance: Stance) -> dict[str, float]:
     """
     if walk.axes.ramp.angle or walk.trial.settings.get("software") == MADE_UP:
         return {}
-    features, speed = step_features(walk, stance), walking_speed(walk, stance)
+    features = step_features(walk, stance)
+    for name in _ONSETS & features.keys():  # longer, as the stance is
+        features[name] /= max(stance.duration / _USUAL_DURATION, 1.0)
     if speed is None:
         return features
     if speed > _FASTEST:
@@ -339,11 +350,12 @@ def _stance_flags(
         yield SHORT_STANCE.flag(duration, short)
 
 
-def _force_flags(walk: Walkway, plate: Plate, stance: Stance) -> Iterator[Flag]:
+def _force_flags(
+    walk: Walkway, plate: Plate, stance: Stance, speed: float | None
+) -> Iterator[Flag]:
     up, weight, rate = walk.up, walk.weight, plate.rate
     part = plate.force[stance.start : stance.stop]
     normal = part @ up
-    speed = walking_speed(walk, stance)
     yield from _stance_flags(walk, stance, float(normal.mean()), speed)
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
@@ -685,7 +697,7 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
         text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
-        slowness = max(stance.duration / 0.65, 1.0)
+        slowness = max(stance.duration / _USUAL_DURATION, 1.0)
         yield from replace(LATE, value=LATE.value * slowness).above(gap, text)
     near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
     leaps = int(jumps[near].sum())
