@@ -19,8 +19,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from benchmarks._blind_walk_faults import BLIND_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
+from benchmarks._untuned_walk_faults import UNTUNED_FAULTS
 from underfoot.trials import (
     LowPass,
     Trial,
@@ -394,8 +394,8 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
         name: partial(faulty, fault=fault) for name, fault in FAULTS.items()
     },
     "further kinds": MORE_FAULTS,
-    "kinds by somebody who had not read the checks": {
-        name: partial(faulty, fault=fault) for name, fault in BLIND_FAULTS.items()
+    "kinds that the checks were not tuned on": {
+        name: partial(faulty, fault=fault) for name, fault in UNTUNED_FAULTS.items()
     },
 }
 

@@ -1,4 +1,4 @@
-"""Kinds of faults of a walk whose author had not read the checks, nor tuned them since.
+"""Kinds of faults of a walk on which no check was tuned; their author had seen some of the checks.
 
 Each changes raw forces (n, 3), z up, of a plate at ``rate`` (Hz).
 """
@@ -210,7 +210,7 @@ def _smoothed(low: float, high: float) -> Fault:
 
 
 _ALL, _BOTH = slice(0, 3), slice(0, 2)
-BLIND_FAULTS: dict[str, Fault] = {
+UNTUNED_FAULTS: dict[str, Fault] = {
     "gaussian smoothing of the shear": _shear(
         lambda f, q, r, _: gaussian_filter1d(f, r.uniform(0.02, 0.05) * q, axis=0)
     ),
