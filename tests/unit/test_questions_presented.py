@@ -286,13 +286,13 @@ def test_old_option_names_answer_with_a_note(capsys):
 
 
 def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_alike():
-    from underfoot.questions.comparison import _with_short_names
+    from underfoot.questions.comparison import with_short_names
 
     sums = ("shoe.outsole.sha256", "a" * 64, "b" * 64)
     apart = [("shoe.outsole.file", "/x/one.stl", "/x/two.stl"), sums]
-    assert _with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
+    assert with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
     alike = [("shoe.outsole.file", "/x/one.stl", "/y/one.stl"), sums]
-    assert _with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
-    assert _with_short_names(alike)[0] == alike[0]
+    assert with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
+    assert with_short_names(alike)[0] == alike[0]
     changed = [sums]
-    assert _with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]
+    assert with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]

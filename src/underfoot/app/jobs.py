@@ -184,17 +184,19 @@ class Jobs:
         *args: Any,
         about: str = "",
         then: Sequence[Any] = (),
+        first: bool = False,
         **options: Any,
     ) -> Task:
         """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
 
         The function writes what is to last into the project's folder; what it takes is plain data.
-        ``then`` (title, function, arguments) is queued when it is done, whoever looks.
+        ``then`` (title, function, arguments) is queued when it is done, whoever looks. ``first``:
+        before those that wait.
         """
         number = max(self.tasks, default=0) + 1
         task = Task(number, title, function, about, arguments=args, options=options, then=then)
         self.tasks[number] = task
-        self._waiting.append(task)
+        (self._waiting.appendleft if first else self._waiting.append)(task)
         self._changed(task)
         self._arrived.set()
         return task
@@ -206,6 +208,12 @@ class Jobs:
             self._end(task, STOPPED)
         elif task.state == RUNNING:
             self._lane(task.module).stop()
+
+    def cancel_all(self, function: str = "") -> None:
+        """Stop all tasks that wait or run, those of one function if it is named."""
+        for task in sorted(self.tasks.values(), key=lambda task: task.state == RUNNING):
+            if not function or task.function == function:
+                self.cancel(task)
 
     def again(self, task: Task) -> Task:
         """Queue a task once more."""
@@ -295,7 +303,7 @@ class Jobs:
                 here = _moved(line, PROJECT, str(self._file.parent))
                 fields = {name: value for name, value in here.items() if name in KEPT}
                 self.tasks[line["number"]] = Task(**{"title": "", **fields})
-        for task in self.tasks.values():
+        for task in list(self.tasks.values()):  # old ones are forgotten meanwhile
             if task.open:
                 self._end(task, INTERRUPTED)
         self.tasks = dict(list(self.tasks.items())[-SHOWN:])
