@@ -37,7 +37,7 @@ class ResultTable:
         self.session, self.text, self.title, self.entries = session, session.text, title, entries
         self.lettered = lettered
         self.rows: list[dict[str, Any]] = []
-        self._columns: list[str] = []
+        self._inputs: list[str] = []
         with ui.element("div").classes("row no-print"):
             for kind in ("csv", "xlsx"):
                 button = ui.button(self.text(f"table.{kind}"), icon="table_view")
@@ -61,9 +61,8 @@ class ResultTable:
             for letter, row in zip_longest(ascii_uppercase, found["rows"])
             if row is not None
         ]
-        names = ["name", "is", "judged", *inputs[:INPUTS], *NUMBERS]
-        if self.made is None or names != self._columns:
-            self._columns = names
+        if self.made is None or inputs[:INPUTS] != self._inputs:
+            self._inputs = inputs[:INPUTS]
             self.place.clear()
             with self.place:
                 self.made = self._table(inputs[:INPUTS])
@@ -80,11 +79,12 @@ class ResultTable:
         return f"{words}: {row['remark']}" if row["remark"] and not told else words
 
     def _table(self, inputs: list[str]) -> ui.table:
-        words = {"name": "variant", "is": "state", "judged": "verdict"}
         labels = {"letter": ""} if self.lettered else {}
-        labels |= {name: self.text(f"table.{word}") for name, word in words.items()}
+        labels |= {"name": self.text("table.variant")}
+        labels |= {name: self.text(f"compare.{name}") for name in NUMBERS[:2]}
+        labels |= {"judged": self.text("table.verdict"), "is": self.text("table.state")}
         labels |= {path: self.text.get(f"inputs.{path}", path) for path in inputs}
-        labels |= {name: self.text(f"compare.{name}") for name in NUMBERS}
+        labels |= {name: self.text(f"compare.{name}") for name in NUMBERS[2:]}
         columns = [
             {"name": name, "label": label, "field": name, "sortable": True, "align": "left"}
             for name, label in labels.items()

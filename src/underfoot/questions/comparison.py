@@ -117,7 +117,7 @@ class Comparison(Presentable):
             return (
                 f"{better} and {other} are equal for every purpose: COF {apart} apart "
                 f"({sure} that the first has more), too small to see. "
-                f"Readings of one tester repeat within {SEEN:.0%}.",
+                f"Readings of one tester repeat within {100 * SEEN:.0f} %.",
                 self._different(),
             )
         if verdict is not Verdict.HIGHER and self.order is not None:
@@ -133,7 +133,7 @@ class Comparison(Presentable):
 
     def _telling(self, least: float) -> tuple[str, ...]:
         """Return what would tell an order that is open, and what a tester could see of it."""
-        seen = f"The smallest difference a tester would see is {SEEN * least:.3f} ({SEEN:.0%})."
+        seen = f"The smallest difference a tester would see is {SEEN * least:.3f} ({100 * SEEN:.0f} %)."
         if not self.separations or self.order is None:
             return (seen,)
         best = self.separations[0]

@@ -50,7 +50,9 @@ def build(session: Session) -> None:
         waits = {name for name, task in runs.items() if task.open}
         missing[:] = [row["name"] for row in rows if row["state"] in ("not_computed", "earlier")]
         missing[:] = [name for name in missing if name not in waits]
-        compute.text = text("project.compute_some", count=len(missing))
+        compute.text = text("project.compute")
+        if missing:
+            compute.text = text("project.compute_some", count=len(missing))
         compute.set_enabled(bool(missing))
         shown = time.monotonic()
 
