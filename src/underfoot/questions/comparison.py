@@ -133,7 +133,8 @@ class Comparison(Presentable):
 
     def _telling(self, least: float) -> tuple[str, ...]:
         """Return what would tell an order that is open, and what a tester could see of it."""
-        seen = f"The smallest difference a tester would see is {SEEN * least:.3f} ({100 * SEEN:.0f} %)."
+        least, share = SEEN * least, f"{100 * SEEN:.0f} %"
+        seen = f"The smallest difference a tester would see is {least:.3f} ({share})."
         if not self.separations or self.order is None:
             return (seen,)
         best = self.separations[0]
