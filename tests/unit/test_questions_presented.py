@@ -296,3 +296,12 @@ def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_al
     assert with_short_names(alike)[0] == alike[0]
     changed = [sums]
     assert with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]
+
+
+def test_breaches_begin_with_what_their_model_is_for():
+    from underfoot.compute.summary import in_words
+
+    pair, own = in_words(["pair: speed 5 m/s is outside the tested range", "mine: a is outside b"])
+    assert pair.startswith("The friction of this sole on this floor: speed 5 m/s")
+    assert "pair:" not in pair
+    assert own == "mine: a is outside b"

@@ -99,7 +99,7 @@ class Result(Presentable):
         """Return notes, tested ranges that were left, and assumptions, the decisive ones first."""
         return {
             "Notes": summary.notes(self.labels),
-            "Outside the tested range": self.breaches,
+            "Outside the tested range": summary.in_words(self.breaches),
             "Assumptions": summary.ranked_assumptions(self.assumptions),
         }
 
