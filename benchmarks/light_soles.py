@@ -22,7 +22,7 @@ from underfoot.report.results import designed_surface, map_fields
 from underfoot.report.sole_export import export_result
 from underfoot.shoe.parametric import write_sole
 
-PATTERNS = ("grid", "hexagons", "circles", "chevrons", "transverse")
+PATTERNS = ("grid", "hexagons", "circles", "longitudinal", "transverse")
 WHOLE = {
     "plan": "sole", "side": "right", "length": "290 mm", "width": "68 mm",
     "waist_width": "58 mm", "ball_width": "102 mm", "edge_radius": "2 mm",
