@@ -36,7 +36,7 @@ STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
 PROJECT = "{project}"
 """What stands for the project's folder in ``jobs.jsonl``: a project may be copied or moved."""
 SHOWN = 50
-"""Jobs that are kept in mind, the newest."""
+"""Ended jobs that are kept in mind, the newest."""
 
 
 class Lane:
@@ -293,9 +293,8 @@ class Jobs:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
             append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
-        for number in list(self.tasks)[:-SHOWN]:
-            if not self.tasks[number].open:
-                del self.tasks[number]
+        for number in [n for n, each in self.tasks.items() if not each.open][:-SHOWN]:
+            del self.tasks[number]
 
     def _read(self) -> None:
         for line in lines(self._file):

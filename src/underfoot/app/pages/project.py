@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.core import InputError
 
 from ..components import title
-from ..jobs import DONE, FAILED, RUNNING, STOPPED, Task
+from ..jobs import DONE, FAILED, RUNNING, Task
 from ..projects import known_projects
 from ..result_table import ResultTable
 from ..session import LOOK, Session
@@ -108,19 +108,19 @@ def _progress(session: Session, place: ui.element) -> None:
         bar.props(f'aria-label="{text("project.compute")}"')
         stop = ui.button(text("project.stop")).props("flat dense no-caps")
     stop.on_click(lambda: session.jobs.cancel_all(RUN))
-    began = time.time()
+    most = 0
 
     def look() -> None:
-        runs = [task for task in session.jobs.tasks.values() if task.function == RUN]
-        left = [task for task in runs if task.open]
-        ended = [t for t in runs if t.state in (DONE, FAILED, STOPPED) and t.ended >= began]
+        nonlocal most
+        left = [t for t in session.jobs.tasks.values() if t.function == RUN and t.open]
+        most = max(most, len(left)) if left else 0
         line.set_visibility(bool(left))
         if left:
-            total = len(left) + len(ended)
+            done = most - len(left)
             part = sum(task.fraction for task in left if task.state == RUNNING)
-            bar.value = (len(ended) + part) / total
+            bar.value = (done + part) / most
             now = next((task.about for task in left if task.state == RUNNING), "")
-            label.text = text("project.left", done=len(ended), total=total, now=now)
+            label.text = text("project.left", done=done, total=most, now=now)
 
     look()
     ui.timer(LOOK, look)
