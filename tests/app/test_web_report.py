@@ -63,7 +63,7 @@ def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
         page.get_by_text("of 5 computed").wait_for()
         page.get_by_role("button", name="Stop all").click()
         page.get_by_role("button", name="Stop all").wait_for(state="hidden")
-        assert not all(map(project.summary, project.variants()))
+        assert len(project.results()) < 5
         page.reload()  # what is missing is computed: nothing twice
         page.get_by_role("button", name=re.compile("missing")).click()
         page.get_by_role("button", name="Compute all", exact=True).wait_for()
