@@ -55,7 +55,7 @@ def test_peaks_and_smooth_fields_are_those_of_the_cells(light):
     slope = 1e-6 / 30e-3  # a corner of the rim has the mean of a triangle on one side of it
     assert np.abs(film[on_land] - wanted).max() <= slope * SMALL
     assert (film[~on_land] == 0).all(), "none of the channels' cells has a film"
-    assert np.nanmax(values["film_thickness"]) >= film.max()
+    assert film.max() <= np.nanmax(values["film_thickness"]) * (1 + 1e-12)
 
 
 def test_walls_are_apart_and_stand_where_the_design_has_them(light):
