@@ -176,9 +176,10 @@ def test_what_a_person_waits_for_comes_first_and_all_can_be_stopped(tmp_path):
         first, *rest = (jobs.submit("many", HERE + "deaf", 60, about=str(n)) for n in range(60))
         while first.stage != "deaf":
             await asyncio.sleep(0.01)
-        one = jobs.submit("one", HERE + "doubled", 1, first=True)
+        one, two = (jobs.submit("one", HERE + "doubled", n, first=True) for n in (1, 2))
         jobs.cancel(first)
-        await jobs.finished(one)
+        await jobs.finished(two)
+        assert one.ended <= two.began
         jobs.cancel_all(HERE + "deaf")
         for task in (first, *rest):
             await jobs.finished(task)

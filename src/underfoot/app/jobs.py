@@ -121,6 +121,7 @@ class Task:
         answer: What the function returned, while the server runs.
         arguments, options: What the function takes, plain data.
         then: Title, function and arguments of what is queued when it is done.
+        first: Comes before those that wait and are not.
     """
 
     number: int
@@ -137,6 +138,7 @@ class Task:
     arguments: Sequence[Any] = ()
     options: dict[str, Any] = field(default_factory=dict)
     then: Sequence[Any] = ()
+    first: bool = False
 
     @property
     def open(self) -> bool:
@@ -194,9 +196,12 @@ class Jobs:
         before those that wait.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(number, title, function, about, arguments=args, options=options, then=then)
+        task = Task(
+            number, title, function, about, arguments=args, options=options, then=then, first=first
+        )
         self.tasks[number] = task
-        (self._waiting.appendleft if first else self._waiting.append)(task)
+        waits = [first and not other.first for other in self._waiting]
+        self._waiting.insert(waits.index(True) if True in waits else len(waits), task)
         self._changed(task)
         self._arrived.set()
         return task
@@ -217,7 +222,7 @@ class Jobs:
 
     def again(self, task: Task) -> Task:
         """Queue a task once more."""
-        about = {"about": task.about, "then": task.then, **task.options}
+        about = {"about": task.about, "then": task.then, "first": task.first, **task.options}
         return self.submit(task.title, task.function, *task.arguments, **about)
 
     def latest(self, about: str, function: str) -> Task | None:
