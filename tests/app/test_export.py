@@ -48,7 +48,8 @@ def exported_loads(path):
         points, quads = read.points, read.cells[0].data
         seen = np.cross(points[quads[:, 2]] - points[quads[:, 0]],
                         points[quads[:, 3]] - points[quads[:, 1]])[:, 2] / 2  # fmt: skip
-        known = np.isfinite(table["area (m^2)"])
+        known = table["outside (1)"] == 1
+        assert not any(np.isnan(table[name]).any() for name in names)
         np.testing.assert_allclose(-seen[known], table["area (m^2)"][known], rtol=1e-6)
     elif path.suffix == ".csv":
         lines = path.read_text().splitlines()
@@ -58,7 +59,7 @@ def exported_loads(path):
         (surface,) = trimesh.load(path, process=False).geometry.values()
         table = {name: values.ravel() for name, values in surface.vertex_attributes.items()}
         names = ("_CONTACT_PRESSURE", "_FLUID_PRESSURE", "_AREA")
-        pressure = table["_CONTACT_PRESSURE"][surface.faces[:, 0]]
+        pressure = table["_CONTACT_PRESSURE"][surface.faces].mean(axis=1)
         load = pressure @ (surface.area_faces * -surface.face_normals[:, 1])
         assert load == pytest.approx(pressure_load(table, names[0], names[2]), rel=1e-4)
     else:
@@ -163,9 +164,10 @@ def test_glb_stands_upright_in_metres_with_colours(worn_shoe_result, tmp_path):
     assert surface.bounds[0][1] == pytest.approx(0.0, abs=1e-4), "it does not stand on the floor"
     pressure = surface.vertex_attributes["_FLUID_PRESSURE"].ravel()
     assert pressure.max() == pytest.approx(float(fields.fluid_pressure.max()), rel=0.05)
-    colours = surface.visual.vertex_colors
+    colours = surface.visual.to_color().vertex_colors
     rubber = colours[pressure == 0]
-    assert (np.ptp(rubber[:, :3].astype(int), axis=1) < 10).all()
+    grey = np.ptp(rubber[:, :3].astype(int), axis=1) < 10
+    assert grey.mean() > 0.9, "beside a lug its colour may show"
     assert (np.ptp(colours[pressure > 0.5 * pressure.max()][:, :3].astype(int), axis=1) > 40).all()
 
 
@@ -179,7 +181,7 @@ def test_glb_is_a_valid_container(worn_shoe_result, tmp_path):
     scene = json.loads(data[20 : 20 + size])
     (mesh,) = scene["meshes"]
     attributes = mesh["primitives"][0]["attributes"]
-    assert {"POSITION", "COLOR_0", "_CONTACT_PRESSURE", "_FLUID_PRESSURE"} <= set(attributes)
+    assert {"POSITION", "TEXCOORD_0", "_CONTACT_PRESSURE", "_FLUID_PRESSURE"} <= set(attributes)
     count = {scene["accessors"][index]["count"] for index in attributes.values()}
     assert len(count) == 1
 

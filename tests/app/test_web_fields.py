@@ -75,4 +75,16 @@ def test_an_emptied_field_takes_back_what_was_given(tmp_path):
         field.blur()
         until(lambda: field.input_value() == shown)
         assert load(file).value("contaminant.viscosity") == pytest.approx(usual)
+        # what is typed while the form is drawn anew with another value is not lost
+        page.get_by_role("tab", name="Motion").click()
+        speed = page.get_by_label("Sliding speed", exact=True)
+        speed.fill("0.4")
+        page.get_by_label("Load on the shoe", exact=True).click()
+        page.keyboard.press("Control+A")
+        page.keyboard.type("432", delay=250)
+        until(lambda: load(file).value("motion.speed") == pytest.approx(0.4))
+        page.wait_for_timeout(500)
+        assert page.get_by_label("Load on the shoe", exact=True).input_value() == "432"
+        page.keyboard.press("Enter")
+        until(lambda: load(file).value("motion.normal_force") == pytest.approx(432))
         assert not page.complaints

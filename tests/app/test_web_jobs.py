@@ -1,6 +1,7 @@
 """Jobs: order, progress, cancel at once, what a killed server leaves."""
 
 import asyncio
+import json
 import os
 import shutil
 import time
@@ -167,3 +168,32 @@ def test_a_project_that_was_copied_computes_in_the_copy(tmp_path):
     assert [str(here / "variants" / "a.toml")] == list(before)
     assert after == str(there / "variants" / "a.toml")
     assert str(tmp_path) not in (there / "jobs.jsonl").read_text()
+
+
+@pytest.mark.usefixtures("path")
+def test_what_a_person_waits_for_comes_first_and_all_can_be_stopped(tmp_path):
+    async def work(jobs):
+        first, *rest = (jobs.submit("many", HERE + "deaf", 60, about=str(n)) for n in range(60))
+        while first.stage != "deaf":
+            await asyncio.sleep(0.01)
+        one, two = (jobs.submit("one", HERE + "doubled", n, first=True) for n in (1, 2))
+        jobs.cancel(first)
+        await jobs.finished(two)
+        assert one.ended <= two.began
+        jobs.cancel_all(HERE + "deaf")
+        for task in (first, *rest):
+            await jobs.finished(task)
+        return one, rest
+
+    one, rest = asyncio.run(with_jobs(tmp_path, work))
+    assert (one.state, one.answer) == ("done", 2)
+    assert {task.state for task in rest} == {"stopped"}
+
+
+def test_a_long_queue_that_a_kill_interrupted_is_read_again(tmp_path):
+    lines = [{"number": n, "title": "run", "about": str(n), "state": "done"} for n in range(1, 60)]
+    lines += [{"number": n, "title": "run", "about": str(n), "state": "waiting"}
+              for n in range(60, 63)]  # fmt: skip
+    (tmp_path / "jobs.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    tasks = Jobs(tmp_path).tasks
+    assert [tasks[n].state for n in (60, 61, 62)] == ["interrupted"] * 3

@@ -127,6 +127,22 @@ def test_a_line_cut_short_by_a_power_cut_is_left_out(project):
     assert speed(again) == 0.5
 
 
+def test_a_variant_of_another_program_is_shown_where_nothing_can_be_written(project):
+    history = project.folder / "history.jsonl"
+    kept = history.read_text()
+    history.unlink()
+    history.mkdir()  # as on a disk that is full or read only
+    project.path("two").write_text(TEXT)
+    assert not project.can_undo("two")
+    with pytest.raises(OSError, match=r"history\.jsonl"):
+        project.change("two", {"motion.speed": "0.5 m/s"})
+    assert project.text("two") == TEXT
+    history.rmdir()
+    history.write_text(kept)
+    project.change("two", {"motion.speed": "0.5 m/s"})
+    assert Project(project.folder).can_undo("two")
+
+
 def test_a_file_is_no_project(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="can't be used as a project"):

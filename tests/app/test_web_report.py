@@ -1,5 +1,6 @@
 """The page of a project: its variants on one sheet, other projects, a copy that stays by itself."""
 
+import csv
 import re
 import shutil
 
@@ -8,6 +9,8 @@ from web_app import drawn, page_of, project_of, served
 
 pytest.importorskip("nicegui")
 
+from underfoot.app import work
+from underfoot.core import silent
 
 pytest.importorskip("playwright.sync_api")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -47,6 +50,54 @@ def test_the_report_of_a_project_says_what_each_number_is_of(tmp_path, project):
         assert row.is_visible()
         assert not page.get_by_text("Other projects").is_visible()
         assert page.locator("table").bounding_box()["width"] <= 1366
+        assert page.complaints == []
+
+
+def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
+    for number in range(3):
+        project.copy("heel", f"heel {number}", {"shoe.tread.lug_width": f"{6 + number} mm"})
+    project.path("broken").write_text("[shoe\n")
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "project")
+        page.get_by_role("button", name="Compute all that is missing (5)").click()
+        page.get_by_text("of 5 computed").wait_for()
+        page.get_by_role("button", name="Stop all").click()
+        page.get_by_role("button", name="Stop all").wait_for(state="hidden")
+        assert len(project.results()) < 5
+        page.reload()  # what is missing is computed: nothing twice
+        page.get_by_role("button", name=re.compile("missing")).click()
+        page.get_by_role("button", name="Compute all", exact=True).wait_for()
+        page.get_by_role("button", name="Stop all").wait_for(state="hidden")
+        page.wait_for_function(
+            "[...document.querySelectorAll('.result-table tbody tr')]"
+            ".filter((row) => row.innerText.includes('of its present inputs')).length === 5"
+        )
+        assert "can't be read" in page.get_by_role("row", name=re.compile("^broken")).inner_text()
+        page.get_by_role("columnheader", name="COF").click()
+        page.wait_for_selector(".result-table th.sorted")
+        page.wait_for_timeout(300)
+        cells = page.locator(".result-table tbody tr td:nth-child(2)").all_inner_texts()
+        shown = [float(cell.split()[0]) for cell in cells if cell]
+        assert len(shown) == 5
+        assert shown == sorted(shown)
+        with page.expect_download() as got:
+            page.get_by_role("button", name="Table (CSV)").click()
+        lines = list(csv.DictReader(got.value.path().read_text().splitlines()))
+        row = next(line for line in lines if line["variant"] == "heel 1")
+        summary = project.summary("heel 1")
+        assert float(row["shoe.tread.lug_width (m)"]) == pytest.approx(7e-3)
+        for column, value in (("cof (1)", summary.cof), ("cof, 95 % low (1)", summary.low)):
+            assert float(row[column]) == pytest.approx(value)
+        page.goto(f"{app.base}answer?variant=heel 1")
+        page.get_by_role("button", name="Simulate what would help").wait_for()
+        page.goto(f"{app.base}compare?variants=heel 0|heel 1")
+        page.get_by_text("What would tell", exact=False).first.wait_for()
+        page.wait_for_function("!document.querySelector('.task')")
+        folders = [str(project.result_folder(f"heel {n}")) for n in (0, 1)]
+        told = work.separated(folders, progress=silent)
+        assert told["open"]
+        for sentence in told["headline"]:
+            assert sentence.replace(" %", "\u00a0%") in page.locator(".lead").last.inner_text()
         assert page.complaints == []
 
 

@@ -300,13 +300,22 @@ def test_old_option_names_answer_with_a_note(capsys):
 
 
 def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_alike():
-    from underfoot.questions.comparison import _with_short_names
+    from underfoot.questions.comparison import with_short_names
 
     sums = ("shoe.outsole.sha256", "a" * 64, "b" * 64)
     apart = [("shoe.outsole.file", "/x/one.stl", "/x/two.stl"), sums]
-    assert _with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
+    assert with_short_names(apart) == [("shoe.outsole.file", "one.stl", "two.stl")]
     alike = [("shoe.outsole.file", "/x/one.stl", "/y/one.stl"), sums]
-    assert _with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
-    assert _with_short_names(alike)[0] == alike[0]
+    assert with_short_names(alike)[1] == ("shoe.outsole.sha256", "a" * 8, "b" * 8)
+    assert with_short_names(alike)[0] == alike[0]
     changed = [sums]
-    assert _with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]
+    assert with_short_names(changed) == [("shoe.outsole.sha256", "a" * 8, "b" * 8)]
+
+
+def test_breaches_begin_with_what_their_model_is_for():
+    from underfoot.compute.summary import in_words
+
+    pair, own = in_words(["pair: speed 5 m/s is outside the tested range", "mine: a is outside b"])
+    assert pair.startswith("The friction of this sole on this floor: speed 5 m/s")
+    assert "pair:" not in pair
+    assert own == "mine: a is outside b"

@@ -9,7 +9,7 @@ from nicegui import ui
 
 from underfoot.core.units import SYSTEMS
 
-from .jobs import Jobs, Task
+from .jobs import RUNNING, Jobs, Task
 from .project import Project
 from .projects import Servers
 from .session import Exchange, Page, Session
@@ -27,6 +27,8 @@ HEAD = """
 """
 LOOK = 0.5
 """s between two looks at the jobs."""
+MOST_SHOWN = 12
+"""Jobs that the menu shows, those that compute first, then those that wait."""
 
 
 def open_session(
@@ -120,13 +122,24 @@ def _jobs_button(session: Session) -> None:
         button.text = text("jobs.open", count=count) if count else text("jobs.none")
         listed.clear()
         with listed:
-            for task in reversed(jobs.tasks.values()):
+            tasks = sorted(jobs.tasks.values(), key=_place)
+            for task in tasks[:MOST_SHOWN]:
                 _job_row(session, task)
+            if count > 1:
+                stop = ui.button(text("jobs.stop_all"), on_click=lambda: jobs.cancel_all())
+                stop.props("flat dense no-caps")
+            if len(tasks) > MOST_SHOWN:
+                ui.label(text("jobs.more", count=len(tasks) - MOST_SHOWN)).classes("soft")
             if not jobs.tasks:
                 ui.label(text("jobs.empty")).classes("soft")
 
     look()
     ui.timer(LOOK, look)
+
+
+def _place(task: Task) -> tuple[bool, bool, int]:
+    """Return where a job stands: what computes, what waits in its order, then the newest."""
+    return task.state != RUNNING, not task.open, task.number if task.open else -task.number
 
 
 def _job_row(session: Session, task: Task) -> None:

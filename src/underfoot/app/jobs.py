@@ -36,7 +36,7 @@ STOPPED, FAILED, INTERRUPTED = "stopped", "failed", "interrupted"
 PROJECT = "{project}"
 """What stands for the project's folder in ``jobs.jsonl``: a project may be copied or moved."""
 SHOWN = 50
-"""Jobs that are kept in mind, the newest."""
+"""Ended jobs that are kept in mind, the newest."""
 
 
 class Lane:
@@ -121,6 +121,7 @@ class Task:
         answer: What the function returned, while the server runs.
         arguments, options: What the function takes, plain data.
         then: Title, function and arguments of what is queued when it is done.
+        first: Comes before those that wait and are not.
     """
 
     number: int
@@ -137,6 +138,7 @@ class Task:
     arguments: Sequence[Any] = ()
     options: dict[str, Any] = field(default_factory=dict)
     then: Sequence[Any] = ()
+    first: bool = False
 
     @property
     def open(self) -> bool:
@@ -184,17 +186,22 @@ class Jobs:
         *args: Any,
         about: str = "",
         then: Sequence[Any] = (),
+        first: bool = False,
         **options: Any,
     ) -> Task:
         """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
 
         The function writes what is to last into the project's folder; what it takes is plain data.
-        ``then`` (title, function, arguments) is queued when it is done, whoever looks.
+        ``then`` (title, function, arguments) is queued when it is done, whoever looks. ``first``:
+        before those that wait.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(number, title, function, about, arguments=args, options=options, then=then)
+        task = Task(
+            number, title, function, about, arguments=args, options=options, then=then, first=first
+        )
         self.tasks[number] = task
-        self._waiting.append(task)
+        waits = [first and not other.first for other in self._waiting]
+        self._waiting.insert(waits.index(True) if True in waits else len(waits), task)
         self._changed(task)
         self._arrived.set()
         return task
@@ -207,9 +214,15 @@ class Jobs:
         elif task.state == RUNNING:
             self._lane(task.module).stop()
 
+    def cancel_all(self, function: str = "") -> None:
+        """Stop all tasks that wait or run, those of one function if it is named."""
+        for task in sorted(self.tasks.values(), key=lambda task: task.state == RUNNING):
+            if not function or task.function == function:
+                self.cancel(task)
+
     def again(self, task: Task) -> Task:
         """Queue a task once more."""
-        about = {"about": task.about, "then": task.then, **task.options}
+        about = {"about": task.about, "then": task.then, "first": task.first, **task.options}
         return self.submit(task.title, task.function, *task.arguments, **about)
 
     def latest(self, about: str, function: str) -> Task | None:
@@ -285,9 +298,8 @@ class Jobs:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
             append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
-        for number in list(self.tasks)[:-SHOWN]:
-            if not self.tasks[number].open:
-                del self.tasks[number]
+        for number in [n for n, each in self.tasks.items() if not each.open][:-SHOWN]:
+            del self.tasks[number]
 
     def _read(self) -> None:
         for line in lines(self._file):
@@ -295,7 +307,7 @@ class Jobs:
                 here = _moved(line, PROJECT, str(self._file.parent))
                 fields = {name: value for name, value in here.items() if name in KEPT}
                 self.tasks[line["number"]] = Task(**{"title": "", **fields})
-        for task in self.tasks.values():
+        for task in list(self.tasks.values()):  # old ones are forgotten meanwhile
             if task.open:
                 self._end(task, INTERRUPTED)
         self.tasks = dict(list(self.tasks.items())[-SHOWN:])

@@ -319,10 +319,17 @@ class Project:
         return path
 
     def _noticed(self, name: str) -> _States:
-        """Return the states of a variant, with what another program wrote as one of them."""
+        """Return the states of a variant, with what another program wrote as one of them.
+
+        Where the history can't be written now (a full disk, a folder to read only) it is tried
+        again with the next question: who only looks is not stopped.
+        """
         states, text = self._states.setdefault(name, _States()), self.text(name)
         if states.at < 0 or states.texts[states.at] != text:
-            self._record(name, "set", text)
+            try:
+                self._record(name, "set", text)
+            except OSError:
+                states = _States(list(states.texts), states.at)
             states.add(text)
         return states
 

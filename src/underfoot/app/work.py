@@ -22,9 +22,10 @@ from underfoot.compute.run import run as result_of
 from underfoot.compute.sole import bottom_surface
 from underfoot.compute.summary import friction_limit
 from underfoot.core import Progress, SourcedValue
-from underfoot.core.errors import UnderfootError
 from underfoot.core.fields import Fields
 from underfoot.core.presentation import Presentable, quantity_text
+from underfoot.questions.comparison import Comparison, compare
+from underfoot.questions.order import Verdict
 from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.questions.walked import worn_pair
@@ -139,23 +140,36 @@ def worn(path: str, folder: str, pair: str, *, progress: Progress) -> None:
     put_language(write_report(series, folder, overwrite=True, further=further).page)
 
 
+def separated(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
+    """Return the order of stored results in words and what would tell it where it is open.
+
+    That is computed under other fluids, angles and worn, as ``underfoot compare`` does.
+    """
+    return compared(folders, separate=True, progress=progress)[1]
+
+
+def compared(
+    folders: Sequence[str], *, separate: bool, progress: Progress
+) -> tuple[Comparison, dict[str, Any]]:
+    """Return the comparison of stored results, and its words and tables beside that of numbers."""
+    # a result has the name of its folder: a variant that was renamed keeps what was computed
+    results = [replace(Result.load(folder), name=Path(folder).name) for folder in folders]
+    found = compare(*results, separate=separate, progress=progress)
+    words = presented(found)
+    return found, {
+        "headline": words["headline"],
+        "cautions": words["cautions"],
+        "tables": words["tables"][1 + bool(found.ranking) :],  # numbers stand in a table of rows
+        "open": found.order is not None and found.order.verdict is Verdict.OPEN,
+    }
+
+
 def advised(path: str, folder: str, *, progress: Progress) -> None:
     """Add what would help to a stored result of a case, as ``underfoot run`` does after it."""
     result, case = Result.load(folder), Case.load(path)
     if result.usable and result.provenance.case_hash == case.hash:
         advice = risk_assessment(case, result=result, progress=progress)
         put_language(write_report(result, folder, overwrite=True, advice=advice).page)
-
-
-def verdicts(folders: Sequence[str], *, progress: Progress) -> list[tuple[str, str]]:
-    """Return the verdict of each stored result with its words; empty where there is none."""
-    found = []
-    for folder in folders:
-        try:
-            found.append(Result.load(folder).verdict())
-        except UnderfootError:
-            found.append(("", ""))
-    return found
 
 
 def answer(folder: str, *, progress: Progress) -> dict[str, Any]:

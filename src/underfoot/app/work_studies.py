@@ -13,12 +13,12 @@ from underfoot.core import Progress
 from underfoot.core.html import png
 from underfoot.core.page import Section, page_part
 from underfoot.core.pool import available_processors
-from underfoot.core.presentation import percent, value_text
+from underfoot.core.presentation import percent
 from underfoot.explore import Study
 from underfoot.explore.check import study_check
 from underfoot.explore.status import study_status
 from underfoot.explore.study_file import flat_paths
-from underfoot.questions.comparison import chance_higher, compare
+from underfoot.questions.comparison import chance_higher
 from underfoot.report.design_study import design_sole, shown, write_study_report
 from underfoot.report.dispatch import figures, sections
 from underfoot.report.live_study import live_sections, live_study, with_live_page
@@ -27,10 +27,8 @@ from underfoot.report.sole_export import export_result
 from underfoot.report.viewer import scene_section, viewer_scene
 
 from .text import put_language
-from .work import Drawn, presented
+from .work import Drawn, compared, presented
 
-COLUMNS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
-"""Numbers of a result that the table of a comparison can be sorted by."""
 TRIED = 12
 """Cases that are built while a study file is changed, to see which can't be."""
 
@@ -97,19 +95,12 @@ def design(file: str, folder: str, number: int, *, progress: Progress) -> dict[s
 
 
 def comparison(folders: Sequence[str], *, progress: Progress) -> dict[str, Any]:
-    """Return stored results side by side: words, a row each, every pair, and the page's part."""
-    # a result has the name of its folder: a variant that was renamed keeps what was computed
-    compared = compare(*(replace(Result.load(f), name=Path(f).name) for f in folders))
-    rows = []
-    for letter, result in zip(compared.letters, compared.results, strict=True):
-        known = {name: result.scalars[name] for name in COLUMNS if name in result.scalars}
-        numbers = {name: each.value for name, each in known.items()}
-        texts = {f"{name}_text": value_text(name, each) for name, each in known.items()}
-        rows.append({"letter": letter, "name": result.name, **numbers, **texts})
-    chances = [[_chance(one, other) for other in compared.results] for one in compared.results]
-    surfaces = [surface_of_result(result) for result in compared.results]
-    html = scene_section(viewer_scene(compared.results, surfaces))
-    return {**presented(compared), "rows": rows, "chances": chances, "html": html}
+    """Return stored results side by side: words, every pair, and the page's part."""
+    found, words = compared(folders, separate=False, progress=progress)
+    chances = [[_chance(one, other) for other in found.results] for one in found.results]
+    surfaces = [surface_of_result(result) for result in found.results]
+    html = scene_section(viewer_scene(found.results, surfaces))
+    return {**words, "letters": list(found.letters), "chances": chances, "html": html}
 
 
 def exported(folder: str, file: str, *, progress: Progress) -> str:

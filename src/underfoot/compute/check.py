@@ -17,7 +17,7 @@ from underfoot.sole_contact.cost import Cost, megabytes
 from .positions import run_cost
 from .resolve import resolved
 from .sole import outsole_notes
-from .summary import ranked_assumptions
+from .summary import in_words, ranked_assumptions
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -74,7 +74,7 @@ class CaseCheck(Presentable):
 
     def remarks(self) -> dict[str, Sequence[str]]:
         return {
-            "Outside the tested range, as far as it shows before solving": self.breaches,
+            "Outside the tested range, as far as it shows before solving": in_words(self.breaches),
             "Assumptions": ranked_assumptions((*assumptions(self.case), *outsole_notes(self.case))),
             "Read from an older version of case files": tuple(self.case.changes),
         }

@@ -261,6 +261,19 @@ def beyond_tests(models: Iterable[str]) -> str:
     return f"Beyond what was tested: {', '.join(named)}."
 
 
+def in_words(breaches: Iterable[str]) -> tuple[str, ...]:
+    """Return breaches of tested ranges that begin with what their model is for; its name ends them.
+
+    A model that ``PARTS`` does not know keeps its name in front.
+    """
+    told = []
+    for breach in breaches:
+        name, _, what = breach.partition(": ")
+        part = PARTS.get(name, "")
+        told.append(f"{part[:1].upper()}{part[1:]}: {what} [{name}]" if part else breach)
+    return tuple(told)
+
+
 def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Table:
     """Return label, value with uncertainty, and remark of every quantity of a result."""
     rows: list[tuple[str, str, str]] = []

@@ -117,7 +117,7 @@ class Comparison(Presentable):
             return (
                 f"{better} and {other} are equal for every purpose: COF {apart} apart "
                 f"({sure} that the first has more), too small to see. "
-                f"Readings of one tester repeat within {SEEN:.0%}.",
+                f"Readings of one tester repeat within {100 * SEEN:.0f} %.",
                 self._different(),
             )
         if verdict is not Verdict.HIGHER and self.order is not None:
@@ -133,7 +133,8 @@ class Comparison(Presentable):
 
     def _telling(self, least: float) -> tuple[str, ...]:
         """Return what would tell an order that is open, and what a tester could see of it."""
-        seen = f"The smallest difference a tester would see is {SEEN * least:.3f} ({SEEN:.0%})."
+        least, share = SEEN * least, f"{100 * SEEN:.0f} %"
+        seen = f"The smallest difference a tester would see is {least:.3f} ({share})."
         if not self.separations or self.order is None:
             return (seen,)
         best = self.separations[0]
@@ -170,7 +171,7 @@ class Comparison(Presentable):
                 for rank in self.ranking
             ],
         )
-        rows = [tuple(map(_shortened, row)) for row in _with_short_names(self.differences)]
+        rows = [tuple(map(_shortened, row)) for row in with_short_names(self.differences)]
         inputs = Table("Inputs that differ", ("Input", *self.letters), rows)
         steps = Table(
             "What would tell the two highest apart",
@@ -327,7 +328,11 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 def case_differences(cases: Sequence[Case]) -> list[tuple[str, ...]]:
     """Return (path, value in each case) of the inputs in which the cases are not all alike."""
-    tables = [{path: value for path, value, _ in case.rows()} for case in cases]
+    return differences([{path: value for path, value, _ in case.rows()} for case in cases])
+
+
+def differences(tables: Sequence[Mapping[str, str]]) -> list[tuple[str, ...]]:
+    """Return (key, value in each table) of what is not alike in all tables; "-" where missing."""
     paths = dict.fromkeys(path for table in tables for path in table)
     rows = [(path, *(table.get(path, "-") for table in tables)) for path in paths]
     return [row for row in rows if len(set(row[1:])) > 1]
@@ -350,7 +355,7 @@ def _ranking(results: Sequence[Result]) -> tuple[Rank, ...]:
     for place, (letter, result) in enumerate(order, start=1):
         cof = result.scalars["cof"]
         chance = chance_higher(result, order[place][1]) if place < len(order) else None
-        ranks.append(Rank(letter, result.name, cof, _interval(cof), chance))
+        ranks.append(Rank(letter, result.name, cof, interval_95(cof), chance))
     return tuple(ranks)
 
 
@@ -378,7 +383,8 @@ def _shared_draws(first: Result, second: Result) -> tuple[Array, Array] | None:
     return np.asarray(both[0].values), np.asarray(both[1].values)
 
 
-def _interval(scalar: SourcedValue) -> tuple[float, float] | None:
+def interval_95(scalar: SourcedValue) -> tuple[float, float] | None:
+    """Return the 95 % interval of a value, from its standard deviation where it has no other."""
     if scalar.interval is not None:
         return scalar.interval
     if scalar.value is None or scalar.uncertainty is None:
@@ -459,7 +465,7 @@ def _chance(probability: float | None, unknown: str) -> str:
     return drawn_probability_text(probability)
 
 
-def _with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+def with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """Return rows with files by their names; a checksum only where the names do not tell.
 
     Result files keep both in full.

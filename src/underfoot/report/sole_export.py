@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
+from underfoot.core.fields import Fields
 from underfoot.core.optional import optional_module
+from underfoot.core.presentation import quantity_text
 
 from .designed_sole import DesignedSole
 from .drawn_sole import DrawnSole, drawn_sole
+from .light_mesh import light_mesh, spacing_for
 from .quantities import AREAS, Quantity, quantities, raw, scale, shown
+from .results import designed_surface
 from .sole_mesh import SoleMesh, sole_mesh
+from .surface_mesh import TOLERANCE, SurfaceMesh, surface_mesh
 
 if TYPE_CHECKING:
+    from underfoot.case import Case
     from underfoot.compute.result import Result
 
 RUBBER = (148, 152, 156, 255)
@@ -48,18 +55,48 @@ class Exported:
         return f"{self.path}: {lengths}; fields: {fields}{colours}{told}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Scene:
-    """A sole with its fields, ready to be written."""
+    """A sole with its fields, ready to be written; ``case`` where its own sole can be made."""
 
     name: str
     sole: DrawnSole
-    mesh: SoleMesh
+    pressed: bool
     values: dict[str, NDArray[np.float64]]
     units: dict[str, str]
-    colours: NDArray[np.uint8]
-    title: str
+    quantity: Quantity
+    case: Case | None
     remark: str
+
+    @property
+    def title(self) -> str:
+        """What the colours show."""
+        return f"{self.quantity.title}, {self.quantity.unit}"
+
+    @cached_property
+    def mesh(self) -> SoleMesh:
+        """A face for every cell."""
+        return sole_mesh(self.sole, pressed=self.pressed)
+
+    @cached_property
+    def picture(self) -> NDArray[np.uint8]:
+        """Colour (RGBA) of every cell, as the page shows the quantity."""
+        return _colours(shown(self.values[self.quantity.name], self.quantity), self.quantity)
+
+    @property
+    def colours(self) -> NDArray[np.uint8]:
+        """Colour of every corner of the faces."""
+        cells = np.concatenate([self.picture.reshape(-1, 4), [RUBBER]]).astype(np.uint8)
+        return np.repeat(cells[self.mesh.cell], 4, axis=0)
+
+    def surface(self) -> tuple[SurfaceMesh, float]:
+        """Return the sole as few triangles, and within what (m) its lines are where cells end."""
+        sole = self.sole
+        if self.case is None:
+            made = surface_mesh(sole.x, sole.y, sole.height, sole.land)
+            return made, TOLERANCE * sole.spacing
+        side = spacing_for(sole)
+        return designed_surface(self.case, side), TOLERANCE * side
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""
@@ -111,38 +148,51 @@ def export_result(
     if field is not None and chosen.name != field:
         raise unknown_name("field", field, [each.name for each in fields], where="--field")
     made = _scene(result, fields, chosen, pressed)
-    return replace(write(made, path), remark=made.remark)
+    written = write(made, path)
+    return written if written.remark else replace(written, remark=made.remark)
 
 
 def _scene(
     result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
 ) -> _Scene:
     dataset = result.data
-    sole, values, remark = _fields(result, [each.name for each in quantities])
+    sole, values, remark, case = _fields(result, [each.name for each in quantities])
     if pressed and sole.pressed is None:
         raise DataError(
             "the result does not hold the shape of the pressed sole",
             where=result.name,
             remedy="It was made by an older version: run the case again",
         )
-    mesh = sole_mesh(sole, pressed=pressed)
     units = {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities}
+    area = np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)
     return _Scene(
         result.name,
         sole,
-        mesh,
-        values | {AREA: np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)},
+        pressed,
+        values | {AREA: area},
         units | {AREA: "m^2"},
-        _colours(shown(values[chosen.name], chosen), mesh, chosen),
-        f"{chosen.title}, {chosen.unit}",
-        remark,
+        chosen,
+        case,
+        "; ".join(filter(None, (remark, _position(dataset)))),
+    )
+
+
+def _position(dataset: Fields) -> str:
+    """Return of which position of the tread the fields are; empty where there is one alone."""
+    if "position_fluid_load" not in dataset or dataset["position_fluid_load"].values.size < 2:
+        return ""
+    loads, own = dataset["position_fluid_load"], dataset["position_fluid_load"].attrs
+    here, mean = quantity_text(own["as_described"], "N"), quantity_text(loads.values.mean(), "N")
+    return (
+        f"the fields are of the sole as the case describes it, one of {loads.values.size} "
+        f"positions or angles: {here} on the film there, {mean} in the mean"
     )
 
 
 def _fields(
     result: Result, names: list[str]
-) -> tuple[DrawnSole, dict[str, NDArray[np.float64]], str]:
-    """Return the sole, its fields (SI) and what there is to tell.
+) -> tuple[DrawnSole, dict[str, NDArray[np.float64]], str, Case | None]:
+    """Return the sole, its fields (SI), what there is to tell, and the case that draws the sole.
 
     The sole as designed; where its file is gone the solver's cells, on which a pressure is the load
     over the area of a whole cell.
@@ -151,7 +201,8 @@ def _fields(
 
     dataset = result.data
     try:
-        designed = DesignedSole.of_case(dataset, Case.from_text(result.case_text))
+        case = Case.from_text(result.case_text)
+        designed = DesignedSole.of_case(dataset, case)
     except UnderfootError as error:
         sole = drawn_sole(dataset)
         kept = {name: raw(dataset, name) for name in names}
@@ -159,24 +210,23 @@ def _fields(
             if AREAS[name] in dataset:
                 kept[name] = kept[name] * raw(dataset, AREAS[name])
         remark = f"drawn from the solver's cells, as the sole can't be made: {error}"
-        return sole, {name: sole.placed(field) for name, field in kept.items()}, remark
-    return designed.drawn, {name: designed.field(name) for name in names}, ""
+        return sole, {name: sole.placed(field) for name, field in kept.items()}, remark, None
+    return designed.drawn, {name: designed.field(name) for name in names}, "", case
 
 
-def _colours(values: NDArray[np.float64], mesh: SoleMesh, quantity: Quantity) -> NDArray[np.uint8]:
-    """Return the colour (RGBA) of every corner, as the page shows the quantity."""
+def _colours(values: NDArray[np.float64], quantity: Quantity) -> NDArray[np.uint8]:
+    """Return the colour (RGBA) of every value, as the page shows the quantity."""
     import matplotlib
 
     limits = scale([values.ravel()], quantity)
-    shown = np.append(values.ravel(), np.nan)[mesh.cell]
     if quantity.logarithmic:
-        share = np.log(shown / limits.low) / np.log(limits.high / limits.low)
+        share = np.log(values / limits.low) / np.log(limits.high / limits.low)
     else:
-        share = (shown - limits.low) / (limits.high - limits.low)
+        share = (values - limits.low) / (limits.high - limits.low)
     known = np.isfinite(share)
     table = matplotlib.colormaps[quantity.colours](np.clip(np.nan_to_num(share), 0, 1), bytes=True)
     table[~known] = RUBBER
-    return np.repeat(table, 4, axis=0)
+    return table
 
 
 def _surface(scene: _Scene, points: NDArray[np.float64]) -> Any:
@@ -185,18 +235,46 @@ def _surface(scene: _Scene, points: NDArray[np.float64]) -> Any:
 
 
 def _write_glb(scene: _Scene, path: Path) -> Exported:
-    # glTF: y up, z forward, so x is to the left
-    surface = _surface(scene, scene.mesh.points[:, [1, 2, 0]])
-    for name in scene.values:
-        surface.vertex_attributes[f"_{name.upper()}"] = scene.of_points(name)
-    surface.metadata["units"] = {f"_{name.upper()}": unit for name, unit in scene.units.items()}
-    surface.metadata["colours"] = scene.title
+    """Write few triangles with the colours as a picture on them, fields on their corners."""
     trimesh = optional_module("trimesh", "cad", WORK)
-    world = trimesh.Scene()
-    world.add_geometry(surface, node_name=scene.name, geom_name=scene.name)
-    path.write_bytes(world.export(file_type="glb", include_normals=False))
+    from PIL import Image
+
+    surface, within = scene.surface()
+    sole, values = scene.sole, {name: each for name, each in scene.values.items() if name != AREA}
+    light = light_mesh(surface, sole, values, pressed=scene.pressed)
+    # a rim of rubber around the cells: walls have its colour
+    picture = np.empty((sole.x.size + 2, sole.y.size + 2, 4), np.uint8)
+    picture[:] = RUBBER
+    picture[1:-1, 1:-1] = scene.picture
+    size = np.array(picture.shape[:2])
+    place = np.full((len(light.points), 2), 0.5) / size
+    ends = light.points[: light.below, :2] - [sole.x[0], sole.y[0]]
+    place[: light.below] = (ends / sole.spacing + 1.5) / size
+    colours = np.flip(picture.transpose(1, 0, 2), axis=0)
+    told = f"edges of lugs within {1e3 * within:.2f} mm"
+    told = "; ".join(filter(None, (told, scene.remark)))
+    material = trimesh.visual.material.PBRMaterial(
+        baseColorTexture=Image.fromarray(colours[..., :3]),
+        metallicFactor=0.0,
+        roughnessFactor=0.9,
+        doubleSided=True,
+    )
+    # glTF: y up, z forward, so x is to the left
+    mesh = trimesh.Trimesh(
+        light.points[:, [1, 2, 0]],
+        light.triangles,
+        process=False,
+        visual=trimesh.visual.TextureVisuals(uv=place, material=material),
+    )
     fields = {f"_{name.upper()}": unit for name, unit in scene.units.items()}
-    return Exported(path, "m", "y up, z forward", scene.title, fields)
+    for name in scene.values:
+        values = light.area if name == AREA else light.fields[name]
+        mesh.vertex_attributes[f"_{name.upper()}"] = values.astype(np.float32)
+    mesh.metadata |= {"units": fields, "colours": scene.title, "remark": told}
+    world = trimesh.Scene()
+    world.add_geometry(mesh, node_name=scene.name, geom_name=scene.name)
+    path.write_bytes(world.export(file_type="glb", include_normals=False))
+    return Exported(path, "m", "y up, z forward", scene.title, fields, told)
 
 
 def _write_ply(scene: _Scene, path: Path) -> Exported:
@@ -205,6 +283,7 @@ def _write_ply(scene: _Scene, path: Path) -> Exported:
         surface.vertex_attributes[name] = scene.of_points(name)
     data = surface.export(file_type="ply", include_attributes=True)
     header = ["lengths in mm, z up, x forward", f"colours: {scene.title}"]
+    header += [f"remark: {scene.remark}"] if scene.remark else []
     header += [f"{name} in {unit}" for name, unit in scene.units.items()]
     head, _, body = data.partition(b"\n")  # "ply"; the comments follow the line of the format
     kind, _, rest = body.partition(b"\n")
@@ -223,8 +302,15 @@ def _write_obj(scene: _Scene, path: Path) -> Exported:
 def _write_vtu(scene: _Scene, path: Path) -> Exported:
     meshio = optional_module("meshio", "paraview", WORK)
     fields = {f"{name} ({scene.units[name]})": [scene.of_faces(name)] for name in scene.values}
+    for name in {AREA, *AREAS} & {*scene.values}:  # no nan in what is summed over an area
+        fields[f"{name} ({scene.units[name]})"] = [np.nan_to_num(scene.of_faces(name))]
+    fields["outside (1)"] = [(scene.mesh.cell >= 0).astype(float)]
     quads = [("quad", scene.mesh.quads)]
     meshio.Mesh(scene.mesh.points, quads, cell_data=fields).write(str(path))
+    if scene.remark:
+        head, line, rest = path.read_bytes().partition(b"?>\n")
+        remark = scene.remark.replace("--", "-").encode("ascii", "replace")
+        path.write_bytes(head + line + b"<!-- " + remark + b" -->\n" + rest)
     return Exported(path, "m", "z up, x forward", "", scene.units)
 
 

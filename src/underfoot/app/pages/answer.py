@@ -49,8 +49,11 @@ def build(session: Session) -> None:
         _Answer(session, name, case).show()
 
 
-def begin_run(session: Session, name: str) -> Task:
-    """Queue the full run of a variant as its file says; one of these inputs is taken as it is."""
+def begin_run(session: Session, name: str, *, later: bool = False) -> Task:
+    """Queue the full run of a variant as its file says; one of these inputs is taken as it is.
+
+    It comes before those that wait, and what would help follows it; not so one of many (``later``).
+    """
     project, job = session.project, session.text("answer.job")
     task = session.jobs.latest(name, RUN)
     if task is not None and task.open:
@@ -58,8 +61,10 @@ def begin_run(session: Session, name: str) -> Task:
             return task
         session.jobs.cancel(task)  # the file has changed since it began
     arguments = str(project.path(name)), str(project.result_folder(name))
+    if later:
+        return session.submit(job, RUN, *arguments, about=name)
     help_job = (session.text("answer.help_job"), ADVICE, *arguments)
-    return session.submit(job, RUN, *arguments, about=name, then=help_job)
+    return session.submit(job, RUN, *arguments, about=name, then=help_job, first=True)
 
 
 def example(session: Session) -> None:
@@ -366,6 +371,7 @@ class _Answer:
                     ui.label(self.text("answer.help_waits")).classes("soft")
             else:
                 self.helped.deactivate()
+                self._offer_help(task)
             return
         self.helped.deactivate()
         self.help.clear()
@@ -395,6 +401,23 @@ class _Answer:
                 with ui.expansion(self.text("answer.tried")).classes("soft"):
                     for message in rest:
                         ui.label(message).classes("soft")
+
+    def _offer_help(self, task: Task | None) -> None:
+        """Offer to simulate what would help where nothing has: of many runs at once none does."""
+        project = self.session.project
+        if (task is not None and task.state == DONE) or not project.is_current(self.name):
+            return
+
+        def begin() -> None:
+            files = str(project.path(self.name)), str(self.folder)
+            title = self.text("answer.help_job")
+            self.session.submit(title, ADVICE, *files, about=self.name, first=True)
+            self.helped.activate()
+            self._helps()
+
+        with self.help:
+            button = ui.button(self.text("answer.help_begin"), on_click=begin)
+            button.props("no-caps outline")
 
     def _change(self, each: dict[str, Any], now: dict[str, Any]) -> str:
         slip = now["slip_probability"]["value"]

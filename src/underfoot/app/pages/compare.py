@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -12,14 +11,14 @@ from underfoot.core import InputError
 
 from ..components import SoleView, sentences, table, task_line, title
 from ..jobs import DONE, Task
+from ..result_table import ResultTable
 from ..session import Session
 from .answer import begin_run
 
 ROUTE = "/compare"
 WORK, EQUAL = "underfoot.app.work_studies", "underfoot.app.work_sole:equal_land"
 MOST = 12
-COLUMNS = ("letter", "name", "cof", "slip_probability", "fluid_load", "peak_fluid_pressure",
-           "contact_area")  # fmt: skip
+SEPARATED = "underfoot.app.work:separated"
 
 
 def build(session: Session) -> None:
@@ -43,7 +42,6 @@ class _Compare:
             self.choice.props(f"max-values={MOST} translate=no").classes("compare-choice")
             self.choice.on_value_change(self.show)
             for key, icon, action in (
-                ("csv", "table_view", self._csv),
                 ("glb", "view_in_ar", self._glb),
                 ("equal", "balance", self._equal_land),
                 ("pdf", "print", lambda: ui.run_javascript("window.print()")),
@@ -53,8 +51,8 @@ class _Compare:
         self.equal = ui.element("div").props('role="status"')
         self.summary = ui.element("div").props('role="status"')
         self.sole = SoleView(session)
+        self.table = ResultTable(session, "comparison", self._entries, lettered=True)
         self.rest = ui.element("div")
-        self.rows: list[dict[str, Any]] = []
         ui.timer(0, self.show, once=True)
         states = session.project.state
         session.follow(lambda: [states(name) for name in self.choice.value], self.show)
@@ -63,15 +61,32 @@ class _Compare:
         """Return the folders of the results that are chosen."""
         return [str(self.session.project.result_folder(name)) for name in self.choice.value]
 
+    def _entries(self) -> list[tuple[str, str, str]]:
+        """Return what is compared: the inputs are those that were computed."""
+        named = zip(self.choice.value, self.folders(), strict=True)
+        return [(name, str(Path(folder) / "case.toml"), folder) for name, folder in named]
+
     async def show(self) -> None:
         """Show what is chosen."""
         if len(self.choice.value) < 2:
             return
         comparison = await self.session.ask(f"{WORK}:comparison", self.folders())
-        self.rows = comparison["rows"]
-        self.summary.clear()
         self.rest.clear()
         self.sole.show(comparison["html"])
+        await self.table.show()
+        with self.rest:
+            letters = comparison["letters"]
+            rows = [[a, *row] for a, row in zip(letters, comparison["chances"], strict=True)]
+            table({"title": self.text("compare.chances"), "columns": ["", *letters], "rows": rows})
+            self.inputs = ui.element("div")
+        self._say(comparison)
+        if comparison["open"]:
+            self._separate()
+
+    def _say(self, comparison: dict[str, Any]) -> None:
+        """Say the order, what would tell it, and in what the inputs differ."""
+        self.summary.clear()
+        self.inputs.clear()
         with self.summary:
             for name in self.choice.value:
                 if not self.session.project.is_current(name):
@@ -79,13 +94,28 @@ class _Compare:
             headline = " ".join(comparison["headline"]).replace(" %", "\u00a0%")
             ui.label(headline).classes("lead")
             sentences(comparison["cautions"], "soft")
-        with self.rest:
-            self._sortable()
-            letters = [row["letter"] for row in self.rows]
-            rows = [[a, *row] for a, row in zip(letters, comparison["chances"], strict=True)]
-            table({"title": self.text("compare.chances"), "columns": ["", *letters], "rows": rows})
-            for each in comparison["tables"][-1:]:
+        with self.inputs:
+            for each in comparison["tables"]:
                 table(each)
+
+    def _separate(self) -> None:
+        """Compute what would tell an order that is open, once for the same results."""
+        chosen, project = list(self.choice.value), self.session.project
+        about = " | ".join(chosen)
+        newest = max(
+            project.result_folder(n).joinpath("result.json").stat().st_mtime for n in chosen
+        )
+        task = self.session.jobs.latest(about, SEPARATED)
+        if task is None or not (task.open or task.answer) or task.began < newest:
+            words = self.text("compare.separate")
+            task = self.session.submit(words, SEPARATED, self.folders(), about=about, first=True)
+
+        async def ended(done: Task) -> None:
+            if done.answer and self.choice.value == chosen:
+                self._say(done.answer)
+
+        with self.summary:
+            task_line(self.session, task, ended)
 
     async def _equal_land(self) -> None:
         """Make a variant of the second with the land of the first, compute and compare it."""
@@ -129,29 +159,6 @@ class _Compare:
             button.props("flat no-caps dense data-step=undo")
             task = begin_run(self.session, new)
             task_line(self.session, task, ended)
-
-    def _sortable(self) -> None:
-        columns = [
-            {
-                "name": key,
-                "label": self.text(f"compare.{key}"),
-                "field": key,
-                "sortable": True,
-                "align": "left",
-            }
-            for key in COLUMNS
-            if any(row.get(key) is not None for row in self.rows)
-        ]
-        made = ui.table(columns=columns, rows=self.rows, row_key="letter").props("flat dense")
-        for key in COLUMNS[2:]:  # sorted by the number, shown with unit and interval
-            made.add_slot(f"body-cell-{key}", f"<q-td>{{{{ props.row.{key}_text }}}}</q-td>")
-
-    def _csv(self) -> None:
-        stream = io.StringIO()
-        writer: Any = csv.DictWriter(stream, COLUMNS, extrasaction="ignore")
-        writer.writeheader()
-        writer.writerows(self.rows)
-        ui.download.content(stream.getvalue(), "comparison.csv")
 
     async def _glb(self) -> None:
         for name, folder in zip(self.choice.value, self.folders(), strict=True):

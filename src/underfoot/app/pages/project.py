@@ -1,4 +1,4 @@
-"""The report of a project: its variants on one page to print; and the way to another project."""
+"""The report of a project: its variants in one table, computed in one click; other projects."""
 
 from __future__ import annotations
 
@@ -11,34 +11,68 @@ from nicegui import ui
 from underfoot.core import InputError
 
 from ..components import title
+from ..jobs import DONE, FAILED, RUNNING, Task
 from ..projects import known_projects
-from ..session import Session, address
+from ..result_table import ResultTable
+from ..session import LOOK, Session
+from .answer import RUN, begin_run
 
 ROUTE = "/project"
-COLUMNS = ("variant", "state", "verdict", "cof", "interval", "slips")
+ROWS_A_SECOND = 50
+"""Rows that are shown anew a second, at most: a large table is looked at less often."""
 
 
 def build(session: Session) -> None:
     """Show what is known of each variant, and the other projects of this person."""
     text, project = session.text, session.project
     title(project.name).props('translate="no"')
-    ui.label(text("project.lead", count=len(project.variants()), date=time.strftime("%Y-%m-%d")))
-    with ui.element("div").classes("row no-print"):
+    count = len(project.variants())
+    ui.label(text("project.lead", count=count, date=time.strftime("%Y-%m-%d")))
+    with ui.element("div").classes("bar-row no-print"):
+        compute = ui.button(text("project.compute"), icon="play_arrow")
+        compute.props("no-caps unelevated").disable()
         printed = ui.button(text("place.print"), icon="print")
         printed.on_click(lambda: ui.run_javascript("window.print()"))
         printed.props("flat no-caps dense")
-    place = ui.element("div")
+    progress = ui.element("div").classes("no-print")
+    table = ResultTable(
+        session,
+        project.name,
+        lambda: [(n, str(project.path(n)), str(project.result_folder(n))) for n in _names(session)],
+    )
+    missing: list[str] = []
+    shown = 0.0
 
     async def show() -> None:
-        names = project.variants()
-        folders = [str(project.result_folder(name)) for name in names]
-        answers = await session.ask("underfoot.app.work:verdicts", folders)
-        place.clear()
-        with place:
-            _rows(session, dict(zip(names, answers, strict=True)))
+        nonlocal shown
+        runs = _runs(session)
+        rows = await table.show({name: _words(session, task) for name, task in runs.items()})
+        waits = {name for name, task in runs.items() if task.open}
+        missing[:] = [row["name"] for row in rows if row["state"] in ("not_computed", "earlier")]
+        missing[:] = [name for name in missing if name not in waits]
+        compute.text = text("project.compute")
+        if missing:
+            compute.text = text("project.compute_some", count=len(missing))
+        compute.set_enabled(bool(missing))
+        shown = time.monotonic()
 
+    async def compute_all() -> None:
+        for name in missing:
+            begin_run(session, name, later=True)
+        _progress(session, progress)
+        await show()
+
+    compute.on_click(compute_all)
+    _progress(session, progress)
     ui.timer(0, show, once=True)
-    session.follow(lambda: [(name, *project.state(name)) for name in project.variants()], show)
+    session.follow(
+        lambda: (
+            [(name, *project.state(name)) for name in project.variants()],
+            [(task.number, task.state) for task in _runs(session).values()],
+        ),
+        show,
+        lambda: time.monotonic() - shown < len(table.rows) / ROWS_A_SECOND,
+    )
     if session.elsewhere is not None:
         with ui.element("section").classes("no-print"):
             title(text("project.others"), 2)
@@ -46,32 +80,50 @@ def build(session: Session) -> None:
             _others(session)
 
 
-def _rows(session: Session, verdicts: dict[str, list[str]]) -> None:
-    """Show a row a variant: no number stands without what it is of."""
-    text, project = session.text, session.project
-    with ui.element("div").classes("wide"), ui.element("table"):
-        with ui.element("thead"), ui.element("tr"):
-            for column in COLUMNS:
-                with ui.element("th").props('scope="col"'):
-                    ui.label(text(f"project.{column}"))
-        with ui.element("tbody"):
-            for name, (word, steps) in verdicts.items():
-                summary, current = project.summary(name), project.is_current(name)
-                cells = [text(f"answer.{word}") if word else "", "", "", steps]
-                if summary is not None and summary.cof is not None:
-                    cells[1] = f"{summary.cof:.3f}"
-                    if summary.low is not None and summary.high is not None:
-                        cells[2] = text("answer.between", low=f"{summary.low:.3f}",
-                                        high=f"{summary.high:.3f}")  # fmt: skip
-                state = "current" if current else "earlier" if summary else "not_computed"
-                with ui.element("tr"):
-                    with ui.element("th").props('scope="row" translate="no"'):
-                        ui.link(name, address("/answer", variant=name))
-                    with ui.element("td"):
-                        ui.label(text(f"project.{state}"))
-                    for cell in cells:
-                        with ui.element("td").classes("" if current else "stale"):
-                            ui.label(cell)
+def _names(session: Session) -> list[str]:
+    """Return the variants by name, so that rows stay in their places while others change."""
+    return sorted(session.project.variants(), key=str.casefold)
+
+
+def _runs(session: Session) -> dict[str, Task]:
+    """Return the newest run of each variant."""
+    return {task.about: task for task in session.jobs.tasks.values() if task.function == RUN}
+
+
+def _words(session: Session, task: Task) -> str:
+    """Return what a run does or why it has no result; empty where it is done."""
+    if task.state == DONE:
+        return ""
+    words = session.text(f"jobs.{task.state}")
+    return f"{words}: {task.problem}" if task.state == FAILED and task.problem else words
+
+
+def _progress(session: Session, place: ui.element) -> None:
+    """Show how far the runs are while there are any, whoever began them, and stop them all."""
+    text = session.text
+    place.clear()
+    with place, ui.element("div").classes("task").props('role="status"') as line:
+        label = ui.label("")
+        bar = ui.linear_progress(0.0, show_value=False)
+        bar.props(f'aria-label="{text("project.compute")}"')
+        stop = ui.button(text("project.stop")).props("flat dense no-caps")
+    stop.on_click(lambda: session.jobs.cancel_all(RUN))
+    most = 0
+
+    def look() -> None:
+        nonlocal most
+        left = [t for t in session.jobs.tasks.values() if t.function == RUN and t.open]
+        most = max(most, len(left)) if left else 0
+        line.set_visibility(bool(left))
+        if left:
+            done = most - len(left)
+            part = sum(task.fraction for task in left if task.state == RUNNING)
+            bar.value = (done + part) / most
+            now = next((task.about for task in left if task.state == RUNNING), "")
+            label.text = text("project.left", done=done, total=most, now=now)
+
+    look()
+    ui.timer(LOOK, look)
 
 
 def _others(session: Session) -> None:

@@ -54,16 +54,17 @@ def _door(session: Session, door: str) -> None:
 
 def _recent(session: Session) -> None:
     text, project = session.text, session.project
-    names = project.variants()[:MOST_RECENT]
     interrupted = [task for task in session.jobs.tasks.values() if task.state == "interrupted"]
     if interrupted:
-        about = ", ".join(dict.fromkeys(task.about for task in interrupted if task.about))
+        names = list(dict.fromkeys(task.about for task in interrupted if task.about))
+        about = ", ".join(names[:MOST_RECENT]) + " …" * (len(names) > MOST_RECENT)
         ui.label(text("start.interrupted", about=about)).classes("caution")
-    if not names:
+    recent = project.variants()[:MOST_RECENT]
+    if not recent:
         return
     title(text("start.recent"), 2)
     with ui.element("div").classes("recent"):
-        for name in names:
+        for name in recent:
             summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
                 ui.link(name, address("/design", variant=name)).props('translate="no"')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -494,10 +495,11 @@ def _value(section: str, fields: Mapping[str, str]) -> Any:
 
 
 def _plain(text: str) -> Any:
-    """Return a number where the text is one."""
+    """Return a number where the text is one; what a file can't hold (1e400, nan) stays text."""
     for kind in (int, float):
         try:
-            return kind(text)
+            number = kind(text)
         except ValueError:
             continue
+        return number if math.isfinite(number) else text
     return text

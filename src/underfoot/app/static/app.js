@@ -220,3 +220,33 @@ function askLive(id, address, soleId, keep) {
     input.addEventListener("change", () => { held = false; if (keep) rest(); else later(); });
   }
 }
+
+// A form that is built anew takes away the field that is typed in: the new one goes on with the text.
+let typing = null;
+const isField = (e) => e instanceof Element && e.matches("input:not([type=range]), textarea") && e.ariaLabel;
+addEventListener("focusin", ({ target }) => {
+  if (isField(target)) typing = { field: target, label: target.ariaLabel, text: null };
+});
+addEventListener("input", ({ target }) => {
+  if (isField(target)) typing = { field: target, label: target.ariaLabel, text: target.value };
+}, true);
+addEventListener("change", ({ target }) => setTimeout(() => { // a field that is taken away changes, too
+  if (typing && typing.field === target && target.isConnected) typing.text = null;
+}), true);
+addEventListener("focusout", ({ target }) => {
+  if (typing && typing.field === target && target.isConnected) setTimeout(() => {
+    if (typing && typing.field === target && target.isConnected) typing = null;
+  });
+});
+new MutationObserver(() => {
+  if (!typing || typing.field.isConnected) return;
+  const { label, text } = typing;
+  const field = [...document.querySelectorAll("input, textarea")]
+    .find((e) => isField(e) && e.ariaLabel === label && e.checkVisibility());
+  if (!field) return;
+  typing = null;
+  field.focus();
+  if (text === null) { field.select(); return; }
+  field.value = text;
+  field.dispatchEvent(new Event("input", { bubbles: true }));
+}).observe(document, { childList: true, subtree: true });
