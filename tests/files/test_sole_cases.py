@@ -123,7 +123,7 @@ BAD = {
         lambda: made.package(made.model(made.whole(), made.item(1), "milimeter")),
         r'"milimeter" is no unit.*millimeter',
     ),
-    "a required extension": ("3mf", required_extension, "needs the 3MF extension beam lattice"),
+    "a required extension": ("3mf", required_extension, "needs the 3MF extension beamlattice"),
     "objects in a circle": ("3mf", a_circle, "hold each other: 1 in 2 in 1"),
     "components that double": ("3mf", unfolding, "unfolds to more than"),
     "an archive that unpacks to a thousand times": ("3mf", packed_tightly, "200 times its size"),

@@ -306,6 +306,12 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     others = bodies.size[keep & ~plates, :2].max(axis=0, initial=0.0)
     plates &= (others > _ON_TABLE * bodies.size[:, :2]).all(axis=1)
     plates &= (bodies.size[:, :2] > _BIG[1] * others).all(axis=1)
+    rest = keep & ~plates
+    middle = (bodies.low + bodies.high)[:, 2] / 2
+    # what lies within the rest is a cavity or a core
+    plates &= (middle < bodies.low[rest, 2].min(initial=np.inf)) | (
+        middle > bodies.high[rest, 2].max(initial=-np.inf)
+    )
     if not plates.any():
         return keep, []
     rest = keep & ~plates
