@@ -86,7 +86,7 @@ _RADIANS = re.compile(r"rad(ians?)?(/s(ec)?|[.·*]?s(ec)?(\^?-1|⁻¹))")
 _SHEAR = re.compile(r"(^|[|\s(_])(G|J|η|eta)t?(?![a-z])|shear|schub|viscosity|viskosit", re.I)
 _YOUNG = re.compile(r"(^|[|\s(_])(E|D)t?(?![a-z])|young|tensile|dehn|zug|elongation|bending", re.I)
 _LOGARITHM = re.compile(
-    r"(?P<kind>ln|lg|log[_ ]?10|log)\s*(?:\((?P<inner>.+)\)\s*(?P<unit>[\[({/,].*)?"
+    r"(?P<kind>ln|lg|log[_ ]?10|log)\s*(?:\((?P<inner>.+?)\)\s*(?P<unit>[\[({/,].*)?"
     r"|[\s_]\s*(?P<rest>\S.*))",
     re.IGNORECASE,
 )
@@ -277,6 +277,21 @@ def _factor(number: float, unit: str, target: str, where: str) -> float:
 def quantity_of(name: str) -> str | None:
     """Return the quantity that a heading without its unit names, or None."""
     plain = re.sub(r"[’′`´]", "'", name.strip()).replace("″", "''").replace('"', "''")
+    if found := _named_by(plain):
+        return found
+    if len(plain) < 60:  # a symbol beside the word says the same: "Verlustfaktor tan δ"
+        for gap in re.finditer(r"[\s,]+", plain):
+            said = {_named_by(plain[: gap.start()]), _named_by(plain[gap.end() :])}
+            if len(said) == 1 and None not in said:
+                return said.pop()
+    parts = _BRACKETS.match(plain)
+    if parts and parts.group(1):
+        return quantity_of(parts.group(1)) or quantity_of(parts.group(2))
+    return None
+
+
+def _named_by(plain: str) -> str | None:
+    """Return the quantity of a symbol or of words alone."""
     if found := SYMBOLS.get(plain.replace(" ", "")):
         return found
     folded = re.sub(r"\s+", " ", plain.casefold()).strip()
@@ -286,9 +301,6 @@ def quantity_of(name: str) -> str | None:
         for pattern, quantity in WORDS:
             if re.fullmatch(pattern, candidate):
                 return quantity
-    parts = _BRACKETS.match(plain)
-    if parts and parts.group(1):
-        return quantity_of(parts.group(1)) or quantity_of(parts.group(2))
     return None
 
 
