@@ -1,6 +1,7 @@
 """Valid outsole files of known geometry: the right value from each, or a refusal that says why."""
 
 import io
+import json
 import tomllib
 import zipfile
 from pathlib import Path
@@ -106,6 +107,15 @@ def packed(asset):
     asset.json["extensionsRequired"] = ["EXT_meshopt_compression"]
 
 
+def packed_alone():
+    asset, name = made.plain(), "EXT_meshopt_compression"
+    for view in asset.json["bufferViews"]:
+        view |= {"buffer": 1, "extensions": {name: {"buffer": 0, "byteLength": 9}}}
+    asset.gltf("data:application/octet-stream;base64,AAAA")
+    asset.json["buffers"] += [{"byteLength": 9999, "extensions": {name: {"fallback": True}}}]
+    return json.dumps(asset.json).encode()
+
+
 def of_two_numbers(asset):
     position = asset.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
     asset.json["accessors"][position]["type"] = "VEC2"
@@ -154,6 +164,7 @@ BAD = {
         "shows no model: 1 support body",
     ),
     "a required compression": ("glb", lambda: a_glb(packed), "EXT_meshopt_compression"),
+    "a compression with a stand-in": ("gltf", packed_alone, "EXT_meshopt_compression"),
     "nodes in a circle": ("glb", lambda: a_glb(node_circle), "its nodes hold each other"),
     "a skin": ("glb", lambda: a_glb(skinned), "a skin that bends the mesh"),
     "a view beyond its buffer": ("glb", lambda: a_glb(cut_short), "reaches beyond its buffer"),
@@ -188,6 +199,11 @@ BAD = {
         "stl",
         lambda: made.text_stl({"a": made.triangles()}).replace(b".", b","),
         "decimal commas",
+    ),
+    "a text STL cut short between facets": (
+        "stl",
+        lambda: made.text_stl({"a": made.triangles()}, end=False).rpartition(b"  facet normal")[0],
+        "endsolid, and they leave its surface open",
     ),
     "single precision far off": (
         "stl",
