@@ -356,6 +356,21 @@ def test_crossed_lays_are_named_and_both_count(tmp_path, first, second, ratio, s
     assert "crossed lays" in " ".join(scan.headline())
 
 
+@pytest.mark.parametrize("waves", [0.8, 1.2, 1.5, 2.5, 4.5])
+@pytest.mark.parametrize("degrees", [0, 90, 30])
+def test_a_lay_of_few_waves_is_one_lay(waves, degrees):
+    # a window over so few waves turns some of their power by tens of degrees
+    x, y = np.meshgrid(np.arange(176) * 1e-5, np.arange(48) * 1e-5, indexing="ij")
+    across = np.radians(degrees + 90)
+    phase = 2 * np.pi * waves / 48e-5 * (x * np.cos(across) + y * np.sin(across))
+    found = texture(HeightMap(5e-6 * np.sin(phase), 1e-5))
+    assert found is not None
+    assert len(found.lays) <= 1
+    if waves > 1:
+        turned = (np.degrees(found.lays[0]) - degrees + 90) % 180 - 90
+        assert turned == pytest.approx(0.0, abs=6.0)
+
+
 def test_noise_of_single_points_has_no_lay():
     heights = np.random.default_rng(1).standard_normal((128, 160)) * 1e-6
     assert not texture(HeightMap(heights, 1e-5)).has_lay
