@@ -171,6 +171,25 @@ for _name in ("Floor", "a body of no known name"):
     form("obj", f"{_name} below")(
         lambda n=_name: obj([*parts(), floor()], group=lambda k: f"g {n}" if k == 21 else "g sole")
     )
+
+
+def halves():
+    """Heel and forepart of the sole, each with its lugs."""
+    made = []
+    for low, high, columns in ((0, 48, range(3)), (48, 80, range(3, 5))):
+        ring = np.array([(low, -32), (high, -32), (high, 32), (low, 32)], dtype=float)
+        made.append(
+            joined([prism(ring, 4.0, 9.0), *(lug(i, j) for i in columns for j in range(4))])
+        )
+    return made
+
+
+form("obj", "heel and forepart under a midsole")(
+    lambda: obj(
+        [*halves(), prism(np.array([(0, -32), (80, -32), (80, 32), (0, 32)], float), 9.0, 25.0)],
+        group="o part{}".format,
+    )
+)
 form("obj", "a last above, a floor below")(
     lambda: obj(
         [*parts(), tall_last(), floor()],

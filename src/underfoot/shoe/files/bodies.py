@@ -37,6 +37,7 @@ _BIG = (0.5, 0.4)  # of the longest body's extent along and across
 _SLENDER = 3.0  # height over width: a support, no lug
 _SAME = 0.03  # relative difference of the sizes of a pair
 _PARTED = 0.3  # of two bodies' heights that don't overlap: less is bodies that cross
+_BESIDE = 0.3  # of the shorter of two bodies: what they overlap at most, seen from above
 _SHEET = 1e-3  # of the length: a body thinner than it is a surface
 _CLEAR, _CLEARER = 0.03, 1.5  # share of channels that tells the ground's side, and its ratio
 _COARSE = 300  # cells along a body
@@ -384,7 +385,9 @@ def _without_stack(
         keep & ~big & (middle <= bodies.high[low_end, axis]),
         keep & ~big & (middle >= bodies.low[high_end, axis]),
     )
-    groups[0][low_end] = groups[1][high_end] = True
+    for each, end in zip(groups, (low_end, high_end), strict=True):
+        each[end] = True
+        each |= big & _level_with(bodies, end, axis)
     unit = mesh.unit or likely_unit(longest, float(sorted_size[big, 1].max()))
     ends = [_part(mesh, one) for one in groups]
     shares = [_treads(each, bodies.axes, axis, unit, longest)[n] for n, each in enumerate(ends)]
@@ -404,6 +407,14 @@ def _without_stack(
     taken = _taken(bodies, group, keep, "of a stack of bodies")
     begin = "" if sure else "Assumed: "
     return group, down, [f"{begin}{taken[:-1]}. It is {how}."]
+
+
+def _level_with(bodies: _Bodies, one: int, axis: int) -> Mask:
+    """Return the bodies at the height of one and beside it, as heel and forepart of a sole."""
+    overlap = np.minimum(bodies.high, bodies.high[one]) - np.maximum(bodies.low, bodies.low[one])
+    share = overlap / np.maximum(np.minimum(bodies.size, bodies.size[one]), 1e-12)
+    beside = np.delete(share, axis, axis=1).min(axis=1) < _BESIDE
+    return (share[:, axis] > 1 - _PARTED) & beside
 
 
 def _parting(low: Array, high: Array) -> float:
