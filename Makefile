@@ -10,7 +10,7 @@ PYTEST := $(BIN)/pytest --dist
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
+.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files mutants neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -35,6 +35,9 @@ fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repea
 
 fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for fewer
 	PYTHONPATH=tests $(BIN)/python tests/fuzz_files.py $(or $(COUNT),100000) $(SEED)
+
+mutants: $(READY)  ## 20 seeded faults of one room, and those that its quick tests let pass; ROOM=compute
+	PYTHONPATH=tests $(BIN)/python tests/mutants.py $(ROOM) --count $(or $(COUNT),20) --seed $(SEED)
 
 neighbours:  ## what other programs do with the rows of docs/reference/other_programs.md; WRITE=--write
 	python3 -m venv out/neighbours && out/neighbours/bin/pip install -q -r benchmarks/neighbours/requirements.txt

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError
-from underfoot.shoe import Facet, Flat, Heel, Tread, WearPlane, heel_map
+from underfoot.shoe import Facet, Flat, Heel, Sipes, Tread, WearPlane, heel_map
+from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.worn import (
     WalkingWear,
     WornMap,
@@ -217,3 +218,24 @@ def test_pressure_is_carried_across_a_wide_channel():
     pressure = np.where(sole.land, 2e5, 0.0)
     x = np.linspace(0.01, 0.05, 41)
     assert pressure_on_sole(wide, sole, pressure, 0.1, x, np.array([0.0])) == pytest.approx(2e5)
+
+
+def test_a_chamfer_that_wear_has_passed_is_gone():
+    tread = Tread("transverse", 10e-3, 4e-3, 4e-3, edge_chamfer=1e-3)
+    heel = Heel(length=0.06, width=0.06, rear_radius=0.01, outsole_thickness=0.02, tread=tread)
+    worn = replace(heel, wear=WearPlane(2e-3))
+    x, y = np.meshgrid(np.linspace(5e-3, 55e-3, 400), [0.0], indexing="ij")
+    height, land, _ = cut_heel(worn, x, y)
+    np.testing.assert_allclose(height[land], 2e-3, atol=1e-9)
+    new, land, _ = cut_heel(heel, x, y)
+    assert new[land].max() > 0.5e-3
+
+
+def test_a_fine_sipe_loses_what_the_lugs_lose():
+    tread = Tread("transverse", 10e-3, 4e-3, 4e-3, sipes=Sipes(0.4e-3, 3e-3, 5e-3))
+    heel = Heel(length=0.06, width=0.06, rear_radius=0.01, outsole_thickness=0.02, tread=tread)
+    depths = [
+        heel_map(replace(heel, wear=wear), shoe_angle=0.0, spacing=1e-3).slits.depth.max()
+        for wear in (None, WearPlane(2e-3))
+    ]
+    assert depths == pytest.approx([3e-3, 1e-3], abs=1e-6)

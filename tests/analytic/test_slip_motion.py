@@ -242,3 +242,12 @@ def test_peak_speed_is_the_largest_after_the_first_minimum(speed, peak):
     person = Walker(constant(0.2))
     motion = SlipMotion(person, time, speed, *[zeros] * 8, Status.CONVERGED, "full")
     assert motion.peak_speed == peak
+
+
+def test_rcof_of_a_history_is_that_of_braking():
+    time = np.linspace(0, 0.6, 61)
+    ratio = 0.2 * np.sin(np.pi * time / 0.3) * np.where(time < 0.3, 1, -1)
+    ratio[time > 0.3] += 0.35 * np.sin(np.pi * (time[time > 0.3] - 0.3) / 0.3)
+    history = GaitHistory("pushed off", time, np.ones(61), ratio)
+    assert history.ratio[history.time > 0.3].max() > 0.5
+    assert history.rcof == pytest.approx(0.2, rel=0.01)

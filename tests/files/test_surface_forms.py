@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from commands import called
 from underfoot.core import DataError
 from underfoot.core.missing import coded
 from underfoot.surface import (
@@ -24,6 +25,7 @@ from underfoot.surface import (
     read_surface,
     self_affine,
     squared,
+    write_surface,
 )
 from underfoot.surface.lay import texture
 
@@ -452,3 +454,36 @@ def test_oblong_cells_keep_their_axes_and_can_be_made_square(tmp_path):
     np.testing.assert_allclose(abs(square.heights[0, inside]), abs(wave[inside]), atol=2e-9)
     line = Profile(square.heights[0], square.spacing, resolution=4e-5)
     assert profile_roughness(line, 0.8e-3, sections=1).rq == pytest.approx(3.42e-6, rel=0.03)
+
+
+@pytest.mark.parametrize("ending", ["x3p", "sdf"])
+@pytest.mark.parametrize("sides", [(4e-6, 4e-6), (4e-6, 6e-6), (4e-6,)])
+def test_heights_that_are_written_are_read_by_us_and_by_surface_topography(tmp_path, ending, sides):
+    rng, shape = np.random.default_rng(3), (30, 20)[: len(sides)]
+    heights = 1e-6 * rng.standard_normal(shape)
+    surface = HeightMap(heights, *sides[:1], spacing_y=sides[1]) if len(sides) > 1 else Profile(
+        heights, *sides)  # fmt: skip
+    path = tmp_path / f"floor.{ending}"
+    write_surface(surface, path)
+    found = read_surface(path)
+    np.testing.assert_allclose(found.heights, heights, rtol=1e-12)
+    assert found.spacings == pytest.approx(sides, rel=1e-12)
+    if ending == "x3p" and len(sides) == 1:
+        return  # SurfaceTopography reads no profiles of X3P
+    other = pytest.importorskip("SurfaceTopography").read_topography(str(path))
+    metres = {"m": 1.0, "mm": 1e-3, "µm": 1e-6}[other.unit]
+    theirs = np.squeeze(other.heights()) * metres
+    np.testing.assert_allclose(theirs, heights, atol=1e-18)
+    assert np.multiply(other.physical_sizes, metres)[0] == pytest.approx(30 * sides[0], rel=1e-9)
+
+
+def test_the_command_writes_the_heights_it_read(tmp_path):
+    scan = tmp_path / "scan.csv"
+    z = np.sin(np.arange(400) / 3)
+    scan.write_text("x [um];z [um]\n" + "".join(f"{4 * k};{v:.6f}\n" for k, v in enumerate(z)))
+    out = tmp_path / "scan.x3p"
+    assert called("surface", str(scan), "--out", str(out)).returncode == 0
+    np.testing.assert_allclose(read_surface(out).heights, 1e-6 * z.round(6), atol=1e-15)
+    again = called("surface", str(scan), "--out", str(out))
+    assert again.returncode == 2
+    assert "exists" in again.stderr

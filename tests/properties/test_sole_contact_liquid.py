@@ -12,6 +12,7 @@ from underfoot.film import Conductance, Film, film_operator, film_pressure, upwi
 from underfoot.rough_contact.pressure_gap_law import ExponentialLaw
 from underfoot.shoe import Facet, Heel, Tread, heel_map
 from underfoot.sole_contact.compliance import half_space_compliance, layered_compliance
+from underfoot.sole_contact.march import March
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 
 MODULUS, TEN = 5e6, math.radians(10)
@@ -165,3 +166,15 @@ def test_suction_presses_the_contact():
     assert sucked.contact_load > plain.contact_load + 1.0
     with pytest.raises(InputError, match="cavity_pressure"):
         solved_heel(cavity_pressure=1.0)
+
+
+def test_a_film_deeper_than_the_pool_keeps_its_liquid():
+    gap = np.array([5e-5, 3e-4, 3e-4, 2e-2])
+    march = SimpleNamespace(
+        state=SimpleNamespace(gap=gap, fraction=np.array([1.0, 1.0, 0.5, 1.0])),
+        film=np.array([True, True, True, False]),
+        problem=SimpleNamespace(largest_gap=1e-2),
+        _pool_depth=1e-4,
+    )
+    # film: what it holds; beyond it the pool as it lay
+    assert March._content(march) == pytest.approx([5e-5, 3e-4, 1.5e-4, 1e-4])

@@ -1,6 +1,10 @@
 """Mixed models against R: lme4's fit with the tests of pbkrtest, by tests/data/mixed_models."""
 
 import csv
+import re
+import shutil
+import subprocess
+import sys
 from collections import defaultdict
 from pathlib import Path
 
@@ -17,6 +21,7 @@ from underfoot.trials.statistics import (
     told_apart,
     tukey_hsd,
 )
+from underfoot.trials.study.model_scripts import model_files
 
 DATA = Path(__file__).parents[1] / "data" / "mixed_models"
 
@@ -161,3 +166,42 @@ def test_plain_analysis_says_when_columns_depend():
     y = np.random.default_rng(0).normal(size=12)
     table = analysis_of_variance(y, {"a": ["x", "y"] * 6, "b": ["u", "v"] * 6}, ("a", "b"))
     assert table.model.dependent
+
+
+def scripts(folder, rows, shoe="shoe"):
+    """Write data and scripts of the model of ``rows``, the shoe under another name; return it."""
+    columns = {key: [row[key] for row in rows] for key in ("shoe", "floor", "side", "group")}
+    factors = {shoe if key == "shoe" else key: column
+               for key, column in columns.items() if len(set(column)) > 1}  # fmt: skip
+    values, persons = [float(row["y"]) for row in rows], [row["person"] for row in rows]
+    model = mixed_model(values, factors, persons)
+    made = model_files("mixed_rcof", "Mixed model", model, "RCOF (1)", values, factors, persons)
+    for name, text in made.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return model
+
+
+@pytest.mark.parametrize("name", list(stored("tests.csv")))
+def test_the_script_of_python_finds_the_numbers_again(tmp_path, name):
+    model = scripts(tmp_path, stored("trials.csv")[name], "1st shoe's sole")
+    command = [sys.executable, tmp_path / "mixed_rcof.py"]
+    told = subprocess.run(command, check=True, text=True, capture_output=True).stdout
+    for line, row in zip(told.splitlines()[1:], model.tests, strict=True):
+        found = re.search(r"F\((.+), (.+)\) = (.+), p = (.+)", line)
+        expected = [row.df, row.error_df, row.f, row.p]
+        assert [float(one) for one in found.groups()] == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.skipif(shutil.which("Rscript") is None, reason="R is not installed")
+@pytest.mark.parametrize("name", list(stored("tests.csv")))
+def test_the_script_of_r_finds_the_numbers_again(tmp_path, name):
+    model = scripts(tmp_path, stored("trials.csv")[name])
+    told = subprocess.run(["Rscript", "mixed_rcof.R"], cwd=tmp_path, check=True, text=True,
+                          capture_output=True).stdout  # fmt: skip
+    # term, sum and mean of squares, two degrees of freedom, F
+    found = {line[0]: [float(one) for one in line[3:6]]
+             for line in map(str.split, told.partition("Analysis of Variance")[2].splitlines())
+             if len(line) > 6 and line[1][0].isdigit()}  # fmt: skip
+    for row in model.tests:
+        expected = [row.df, row.error_df, row.f]
+        assert found[row.term] == pytest.approx(expected, rel=2e-3, abs=1e-4), row.term

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
 from underfoot.core import DataError
-from underfoot.trials.machines.stribeck_fit import NOT_IDENTIFIED, stribeck_fit
+from underfoot.trials.machines.stribeck_fit import NOT_IDENTIFIED, linear_part, stribeck_fit
 
 _SPEEDS = np.array([0.05, *np.arange(0.1, 1.01, 0.1)])
 # Eq. 17 with Figure 14's values (0.164, 0.839, 0.184).
@@ -103,3 +104,15 @@ def test_methods_agree_on_good_data_and_separable_is_never_worse():
 def test_too_few_speeds_are_refused():
     with pytest.raises(DataError, match="3 different speeds"):
         stribeck_fit([0.1, 0.2, 0.3], [0.5, 0.4, 0.3])
+
+
+@pytest.mark.parametrize(("start", "end"), [(1.0, -0.2), (-0.2, 1.0), (1.0, 0.3), (-0.3, -0.1)])
+def test_levels_below_zero_are_the_best_of_those_that_are_not(start, end):
+    x, tau = np.linspace(0, 4, 40), np.array([0.3, 1.0, 3.0])
+    y = end + (start - end) * np.exp(-x)
+    found = np.transpose(linear_part(x, y, tau, None, None))
+    for (a, b, rest), constant in zip(found, tau, strict=True):
+        fall = np.exp(-x / constant)
+        right, norm = nnls(np.column_stack([1 - fall, fall]), y)
+        assert (a, b) == pytest.approx(tuple(right), abs=1e-9)
+        assert rest == pytest.approx(norm**2, abs=1e-9)

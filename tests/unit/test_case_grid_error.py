@@ -3,11 +3,13 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from underfoot.case import Case
+from underfoot.compute import numerical_error
 from underfoot.compute.numbers import GRID_NAMES
 from underfoot.compute.numerical_error import NumericalErrors, with_numerical_error
 from underfoot.compute.run import run
@@ -128,3 +130,19 @@ def test_a_march_that_does_not_converge_leaves_the_error_unknown(monkeypatch):
     monkeypatch.setattr("underfoot.compute.solve.solved_motion", fails_with_more_steps)
     case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(CHECKED)
     assert run(case).labels["grid_error"].startswith("not estimated: a march on cells of 3 mm")
+
+
+def test_the_error_by_steps_is_that_of_the_first_order(monkeypatch):
+    """Numbers 5 + 0.4 / n with n times the steps are 0.4 off with one times."""
+    parts = SimpleNamespace(case=Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml"),
+                            viscosity=0.2, sole=None)  # fmt: skip
+
+    def at(here, place, spacing, *, finer=1, progress=None):
+        return here, SimpleNamespace(steps=finer, status=Status.CONVERGED)
+
+    monkeypatch.setattr(numerical_error, "solved_at", at)
+    monkeypatch.setattr(numerical_error, "_read", lambda _, one: {"cof": 5 + 0.4 / one.steps})
+    monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
+    found = numerical_error._compared(parts, {"cof": 5.7}, lambda *_: None)
+    assert found.steps["cof"] == pytest.approx(0.4)
+    assert found.grid["cof"] == pytest.approx(0.3)

@@ -248,6 +248,20 @@ def test_goals_are_statistics_over_conditions_and_draws(text, value):
     assert goal.value(records(0.3, 0.2), STATES) == pytest.approx(value)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_wear_life_is_that_of_the_first_condition_that_fails(turned):
+    states = [
+        Condition(f"{fluid}, {1e3 * wear:g} mm", {"contaminant": fluid, "shoe.wear.depth": wear})
+        for fluid in ("oil", "water")
+        for wear in (0.0, 2e-3)
+    ]
+    cof = [0.3, 0.2, 0.3, 0.1]  # at 0.25 after 1 mm in oil, after 0.5 mm in water
+    if turned:
+        states, cof = states[2:] + states[:2], cof[2:] + cof[:2]
+    goal = read_goal("wear_life(cof > 0.25)", UNITS, states)
+    assert goal.value(records(*cof), states) == pytest.approx(0.5e-3)
+
+
 def test_a_goal_of_a_design_with_a_failed_case_is_nan():
     failed = records(0.3, 0.2) | {(1, 0): Record("1", Ending.CRASHED, "killed")}
     assert np.isnan(Goal("cof", "1").value(failed, STATES))

@@ -2,10 +2,12 @@
 
 import copy
 import dataclasses
+import math
 import re
 import shutil
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -719,3 +721,13 @@ def test_files_of_a_place_count_from_its_folder(tmp_path, monkeypatch):
     (folder / "soles" / "sole.3mf").unlink()
     with pytest.raises(InputError, match=r"place/soles/sole\.3mf"):
         read_place(folder / "place.toml")
+
+
+def test_the_repeat_of_a_reading_is_the_scatter_it_states():
+    """One standard deviation off is e^-1/2 of the reading itself, whatever the deviation."""
+    draws = SimpleNamespace(constants=SimpleNamespace(sd_reading=np.zeros(1)))
+    for sd in (0.01, 0.04):
+        reading = Reading(0.4, "value", sd)
+        off = np.array([0.4, 0.4 * math.exp(sd / 0.4)])
+        at, beside = JointDraws.log_likelihood(draws, off, reading)
+        assert at - beside == pytest.approx(0.5)

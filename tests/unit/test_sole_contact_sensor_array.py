@@ -1,8 +1,12 @@
 """Sensors that stay in the floor: places, times, peaks, against what a moving patch must give."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from underfoot.compute import histories
+from underfoot.compute.histories import Recorder
 from underfoot.core import InputError
 from underfoot.sole_contact import floor_sensor_reading
 from underfoot.sole_contact.cost import refuse_too_large, solution_cost
@@ -119,3 +123,18 @@ def test_cost_is_refused_with_a_spacing_that_would_do():
     refuse_too_large(
         solution_cost(36e-4, 0.11e-3), most_memory=2e9, where="grid_spacing", spacing=0.11e-3
     )
+
+
+def test_an_array_without_a_place_lies_under_the_middle_of_the_sole_at_the_end(monkeypatch):
+    x = np.linspace(0.02, 0.12, 51)
+    inside = np.zeros((51, 3), bool)
+    inside[5:46] = True  # 30 to 110 mm
+    array = SimpleNamespace(position=None, rows=3, columns=2, spacing=0.01, inlet_diameter=1e-3)
+    case = SimpleNamespace(sensor=SimpleNamespace(array=array, compliance=0.0))
+    recorder = Recorder(case, None, SimpleNamespace(x=x, y=np.zeros(3), inside=inside), None)
+    recorder.times, recorder.places = [0.0, 0.1], [0.0, 0.05]
+    recorder.array_frames = [(np.zeros((51, 3)), np.zeros((51, 3)))] * 2
+    monkeypatch.setattr(histories, "array_reading", lambda *given, **_: given[6])
+    placed = recorder.array()
+    middle_row = placed.position + placed.spacing * (placed.rows - 1) / 2
+    assert middle_row == pytest.approx(0.05 + 0.07)

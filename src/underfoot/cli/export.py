@@ -21,6 +21,7 @@ class Kind(StrEnum):
     VTU = "vtu"
     CSV = "csv"
     STEP = "step"
+    INP = "inp"
 
 
 def export(
@@ -50,12 +51,14 @@ def export(
 ) -> None:
     """Write the sole with its fields as GLB, PLY, OBJ, VTU or CSV, or the worn solid as STEP.
 
-    GLB is in m and upright (y up); PLY, OBJ and STEP are in mm; VTU and CSV hold values in SI.
+    GLB is in m and upright (y up); PLY, OBJ and STEP are in mm; VTU and CSV hold values in SI. INP
+    is the sole under its load for Abaqus and CalculiX, in N, mm and MPa.
     """
     from underfoot.case import Case
     from underfoot.compute.result import Result
     from underfoot.core import InputError
     from underfoot.report.sole_export import export_result
+    from underfoot.report.solver_input import write_solver_input
 
     folder = run if run.is_dir() else run.parent
     path = out or folder / f"{'sole' if run.is_dir() else run.stem}.{to}"
@@ -77,6 +80,9 @@ def export(
             allowed="a folder that underfoot run made; a case file with --to step",
             remedy=f"First: underfoot run {run}",
         )
+    if to is Kind.INP:
+        print(f"wrote {write_solver_input(Result.load(run), path).sentence()}")
+        return
     written = export_result(Result.load(run), path, field=field, pressed=pressed)
     print(f"wrote {written.sentence()}")
 

@@ -9,12 +9,16 @@ import typer
 from .options import Shared, optional, sharing
 
 
-@sharing(without=("quick", "set_", "processes", "catalogue"))
+@sharing(without=("quick", "set_", "processes", "catalogue", "out"))
 def surface(
     shared: Shared,
     scan: Annotated[
         Path, typer.Argument(help="Scan of a floor or sole: profile or map.", show_default=False)
     ],
+    out: Annotated[
+        Path | None,
+        optional("Folder for data, figures and report.html; or the heights as .x3p or .sdf."),
+    ] = None,
     cutoff: Annotated[
         str | None, optional('Cut-off wavelength, as "0.8 mm"; else the longest that fits.')
     ] = None,
@@ -33,17 +37,39 @@ def surface(
     Dektak CSV, GSF, X3P, SDF, text (positions and heights, x y z, or a matrix; decimal commas), and
     the formats of instruments that SurfaceTopography reads.
     """
-    from underfoot.core import to_si
-    from underfoot.surface import read_scan
+    from underfoot.core import InputError, to_si
+    from underfoot.surface import Scan, read_scan, write_surface
+    from underfoot.surface.write import FORMS
+
+    from .output import answer
 
     def length(name: str, text: str | None) -> float | None:
         return to_si(text, "m", where=f"--{name}") if text else None
 
     lengths = {"cutoff": length("cutoff", cutoff), "spacing": length("spacing", spacing)}
     read = partial(read_scan, scan, length_unit=length_unit, height_unit=height_unit, **lengths)
-    shared.answer(scan.name, lambda progress: read())
+    file = out if out is not None and out.suffix.casefold() in FORMS else None
+    if file is not None and file.exists() and not shared.overwrite:
+        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+
+    def made() -> Scan:
+        found = read()
+        if file is not None:
+            write_surface(found.surface, file)
+        return found
+
+    answer(
+        scan.name,
+        lambda progress: made(),
+        out=None if file is not None else out,
+        overwrite=shared.overwrite,
+        json=shared.json,
+        everything=shared.everything,
+    )
     if shared.json:
         return
+    if file is not None:
+        print(f"\nwrote {file}: the heights as they were read, in double precision")
     print("\nA case beside it takes the scan with these lines ([shoe.roughness] for a sole):\n")
     print("[floor.roughness]")
     given = {"file": scan.name, "cutoff": cutoff, "spacing": spacing}

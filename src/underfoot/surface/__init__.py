@@ -42,3 +42,4 @@ from .spectrum import isotropic_from_profile as isotropic_from_profile
 from .spectrum import isotropic_spectrum as isotropic_spectrum
 from .spectrum import profile_spectrum as profile_spectrum
 from .spectrum import spectral_moments as spectral_moments
+from .write import write_surface as write_surface

@@ -5,6 +5,7 @@ NGSolve and netgen are loaded only when a sole is meshed.
 
 from .compliance import finite_element_compliance as finite_element_compliance
 from .compliance import sole_land as sole_land
+from .compliance import sole_prisms as sole_prisms
 from .elasticity import LandCompliance as LandCompliance
 from .elasticity import Rubber as Rubber
 from .elasticity import land_compliance as land_compliance

@@ -14,7 +14,7 @@ from underfoot.shoe.geometry import SoleMap
 from ..compliance import ConvolutionCompliance, layered_compliance
 from ..long_waves import LongWaves, wide_hats
 from .elasticity import LandCompliance, Rubber, land_compliance
-from .mesh import Layers, sole_mesh
+from .mesh import Layers, SoleMesh, sole_mesh
 from .plan import plan_of
 
 Array = NDArray[np.float64]
@@ -105,9 +105,7 @@ def sole_land(
     ``element`` and ``far_element`` (m) are the sides of elements on this land and elsewhere,
     ``lug_layers`` the elements over the height of a lug. Others as ``finite_element_compliance``.
     """
-    if element is None:
-        plain = not (sole.inside & ~sole.land).any()
-        element = max(PLAIN_ELEMENT if plain else ELEMENT, CELLS_AN_ELEMENT * sole.spacing)
+    element = _element(sole) if element is None else element
     soft = None if midsole_modulus is None else midsole_modulus / modulus
     key = content_hash(
         [sole.x, sole.y, np.nan_to_num(sole.clearance, posinf=-1.0), sole.inside, sole.land],
@@ -120,7 +118,8 @@ def sole_land(
         exact: dict[str, Any] = {**stored, "work": stored["work"] / modulus}
         return LandCompliance(**{**exact, "unknowns": int(stored["unknowns"])})
     layers = Layers(thickness, midsole_thickness or 0.0, shoe_angle)
-    mesh = sole_mesh(plan_of(sole), layers, element, max(far_element, element), reach, lug_layers)
+    sizes = {"far_element": far_element, "reach": reach, "lug_layers": lug_layers}
+    mesh = sole_prisms(sole, layers, element=element, **sizes)
     near = (mesh.nodes[mesh.land, 2] - sole.clearance.min()).min(axis=1) < reach
     land = land_compliance(
         mesh,
@@ -133,6 +132,31 @@ def sole_land(
         kept = {name: getattr(land, name) for name in ("nodes", "height", "triangles", "unknowns")}
         cache.store(key, {**kept, "work": land.work * modulus})
     return land
+
+
+def _element(sole: SoleMap) -> float:
+    plain = not (sole.inside & ~sole.land).any()
+    return max(PLAIN_ELEMENT if plain else ELEMENT, CELLS_AN_ELEMENT * sole.spacing)
+
+
+def sole_prisms(
+    sole: SoleMap,
+    layers: Layers,
+    *,
+    element: float | None = None,
+    far_element: float = FAR_ELEMENT,
+    reach: float = REACH,
+    lug_layers: int = 1,
+) -> SoleMesh:
+    """Return the prisms of a sole between the floor and the rigid foot.
+
+    Others as ``sole_land``.
+
+    Raises:
+        InputError: The profile or a channel goes through the outsole.
+    """
+    element = _element(sole) if element is None else element
+    return sole_mesh(plan_of(sole), layers, element, max(far_element, element), reach, lug_layers)
 
 
 def hats_on_cells(land: LandCompliance, sole: SoleMap, reach: float = REACH) -> sp.csr_matrix:

@@ -48,7 +48,7 @@ def write_trials_report(
     processes: int | None = None,
     progress: Progress = silent,
 ) -> list[Path]:
-    """Write report.html, trials.xlsx, tables/*.csv, figures/*.png and *.svg; return the paths.
+    """Write report.html, trials.xlsx, tables/, figures/ and models/; return the paths.
 
     ``details`` single trials are drawn in detail. Figures of the study and of single trials are
     written as PNG and SVG, contact sheets as SVG. ``processes`` (by default one a processor) draw.
@@ -64,16 +64,22 @@ def write_trials_report(
         _MARK,
         f"Analysis of trials by the protocol {analysis.protocol.name}.\n"
         "report.html: all on one page. trials.xlsx and tables/: every number. figures/: pictures.\n"
+        "models/: data and scripts of R and Python that find the mixed models again.\n"
         f"{STORE}/: results of single files, so that an interrupted analysis can go on.\n",
     )
-    for name in ("tables", "figures"):
+    models = {name: text for one in analysis.study.findings for name, text in one.files.items()}
+    for name in ("tables", "figures", "models"):
         (folder / name).mkdir(exist_ok=True)
         for old in (folder / name).iterdir():
             old.unlink()
+    if not models:
+        (folder / "models").rmdir()
     cautions = {f.table.name: f.cautions for f in analysis.study.findings}
     tables = analysis.tables
     for table in tables:
         write(f"tables/{table.name}.csv", csv_text(table, cautions.get(table.name, ())))
+    for name, text in models.items():
+        write(f"models/{name}", text)
     figures = trial_figures(analysis, details=details)
     pages = [page for sheet in sheets(analysis.files) for page in contact_sheets(sheet)]
     for page in pages:

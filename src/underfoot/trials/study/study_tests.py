@@ -24,6 +24,7 @@ from .field_statistics import (
     share_findings,
 )
 from .file_result import FileResult
+from .model_scripts import model_files
 from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
 
 _Fit = TypeVar("_Fit")
@@ -123,7 +124,8 @@ def _mixed(
     note += _power_note(model, factors)
     columns = ("term", "df", "df of error", "F", "p")
     rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
-    mixed = finding(key, title, columns, rows, note, model.warnings)
+    files = model_files(key, title, model, response, values, factors, persons)
+    mixed = replace(finding(key, title, columns, rows, note, model.warnings), files=files)
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:

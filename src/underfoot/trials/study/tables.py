@@ -49,7 +49,8 @@ class Finding:
     """One test: what was asked, the table, and cautions.
 
     Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
-    ``values`` the means of the persons (or the single values) by level.
+    ``values`` the means of the persons (or the single values) by level. ``files``: text by the name
+    of a file from which other programs find the test again.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Finding:
     factor: str = ""
     marks: Mapping[str, str] = field(default_factory=dict)
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of_anova(cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
