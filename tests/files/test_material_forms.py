@@ -154,6 +154,25 @@ def test_logarithms_are_read_as_their_headings_say(tmp_path, heads, columns):
     np.testing.assert_allclose(sweep.loss_modulus, _LOSS, rtol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("head", "row", "wrong"),
+    [
+        ("f (Hz);E' (MPa);E'' (MPa)", "Hz;kPa;MPa", 'column E\'.*"MPa" and "kPa"'),
+        ("f (Hz);E' (MPa);E'' (MPa)", "rad/s;MPa;MPa", 'column f.*"Hz" and "rad/s"'),
+        ("f (Hz);E' (MPa);E'' (MPa)", "[Hz];[N/mm²];[MPa]", None),
+    ],
+)
+def test_two_units_that_contradict_each_other_stop(tmp_path, head, row, wrong):
+    lines = (f"{w:g};{s / 1e6:g};{loss / 1e6:g}"
+             for w, s, loss in zip(_W, _STORAGE, _LOSS, strict=True))  # fmt: skip
+    (tmp_path / "a.csv").write_text("\n".join([head, row, *lines]))
+    if wrong is None:
+        assert len(read_dynamic(tmp_path / "a.csv")) == 1
+        return
+    with pytest.raises(DataError, match=wrong):
+        read_dynamic(tmp_path / "a.csv")
+
+
 def test_units_that_stand_in_the_cells_count(tmp_path):
     rows = (f"{w / 2 / np.pi:.9g} Hz;{s / 1e6:.9g} MPa;{100 * loss / s:.9g} %"
             for w, s, loss in zip(_W, _STORAGE, _LOSS, strict=True))  # fmt: skip

@@ -201,3 +201,20 @@ def without_units(cells: Sequence[str], units: Mapping[int, str]) -> list[str]:
         if match and match[5] == unit:
             bare[column] = match[1]
     return bare
+
+
+def one_unit(words: Sequence[str], same: Callable[[str, str], bool], where: str) -> str:
+    """Return the unit of a column from all places that name one (heading, row below, cells).
+
+    Raises:
+        DataError: Two that ``same`` holds for different.
+    """
+    named = [word for word in words if word.strip("[](){} -")]
+    for word in named[1:]:
+        if not same(named[0], word):
+            raise DataError(
+                f'two units that contradict each other, "{named[0]}" and "{word}"',
+                where=where,
+                remedy="Keep the one that the numbers are in",
+            )
+    return next(iter(named), next(iter(filter(None, words)), ""))

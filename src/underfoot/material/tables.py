@@ -12,6 +12,7 @@ from underfoot.core.numbers_text import (
     NumberForm,
     column_numbers,
     number_forms,
+    one_unit,
     units_in_cells,
     without_units,
 )
@@ -274,6 +275,20 @@ def _factor(number: float, unit: str, target: str, where: str) -> float:
         ) from error
 
 
+def _size(unit: str, quantity: str) -> float | str:
+    """Return a unit of a quantity in that of SI; "" of a word that leaves it open."""
+    plain = unit.strip("[](){} ")
+    folded = plain.replace(" ", "").casefold()
+    if "frequency" in quantity:
+        if _RADIANS.fullmatch(folded):
+            return "rad/s"
+        return _CYCLES.get(folded, "") if plain != "MHz" else 1e6
+    try:
+        return _factor(1, plain, UNITS.get(quantity, "1"), "")
+    except DataError:
+        return ""
+
+
 def quantity_of(name: str) -> str | None:
     """Return the quantity that a heading without its unit names, or None."""
     plain = re.sub(r"[’′`´]", "'", name.strip()).replace("″", "''").replace('"', "''")
@@ -512,6 +527,16 @@ class _Draft:
             )
         self.rows.append((number, cells))
 
+    def _unit(self, named: tuple[str, str], k: int, quantity: str | None, where: str) -> str:
+        """Return the unit of a column: of its heading, the row below, its cells."""
+
+        def same(one: str, other: str) -> bool:
+            sizes = _size(one, quantity or ""), _size(other, quantity or "")
+            return quantity is None or "" in sizes or sizes[0] == sizes[1]
+
+        said = (named[1], self.units[k], self.inside.get(k, ""))
+        return one_unit(said, same, f"{where}, column {text.excerpt(named[0])}")
+
     def table(self, where: str, part: int, stated: Mapping[str, str]) -> Table:
         cells = list(zip(*(row for _, row in self.rows), strict=True))
         plain = [without_logarithm(head) for head in self.heads]
@@ -527,8 +552,10 @@ class _Draft:
         numeric = [k for k, q in zip(kept, quantities, strict=True) if q is not None]
         forms = dict(zip(numeric, number_forms([cells[k] for k in numeric], where), strict=True))
         columns = tuple(
-            Column(names[n], quantities[n], named[k][1] or self.units[k] or self.inside.get(k, ""),
-                   cells[k], forms.get(k, NumberForm()), plain[k][1])
+            Column(
+                names[n], quantities[n], self._unit(named[k], k, quantities[n], where), cells[k],
+                forms.get(k, NumberForm()), plain[k][1],
+            )
             for n, k in enumerate(kept)
         )  # fmt: skip
         if self.reptate:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.numbers_text import NumberForm, units_in_cells, without_units
+from underfoot.core.numbers_text import NumberForm, one_unit, units_in_cells, without_units
 from underfoot.core.text import decoded
 
 from . import text
@@ -153,7 +153,8 @@ def _sheet(
     forms = text.written_forms(body, width, where, notes) if values is None else []
     for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
         below = written[i] if i < len(written) else ""
-        units[name] = pairs[i][1] or below or inside.get(i, "")
+        said = (pairs[i][1], below, inside.get(i, ""))
+        units[name] = one_unit(said, _same, f"{where}, column {name}")
         if values is not None:
             numbers[name] = text.measurable(values[:, i], notes)
             continue
@@ -236,7 +237,12 @@ def _are_units(row: list[str]) -> bool:
 
 
 def _known(word: str) -> bool:
-    return (force_unit(word) or si_unit(word)) is not None
+    return force_unit(word) is not None
+
+
+def _same(one: str, other: str) -> bool:
+    known = force_unit(one), force_unit(other)
+    return None in known or known[0] == known[1]
 
 
 def is_workbook(data: bytes) -> bool:
