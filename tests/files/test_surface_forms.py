@@ -227,6 +227,17 @@ def test_words_above_and_below_a_profile_are_left_out(tmp_path):
         read_surface(path)
 
 
+def test_two_units_of_the_heights_stop(tmp_path):
+    rows = "\n".join(f"{i * 0.01:.2f};{i % 7}" for i in range(300))
+    for row, fits in (("mm;nm", False), ("mm;µm", True)):
+        (tmp_path / "a.csv").write_text(f"Distance [mm];Height [um]\n{row}\n{rows}\n")
+        if fits:
+            assert np.ptp(read_surface(tmp_path / "a.csv").heights) == pytest.approx(6e-6)
+            continue
+        with pytest.raises(DataError, match='"nm" and "um"'):
+            read_surface(tmp_path / "a.csv")
+
+
 def test_a_pure_sine_has_no_spread_of_rounding():
     scan = read_scan(FORMS / "sine_profile.csv")
     assert scan.values["rq"].value == pytest.approx(3.42e-6, rel=2e-3)
