@@ -195,6 +195,13 @@ BAD = {
     "a binary OFF": ("off", lambda: made.off("OFF BINARY\n"), "binary OFF"),
     "an OFF cut short": ("off", lambda: made.off()[:-200], "promises 248 vertices"),
     "a PLY cut short": ("ply", lambda: made.ply("binary_little_endian")[:-50], "it ends within"),
+    "a PLY with a nan that signals": (
+        "ply",
+        lambda: made.ply("binary_little_endian").replace(
+            np.float32(32).tobytes(), b"\x01\x00\xa0\x7f", 1
+        ),
+        "is no number",
+    ),
     "a text STL with decimal commas": (
         "stl",
         lambda: made.text_stl({"a": made.triangles()}).replace(b".", b","),
