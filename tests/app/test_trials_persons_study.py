@@ -19,6 +19,8 @@ def findings(analysis):
 def test_persons_are_the_units(tmp_path):
     simulated_study(tmp_path, persons=5, trials=2)
     analysis = analyse_folder(tmp_path, protocol("level_walking"), names=NAMES, processes=2)
+    # sound made-up walks whose recordings hold the person's mass: no mark on any
+    assert {file.verdict for file in analysis.files} == {"accepted"}
     table = analysis.study.tables[0]
     rows = {row[0]: dict(zip(table.columns, row, strict=True)) for row in table.rows}
     assert set(rows) == {*SHOES, "all"}
@@ -41,6 +43,7 @@ def test_persons_are_the_units(tmp_path):
     assert found["mixed_rcof"].table.rows[0][1:3] == (2, 8)
     assert any("5 persons" in text for text in found["anova_rcof_type_3"].cautions)
     assert "n" not in {row[0] for f in found.values() for row in f.table.rows}
+    assert {*found["mixed_rcof"].files} == {f"mixed_rcof.{ending}" for ending in ("csv", "R", "py")}
 
 
 def test_without_persons_files_are_the_units_and_it_is_said(tmp_path):

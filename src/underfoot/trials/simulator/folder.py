@@ -300,7 +300,7 @@ def _walks(persons: int, trials: int, seed: int) -> Iterator[_File]:
                 idle = own.normal(0.0, 1.0, made.force[1].shape)
                 made = replace(made, force=(made.force[0], idle), pressures={})
                 name = f"S{person + 1:02d}_{shoe}_{trial + 1}.c3d"
-                yield name, walk_c3d(made), {}, {"rcof": f"{made.truth['rcof']:.6g}"}
+                yield name, walk_c3d(made, mass=mass), {}, {"rcof": f"{made.truth['rcof']:.6g}"}
 
 
 def _activities(_: int, rng: np.random.Generator) -> Iterator[_File]:
