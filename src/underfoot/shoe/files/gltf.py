@@ -102,8 +102,8 @@ class _Asset:
         required = set(self.json.get("extensionsRequired", ()))
         for name in sorted(required | set(self.json.get("extensionsUsed", ()))):
             # where packing is no demand, the numbers lie there unpacked too
-            known = name in _DONE or name.startswith(_LOOKS) or name in _PACKED
-            if name in required if name in _PACKED else not known:
+            done = name not in required if name in _PACKED else name in _DONE
+            if not done and not name.startswith(_LOOKS):
                 self._unmet(f"extension {name}", name in required)
 
     def _unmet(self, what: str, required: bool) -> None:

@@ -283,11 +283,8 @@ def _xlsx(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str
     from openpyxl import load_workbook
 
     book = load_workbook(BytesIO(data), read_only=True, data_only=True)
-    return {
-        one.title: _texts(one.iter_rows(values_only=True), where)
-        for one in book.worksheets
-        if one.title in _chosen(book.sheetnames, sheet, where)
-    }
+    names = _chosen([one.title for one in book.worksheets], sheet, where)
+    return {name: _texts(book[name].iter_rows(values_only=True), where) for name in names}
 
 
 def _xls(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str]]]:
