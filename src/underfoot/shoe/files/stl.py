@@ -99,7 +99,8 @@ def _text(path: Path) -> MeshFile:
     remarks = ()
     if not re.search(rb"\bendsolid\b", data[-400:], re.IGNORECASE):
         soup = Mesh(numbers.reshape(-1, 3, 3).astype(np.float32), "STL (text)")
-        if not soundness(soup, str(path)).closed:
+        sound = soundness(soup, str(path))
+        if not sound.closed or sound.crowded_edges:
             raise DataError(
                 f"the text ends after {facets} facets without the end mark endsolid, and they "
                 "leave its surface open: it is cut short",
