@@ -31,7 +31,7 @@ from typing import NamedTuple
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
-PARTS = ("src", "tests", "examples", "schema", "docs", "pyproject.toml", "README.md")
+NO_TESTS_OF_CODE = ("docs", "install")
 MOST_FILES = 24
 QUICK = "not slow and not study and not browser"
 LEAST_TIME = 60.0  # s, below which no fault is called endless
@@ -218,6 +218,8 @@ def tests_of(file: str) -> tuple[str, ...]:
     for path in sorted((REPOSITORY / "tests").rglob("test_*.py")):
         text = path.read_text(encoding="utf-8")
         name = path.relative_to(REPOSITORY / "tests").as_posix()
+        if name.split("/")[0] in NO_TESTS_OF_CODE:
+            continue
         if any(one in text for one in names):
             nearest.append(name)
         elif path.name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
@@ -227,10 +229,13 @@ def tests_of(file: str) -> tuple[str, ...]:
 
 
 def copied(folder: Path) -> Path:
-    """Return a copy of what tests read."""
-    for part in PARTS:
-        source = REPOSITORY / part
-        (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / part)
+    """Return a copy of what the repository holds."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=REPOSITORY, capture_output=True, check=True, text=True
+    )
+    for name in filter(None, listed.stdout.split("\0")):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(REPOSITORY / name, folder / name)
     return folder
 
 

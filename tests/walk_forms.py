@@ -104,6 +104,21 @@ def vectors(names: Callable[[int], tuple[str, ...]], comma: str = ",", metres: f
     return "\n".join([*head, *cells]) + "\n"
 
 
+def kinetics() -> str:
+    """The forces as kineticstoolkit writes them through pandas: an index, vectors of four."""
+    plates = walk().plates
+    heads = [f'"FP{k}_{what}[:,{i}]"' for k in range(len(plates)) for what in ("Force", "COP")
+             for i in range(4)]  # fmt: skip
+    lines = [",".join(["", *heads])]
+    columns = [part for plate in plates for part in (plate.force, plate.centre_of_pressure)]
+    for i in range(len(plates[0].force)):
+        cells = [f"{i / 1000:.3f}"]
+        for last, values in zip((0.0, 1.0) * len(plates), columns, strict=True):
+            cells += ["" if np.isnan(v) else f"{v:.7g}" for v in (*values[i], last)]
+        lines.append(",".join(cells))
+    return "\n".join(lines) + "\n"
+
+
 def clocked(date: str = "", hour: int = 10) -> str:
     """The table with the time of day of each row; the second minute begins within."""
     lines = table().replace("Time (ms)", "Time").splitlines()
@@ -345,6 +360,7 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
         ).replace("DataType=Vec3\n", ""),
         None,
     ),
+    "kineticstoolkit": ("a.csv", kinetics, None),
     "times of day": ("a.csv", clocked, None),
     "dates": ("a.csv", lambda: clocked("2026-11-27T"), None),
     "the number before the axis": (

@@ -52,6 +52,21 @@ def test_a_walk_written_for_opensim_is_the_same_walk(tmp_path, axes):
     np.testing.assert_allclose(np.linalg.norm(np.diff(first, axis=0), axis=1), steps, atol=1e-6)
 
 
+def test_markers_of_pyomeca_are_markers(tmp_path):
+    """x_LHEE, y_LHEE, z_LHEE, as it writes points of a C3D in mm."""
+    markers = walk_forms.walk().markers
+    heads = [f"{axis}_{name}" for axis in "xyz" for name in markers]
+    columns = [1e3 * one.positions[:, i] for i in range(3) for one in markers.values()]
+    rate = next(iter(markers.values())).rate
+    rows = np.column_stack([np.arange(len(columns[0])) / rate, *columns])
+    path = tmp_path / "points.csv"
+    np.savetxt(path, rows, "%.6g", ",", header=",".join(["time", *heads]), comments="")
+    found = read_trial(path).markers
+    assert {*found} == {*markers}
+    for name, marker in markers.items():
+        np.testing.assert_allclose(found[name].positions, marker.positions, atol=1e-5)
+
+
 @pytest.mark.parametrize("columns", [range(1, 7), [3], [3, 6]])
 @pytest.mark.parametrize("code", ["-9999", "9999999"])
 def test_codes_for_lost_forces_are_no_forces(tmp_path, columns, code):

@@ -498,3 +498,23 @@ def test_the_command_writes_the_heights_it_read(tmp_path):
     again = called("surface", str(scan), "--out", str(out))
     assert again.returncode == 2
     assert "exists" in again.stderr
+
+
+@pytest.mark.parametrize("shape", [(40,), (40, 30)])
+def test_an_array_of_numpy_needs_spacing_and_unit(tmp_path, shape):
+    heights = np.random.default_rng(5).standard_normal(shape)
+    path = tmp_path / "heights.npy"
+    np.save(path, heights.astype("f4"))
+    found = read_surface(path, spacing=4e-6, height_unit="um")
+    np.testing.assert_allclose(found.heights, 1e-6 * heights, rtol=1e-6)
+    assert found.spacing == 4e-6
+    with pytest.raises(DataError, match="no spacing"):
+        read_surface(path, height_unit="um")
+    with pytest.raises(DataError, match="without a unit"):
+        read_surface(path, spacing=4e-6)
+    np.save(path, heights.astype(complex))
+    with pytest.raises(DataError, match="real heights"):
+        read_surface(path, spacing=4e-6, height_unit="um")
+    path.write_bytes(path.read_bytes()[:90])
+    with pytest.raises(DataError, match="damaged"):
+        read_surface(path, spacing=4e-6, height_unit="um")

@@ -34,8 +34,8 @@ def surface(
 ) -> None:
     """Ra, Rq, Rz, slope, spectrum and Hurst exponent of a scan; a case takes it as it is.
 
-    Dektak CSV, GSF, X3P, SDF, text (positions and heights, x y z, or a matrix; decimal commas), and
-    the formats of instruments that SurfaceTopography reads.
+    Dektak CSV, GSF, X3P, SDF, text (positions and heights, x y z, or a matrix; decimal commas),
+    arrays of NumPy, and the formats of instruments that SurfaceTopography reads.
     """
     from underfoot.core import InputError, to_si
     from underfoot.surface import Scan, read_scan, write_surface

@@ -18,6 +18,7 @@ from .prepare import levelled as levelled
 from .prepare import periodised as periodised
 from .prepare import squared as squared
 from .read import InstrumentResult as InstrumentResult
+from .read import read_array as read_array
 from .read import read_dektak as read_dektak
 from .read import read_map as read_map
 from .read import read_profile as read_profile

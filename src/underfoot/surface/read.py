@@ -25,6 +25,7 @@ _QUANTITY = re.compile(r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ]
 _FORMS = (NumberForm(), NumberForm(",", True), NumberForm(".", True))
 _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
+ARRAY = b"\x93NUMPY"
 SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
     r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|[cm]m|m|inch(?:es)?|mils?|[uµμ]in"
@@ -454,16 +455,61 @@ def _length(text: str, where: str) -> float:
     return float(match.group(1).replace(",", ".")) * length_factor(match.group(2), where)
 
 
+def read_array(
+    path: Path | str,
+    *,
+    spacing: float | None = None,
+    height_unit: str | None = None,
+    length_unit: str | None = None,
+    fill_missing: bool = False,
+) -> Profile | HeightMap:
+    """Return heights that NumPy saved (``.npy``), as tamaas and other programs hand them on.
+
+    (n,) is a profile, (nx, ny) a map with x along axis 0. ``spacing`` (m) and ``height_unit`` are
+    needed: the file says neither; ``length_unit`` says nothing beside ``spacing``.
+
+    Raises:
+        DataError: Not an array of numbers of one or two axes; spacing or unit missing; heights
+            missing without ``fill_missing``.
+    """
+    path = text.existing(path)
+    try:
+        heights = np.load(path, allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        raise DataError(
+            "damaged, or no array of numbers", where=str(path), remedy="Save it again with np.save"
+        ) from error
+    if heights.ndim not in (1, 2) or heights.dtype.kind not in "fiu":
+        raise DataError(
+            f"an array of shape {heights.shape} and kind {heights.dtype}",
+            where=str(path),
+            allowed="real heights, (n,) or (nx, ny)",
+        )
+    if spacing is None:
+        raise DataError("an array of heights and no spacing", where=str(path), remedy=SPACING)
+    if height_unit is None:
+        raise DataError(
+            "an array of heights without a unit", where=str(path), remedy="Give it: --height-unit m"
+        )
+    factor = length_factor(height_unit, str(path))
+    found, notes = complete(heights.astype(float) * factor, fill_missing, str(path))
+    kind = Profile if found.ndim == 1 else HeightMap
+    return kind(found, spacing, source=str(path), processing=("read as an array of NumPy", *notes))
+
+
 def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     """Return a profile or map from any file that can be read.
 
-    What a file is, its content says and not its name: Dektak CSV; GSF, X3P and SDF
+    What a file is, its content says and not its name: Dektak CSV; arrays of NumPy; GSF, X3P and SDF
     (``instruments``); text with one or two columns (``read_profile``), three columns or a matrix
     (``read_map``); every other file goes to ``read_instrument``. ``settings`` are passed on.
     """
     path = text.existing(path)
     if is_dektak(path):
         return read_dektak(path)[0]
+    with path.open("rb") as stream:
+        if stream.read(len(ARRAY)) == ARRAY:
+            return read_array(path, **settings)
     if is_text(path) and not is_instrument(path):
         try:
             columns = read_numbers(path).rows.shape[1]

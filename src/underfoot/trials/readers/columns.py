@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -48,6 +49,10 @@ _DAY = 86_400.0  # s
 _FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 _POINT = re.compile(r"^(?P<before>.*?)[ _.:]?(?P<axis>[xyz])$", re.I)
 _NOT_POINTS = re.compile(r"^(f|force|m|moment|torque|a|v|acc|gyro|cop|.*force|.*moment)$", re.I)
+_INDEX = re.compile(r":,(\d)")
+"""What kineticstoolkit writes behind a name: heel[:,0] is x of the heel, heel[:,3] always 1."""
+_AXIS_FIRST = re.compile(r"^(?P<axis>[xyz])_(?P<base>.+)$")
+"""x_heel, as pyomeca writes it."""
 _PREAMBLE = 2  # lines above the names of columns, from which a text has a format of its own
 _RATE = re.compile(r"rate|frequency|hz", re.I)
 
@@ -60,6 +65,7 @@ def read_columns(draft: Draft) -> Trial:
     """
     own = draft.profile
     sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
+    sheet = _with_axes_behind(sheet)
     above = [line for line in sheet.header if line.strip()]
     named = own.name or own.plates or own.channels or _is_known(sheet)
     if not named and len(above) > _PREAMBLE:
@@ -69,6 +75,39 @@ def read_columns(draft: Draft) -> Trial:
         raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
     kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
     return trial_from_sheet(draft, sheet, kinds.get(draft.data[:4], "text table"))
+
+
+def _with_axes_behind(sheet: Sheet) -> Sheet:
+    """Return the columns of points and vectors called name_x, name_y and name_z.
+
+    Matrices of kineticstoolkit (``[:,0,0]``) are left out; its index is the time.
+    """
+    names: dict[str, str] = {}
+    triples: dict[str, dict[str, str]] = {}
+    for name in sheet.numbers:
+        unit = sheet.units.get(name, "")
+        if index := _INDEX.fullmatch(unit):
+            base = re.sub(r" #\d+$", "", name)
+            names[name] = f"{base}_{'xyz'[int(index[1])]}" if int(index[1]) < len("xyz") else ""
+        elif unit.startswith(":,"):
+            names[name] = ""
+        elif found := _AXIS_FIRST.match(name):
+            triples.setdefault(found["base"], {})[found["axis"]] = name
+    if names and (first := next(iter(sheet.numbers))) not in names:
+        names[first] = "time"
+    for base, columns in triples.items():
+        if len(columns) == len("xyz"):
+            names |= {name: f"{base}_{axis}" for axis, name in columns.items()}
+    new = {name: names.get(name, name) for name in sheet.numbers}
+    return replace(
+        sheet,
+        numbers={new[name]: values for name, values in sheet.numbers.items() if new[name]},
+        units={
+            new.get(name, name): unit
+            for name, unit in sheet.units.items()
+            if not unit.startswith(":,")
+        },
+    )
 
 
 def _is_known(sheet: Sheet) -> bool:
