@@ -85,6 +85,34 @@ def tall_last():
     return prism(np.array([(-10, -40), (90, -40), (90, 40), (-10, 40)], dtype=float), 9.0, 80.0)
 
 
+def floor():
+    """A block larger than the sole, on which its lugs stand."""
+    return prism(np.array([(-30, -60), (110, -60), (110, 60), (-30, 60)], dtype=float), -9.0, 0.0)
+
+
+def cavity(x, y, z):
+    """The faces of a hollow within a body, turned inward."""
+    ring = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])], dtype=float)
+    points, faces = prism(ring, *z)
+    return points, [face[::-1] for face in faces]
+
+
+def hollow_base():
+    return joined([base(), cavity((2, 78), (-30, 30), (5.0, 8.0))])
+
+
+def hollow_lugs(top, roof):
+    """Lugs that reach up to ``top`` within the base, their hollows up to ``roof``."""
+    places = [(3 + 15 * i, -30 + 15 * j) for i in range(5) for j in range(4)]
+    return [
+        joined([
+            prism(L_SHAPE + np.array([x, y]), 0.0, top),
+            cavity((x + 1, x + 9), (y + 1, y + 4), (1.0, roof)),
+        ])
+        for x, y in places
+    ]  # fmt: skip
+
+
 # OBJ
 
 
@@ -139,6 +167,35 @@ form("obj", "base and lugs")(lambda: obj([base(), joined(all_lugs())], group="o 
 form("obj", "a last by its group")(
     lambda: obj([*parts(), tall_last()], group=lambda n: "g last" if n == 21 else "g outsole")
 )
+for _name in ("Floor", "a body of no known name"):
+    form("obj", f"{_name} below")(
+        lambda n=_name: obj([*parts(), floor()], group=lambda k: f"g {n}" if k == 21 else "g sole")
+    )
+
+
+def halves():
+    """Heel and forepart of the sole, each with its lugs."""
+    made = []
+    for low, high, columns in ((0, 48, range(3)), (48, 80, range(3, 5))):
+        ring = np.array([(low, -32), (high, -32), (high, 32), (low, 32)], dtype=float)
+        made.append(
+            joined([prism(ring, 4.0, 9.0), *(lug(i, j) for i in columns for j in range(4))])
+        )
+    return made
+
+
+form("obj", "heel and forepart under a midsole")(
+    lambda: obj(
+        [*halves(), prism(np.array([(0, -32), (80, -32), (80, 32), (0, 32)], float), 9.0, 25.0)],
+        group="o part{}".format,
+    )
+)
+form("obj", "a last above, a floor below")(
+    lambda: obj(
+        [*parts(), tall_last(), floor()],
+        group=lambda k: {21: "g Last", 22: "g Ground"}.get(k, "g Outsole"),
+    )
+)
 
 
 # STL
@@ -151,7 +208,7 @@ def stl(corners, head=b"outsole", tail=b""):
     return head.ljust(80) + np.uint32(len(corners)).tobytes() + records.tobytes() + tail
 
 
-def text_stl(solids, newline="\n", upper=False):
+def text_stl(solids, newline="\n", upper=False, end=True):
     lines = []
     for name, corners in solids.items():
         lines.append(f"solid {name}")
@@ -159,7 +216,7 @@ def text_stl(solids, newline="\n", upper=False):
             lines += ["  facet normal 0 0 0", "    outer loop"]
             lines += [f"      vertex {x:.6e} {y:.6e} {z:.6e}" for x, y, z in one]
             lines += ["    endloop", "  endfacet"]
-        lines.append(f"endsolid {name}")
+        lines += [f"endsolid {name}"] if end else []
     text = newline.join(lines) + newline
     return (text.upper() if upper else text).encode()
 
@@ -171,6 +228,7 @@ form("stl", "solid at the head and bytes behind")(lambda: stl(triangles(), b"sol
 form("stl", "solid, zeros, bytes behind")(lambda: stl(triangles(), b"solid\0a".ljust(80, b"\0"),
                                                       b"end"))  # fmt: skip
 form("stl", "text")(lambda: text_stl({"a": triangles()}))
+form("stl", "text without its end mark")(lambda: text_stl({"a": triangles()}, end=False))
 form("stl", "text in capitals")(lambda: text_stl({"a": triangles()}, upper=True))
 form("stl", "text of windows")(lambda: text_stl({"a": triangles()}, newline="\r\n"))
 form("stl", "solids outsole and last")(
@@ -537,6 +595,16 @@ def packed_by_draco():
         accessor.pop("bufferView", None)
     asset.node(mesh=mesh)
     asset.json["extensionsUsed"] = asset.json["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    return asset.glb()
+
+
+@form("glb")
+def meshopt_beside_its_numbers():
+    asset = plain()
+    packing = {"buffer": 0, "byteLength": 9, "byteStride": 12, "mode": "ATTRIBUTES", "count": 1}
+    for view in asset.json["bufferViews"]:
+        view["extensions"] = {"EXT_meshopt_compression": packing}
+    asset.json["extensionsUsed"] = ["EXT_meshopt_compression"]
     return asset.glb()
 
 

@@ -289,14 +289,25 @@ def qtm(axes: str = "+x +y +z") -> bytes:
     return out.getvalue()
 
 
-def workbook() -> bytes:
-    """The table as XLSX, numbers as numbers."""
+def united() -> str:
+    """The table with the unit in each cell."""
+    head, *rows = table().replace(" (N)", "").splitlines()
+    cells = (row.split(",") for row in rows)
+    return "\n".join([head, *(",".join([row[0], *(f"{c} N" for c in row[1:])]) for row in cells)])
+
+
+def workbook(title: bool = False) -> bytes:
+    """The table as XLSX, numbers as numbers; on the second sheet behind a ``title`` sheet."""
     import io
 
     from openpyxl import Workbook
 
     book = Workbook()
     sheet = book.active
+    if title:
+        for row in (("Trial", "walk 3"), ("Date", "28.11.2026"), ("Mass", 60.3)):
+            sheet.append(row)
+        sheet = book.create_sheet("Data")
     rows = [line.split(",") for line in table(decimals=3).splitlines()]
     sheet.append(rows[0])
     for row in rows[1:]:
@@ -428,6 +439,13 @@ FORMS: dict[str, tuple[str, Callable[[], str | bytes], tuple[str, Callable[[], s
     "plates of one name": ("a.csv", lambda: table(heads=lambda plate, axis: f"F{axis}"), None),
     "UTF-16": ("a.csv", lambda: table(point=",", separator=";").encode("utf-16"), None),
     "workbook": ("a.xlsx", workbook, None),
+    "workbook with a title sheet": ("a.xlsx", lambda: workbook(title=True), None),
+    "units in the cells": ("a.csv", united, None),
+    "names and values above": (
+        "a.csv",
+        lambda: table("", ";", ",", above=("Subject;Anna", "Mass [kg];60,3", "Date;28.11.2026")),
+        None,
+    ),
 }  # fmt: skip
 
 

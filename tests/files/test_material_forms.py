@@ -115,6 +115,74 @@ def test_name_and_unit_decide_the_frequency(tmp_path, heading, factor):
     np.testing.assert_allclose(sweep.angular_frequency, np.array([1, 2, 4, 8]) * factor)
 
 
+_W = 10.0 ** np.arange(-1.0, 2.1, 0.5)
+_STORAGE, _LOSS = 5e6 * _W**0.1, 1e6 * _W**0.2
+
+
+@pytest.mark.parametrize(
+    ("heads", "columns"),
+    [
+        (
+            "log10(omega) [rad/s];log10(G') [Pa];log10(G'') [Pa]",
+            lambda: (np.log10(_W), np.log10(_STORAGE), np.log10(_LOSS)),
+        ),
+        (
+            "log f (Hz);lg E' (MPa);log tan delta",
+            lambda: (
+                np.log10(_W / 2 / np.pi),
+                np.log10(_STORAGE / 1e6),
+                np.log10(_LOSS / _STORAGE),
+            ),
+        ),
+        (
+            "ln(f / Hz);ln(E' / kPa);E'' / MPa",
+            lambda: (np.log(_W / 2 / np.pi), np.log(_STORAGE / 1e3), _LOSS / 1e6),
+        ),
+        (
+            "log10 omega;Speichermodul E';Verlustfaktor tan δ\nrad/s;MPa;",
+            lambda: (np.log10(_W), _STORAGE / 1e6, _LOSS / _STORAGE),
+        ),
+    ],
+    ids=["log10", "log and lg", "ln", "a row of units"],
+)
+def test_logarithms_are_read_as_their_headings_say(tmp_path, heads, columns):
+    rows = (";".join(f"{v:.9g}" for v in row) for row in np.column_stack(columns()))
+    (tmp_path / "a.csv").write_text("\n".join([heads, *rows]))
+    (sweep,) = read_dynamic(tmp_path / "a.csv")
+    np.testing.assert_allclose(sweep.angular_frequency, _W, rtol=1e-6)
+    np.testing.assert_allclose(sweep.storage_modulus, _STORAGE, rtol=1e-6)
+    np.testing.assert_allclose(sweep.loss_modulus, _LOSS, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "wrong"),
+    [
+        ("f (Hz);E' (MPa);E'' (MPa)", "Hz;kPa;MPa", 'column E\'.*"MPa" and "kPa"'),
+        ("f (Hz);E' (MPa);E'' (MPa)", "rad/s;MPa;MPa", 'column f.*"Hz" and "rad/s"'),
+        ("f (Hz);E' (MPa);E'' (MPa)", "[Hz];[N/mm²];[MPa]", None),
+    ],
+)
+def test_two_units_that_contradict_each_other_stop(tmp_path, head, row, wrong):
+    lines = (f"{w:g};{s / 1e6:g};{loss / 1e6:g}"
+             for w, s, loss in zip(_W, _STORAGE, _LOSS, strict=True))  # fmt: skip
+    (tmp_path / "a.csv").write_text("\n".join([head, row, *lines]))
+    if wrong is None:
+        assert len(read_dynamic(tmp_path / "a.csv")) == 1
+        return
+    with pytest.raises(DataError, match=wrong):
+        read_dynamic(tmp_path / "a.csv")
+
+
+def test_units_that_stand_in_the_cells_count(tmp_path):
+    rows = (f"{w / 2 / np.pi:.9g} Hz;{s / 1e6:.9g} MPa;{100 * loss / s:.9g} %"
+            for w, s, loss in zip(_W, _STORAGE, _LOSS, strict=True))  # fmt: skip
+    (tmp_path / "a.csv").write_text("\n".join(["Frequency;Storage modulus;Loss factor", *rows]))
+    (sweep,) = read_dynamic(tmp_path / "a.csv")
+    np.testing.assert_allclose(sweep.angular_frequency, _W, rtol=1e-6)
+    np.testing.assert_allclose(sweep.storage_modulus, _STORAGE, rtol=1e-6)
+    np.testing.assert_allclose(sweep.loss_modulus, _LOSS, rtol=1e-6)
+
+
 def test_an_angular_frequency_in_hertz_contradicts_itself(tmp_path):
     rows = "\n".join(f"{f};2e6;1e5" for f in (1, 2, 4, 8))
     (tmp_path / "a.csv").write_text(f"Angular frequency (Hz);G' (Pa);G'' (Pa)\n{rows}\n")

@@ -275,7 +275,8 @@ def test_pipe_is_refused(tmp_path):
 
 
 def test_text_stl_without_an_end_is_refused(tmp_path):
-    one = "facet normal 0 0 1\nouter loop\n" + "vertex 0 0 0\n" * 3 + "endloop\nendfacet\n"
+    corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+    one = f"facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n"
     (tmp_path / "half.stl").write_text("solid x\n" + one * 5)
     with pytest.raises(DataError, match="after 5 facets without the end mark"):
         read_mesh(tmp_path / "half.stl")

@@ -155,6 +155,13 @@ def test_a_unit_that_is_no_length_stops_the_markers_of_nexus(word, tmp_path):
         read_trial(tmp_path / "a.csv")
 
 
+def test_two_units_of_one_force_stop(tmp_path):
+    head, *rows = walk_forms.table().splitlines()
+    (tmp_path / "a.csv").write_text("\n".join([head, "ms" + ",kN" * 6, *rows]))
+    with pytest.raises(DataError, match=r'column Fx1: two units.*"N" and "kN"'):
+        read_trial(tmp_path / "a.csv")
+
+
 @pytest.mark.parametrize(
     ("words", "unit", "factor"),
     [

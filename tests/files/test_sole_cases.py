@@ -1,6 +1,7 @@
 """Valid outsole files of known geometry: the right value from each, or a refusal that says why."""
 
 import io
+import json
 import tomllib
 import zipfile
 from pathlib import Path
@@ -106,6 +107,15 @@ def packed(asset):
     asset.json["extensionsRequired"] = ["EXT_meshopt_compression"]
 
 
+def packed_alone():
+    asset, name = made.plain(), "EXT_meshopt_compression"
+    for view in asset.json["bufferViews"]:
+        view |= {"buffer": 1, "extensions": {name: {"buffer": 0, "byteLength": 9}}}
+    asset.gltf("data:application/octet-stream;base64,AAAA")
+    asset.json["buffers"] += [{"byteLength": 9999, "extensions": {name: {"fallback": True}}}]
+    return json.dumps(asset.json).encode()
+
+
 def of_two_numbers(asset):
     position = asset.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
     asset.json["accessors"][position]["type"] = "VEC2"
@@ -123,7 +133,7 @@ BAD = {
         lambda: made.package(made.model(made.whole(), made.item(1), "milimeter")),
         r'"milimeter" is no unit.*millimeter',
     ),
-    "a required extension": ("3mf", required_extension, "needs the 3MF extension beam lattice"),
+    "a required extension": ("3mf", required_extension, "needs the 3MF extension beamlattice"),
     "objects in a circle": ("3mf", a_circle, "hold each other: 1 in 2 in 1"),
     "components that double": ("3mf", unfolding, "unfolds to more than"),
     "an archive that unpacks to a thousand times": ("3mf", packed_tightly, "200 times its size"),
@@ -154,6 +164,7 @@ BAD = {
         "shows no model: 1 support body",
     ),
     "a required compression": ("glb", lambda: a_glb(packed), "EXT_meshopt_compression"),
+    "a compression with a stand-in": ("gltf", packed_alone, "EXT_meshopt_compression"),
     "nodes in a circle": ("glb", lambda: a_glb(node_circle), "its nodes hold each other"),
     "a skin": ("glb", lambda: a_glb(skinned), "a skin that bends the mesh"),
     "a view beyond its buffer": ("glb", lambda: a_glb(cut_short), "reaches beyond its buffer"),
@@ -184,10 +195,22 @@ BAD = {
     "a binary OFF": ("off", lambda: made.off("OFF BINARY\n"), "binary OFF"),
     "an OFF cut short": ("off", lambda: made.off()[:-200], "promises 248 vertices"),
     "a PLY cut short": ("ply", lambda: made.ply("binary_little_endian")[:-50], "it ends within"),
+    "a PLY with a nan that signals": (
+        "ply",
+        lambda: made.ply("binary_little_endian").replace(
+            np.float32(32).tobytes(), b"\x01\x00\xa0\x7f", 1
+        ),
+        "is no number",
+    ),
     "a text STL with decimal commas": (
         "stl",
         lambda: made.text_stl({"a": made.triangles()}).replace(b".", b","),
         "decimal commas",
+    ),
+    "a text STL cut short between facets": (
+        "stl",
+        lambda: made.text_stl({"a": made.triangles()}, end=False).rpartition(b"  facet normal")[0],
+        "endsolid, and they leave its surface open",
     ),
     "single precision far off": (
         "stl",

@@ -44,6 +44,41 @@ def test_every_form_of_a_sole_is_the_same_sole(tmp_path, name):
     assert "ignored" not in text
 
 
+@pytest.mark.parametrize("joined_lugs", [False, True])
+@pytest.mark.parametrize(("top", "roof"), [(5.0, 3.0), (5.0, 4.5), (7.5, 6.0)])
+@pytest.mark.parametrize("as_bodies", [False, True])
+def test_hollow_bodies_that_reach_into_each_other_are_one_sole(
+    tmp_path, joined_lugs, top, roof, as_bodies
+):
+    lugs = made.hollow_lugs(top, roof)
+    bodies = [made.hollow_base(), *([made.joined(lugs)] if joined_lugs else lugs)]
+    data = made.obj(bodies, group="o body{}".format) if as_bodies else made.stl(
+        made.triangles(bodies)
+    )  # fmt: skip
+    found = outsole_from_file(written(tmp_path, "obj" if as_bodies else "stl", data), HALF)
+    measures = tread_measures(found.surface)
+    assert measures.land_ratio == pytest.approx(made.LAND, rel=0.01)
+    assert measures.channel_depth[1] * 1e3 == pytest.approx(made.DEPTH, abs=0.05)
+    assert measures.lug_count == made.LUGS
+    assert found.thickness == pytest.approx(9e-3, abs=0.05e-3)
+    assert "plate" not in " ".join(found.surface.remarks)
+
+
+def test_a_midsole_says_where_the_ground_is_though_the_back_has_ribs(tmp_path):
+    ribs = [made.prism(np.array([(x, -30), (x + 3, -30), (x + 3, 30), (x, 30)], float), 9.0, 12.0)
+            for x in range(4, 76, 9)]  # fmt: skip
+    slab = made.prism(np.array([(0, -32), (80, -32), (80, 32), (0, 32)], float), 12.0, 25.0)
+    bodies = [made.joined([made.base(), *ribs]), slab]
+    for name, down in (("Midsole", "-z"), ("Floor", "+z")):
+        data = made.obj(bodies, group=lambda n, other=name: f"o {('Outsole', other)[n]}")
+        found = outsole_from_file(written(tmp_path, "obj", data), HALF)
+        assert found.down == down
+        flipped = outsole_from_file(
+            tmp_path / "sole.obj", FileSettings(spacing=0.5e-3, down="flip")
+        )
+        assert flipped.down != down
+
+
 def test_sixty_forms_and_more():
     assert len(made.FORMS) > 90
 

@@ -227,6 +227,17 @@ def test_words_above_and_below_a_profile_are_left_out(tmp_path):
         read_surface(path)
 
 
+def test_two_units_of_the_heights_stop(tmp_path):
+    rows = "\n".join(f"{i * 0.01:.2f};{i % 7}" for i in range(300))
+    for row, fits in (("mm;nm", False), ("mm;µm", True)):
+        (tmp_path / "a.csv").write_text(f"Distance [mm];Height [um]\n{row}\n{rows}\n")
+        if fits:
+            assert np.ptp(read_surface(tmp_path / "a.csv").heights) == pytest.approx(6e-6)
+            continue
+        with pytest.raises(DataError, match='"nm" and "um"'):
+            read_surface(tmp_path / "a.csv")
+
+
 def test_a_pure_sine_has_no_spread_of_rounding():
     scan = read_scan(FORMS / "sine_profile.csv")
     assert scan.values["rq"].value == pytest.approx(3.42e-6, rel=2e-3)
@@ -356,6 +367,21 @@ def test_crossed_lays_are_named_and_both_count(tmp_path, first, second, ratio, s
     assert 0.8 < scan.values["ra"].value / np.abs(heights).mean() < 1.01
     assert scan.values["rt"].value < np.ptp(heights)
     assert "crossed lays" in " ".join(scan.headline())
+
+
+@pytest.mark.parametrize("waves", [0.8, 1.2, 1.5, 2.5, 4.5])
+@pytest.mark.parametrize("degrees", [0, 90, 30])
+def test_a_lay_of_few_waves_is_one_lay(waves, degrees):
+    # a window over so few waves turns some of their power by tens of degrees
+    x, y = np.meshgrid(np.arange(176) * 1e-5, np.arange(48) * 1e-5, indexing="ij")
+    across = np.radians(degrees + 90)
+    phase = 2 * np.pi * waves / 48e-5 * (x * np.cos(across) + y * np.sin(across))
+    found = texture(HeightMap(5e-6 * np.sin(phase), 1e-5))
+    assert found is not None
+    assert len(found.lays) <= 1
+    if waves > 1:
+        turned = (np.degrees(found.lays[0]) - degrees + 90) % 180 - 90
+        assert turned == pytest.approx(0.0, abs=6.0)
 
 
 def test_noise_of_single_points_has_no_lay():

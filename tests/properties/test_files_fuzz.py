@@ -24,6 +24,7 @@ def seed(name):
     return SEEDS[name][0]()
 
 
+@pytest.mark.filterwarnings("ignore::ImportWarning")  # a library's own choices
 @pytest.mark.parametrize("name", SEEDS)
 @settings(
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from .errors import DataError
@@ -15,6 +15,9 @@ _NUMBER = re.compile(r"([+\-−]?)([\d.,]*\d[\d.,]*)([eEdD][+\-−]?\d+)?")
 _PLAIN = re.compile(r"\d+|\d*[.,]\d+|\d+[.,]")
 _GROUPED = {mark: re.compile(rf"[1-9]\d{{0,2}}([{mark}]\d{{3}})+") for mark in ".,"}
 _OTHER = {",": ".", ".": ","}
+_WITH_UNIT = re.compile(
+    rf"({_NUMBER.pattern})\s*(%|[a-zµμ°²][a-zµμ°²³⁻¹/*·.^\d-]{{0,9}})", re.IGNORECASE
+)
 FEWEST = 3
 """Numbers with three digits behind a point that make it one of thousands beside whole numbers."""
 
@@ -166,3 +169,52 @@ def _undecided(examples: str, where: str) -> DataError:
 def column_numbers(cells: Sequence[str], form: NumberForm) -> list[float]:
     """Return the numbers of a column, NaN where one is missing; a ValueError names other text."""
     return [math.nan if cell.casefold() in MISSING else form.number(cell) for cell in cells]
+
+
+def units_in_cells(rows: Sequence[Sequence[str]], known: Callable[[str], bool]) -> dict[int, str]:
+    """Return the units of the columns in which most cells are a number and one unit: "45 %".
+
+    Parameters:
+        known: Whether a word is a unit.
+
+    >>> units_in_cells([["a", "45 %"], ["b", "50 %"]], lambda word: word == "%")
+    {1: '%'}
+    """
+    units: dict[int, str] = {}
+    for column in range(max(map(len, rows), default=0)):
+        cells = [row[column] for row in rows if column < len(row) and row[column]]
+        found = [match[5] for cell in cells if (match := _WITH_UNIT.fullmatch(cell))]
+        if 2 * len(found) > len(cells) and len(set(found)) == 1 and known(found[0]):
+            units[column] = found[0]
+    return units
+
+
+def without_units(cells: Sequence[str], units: Mapping[int, str]) -> list[str]:
+    """Return a row with the units of its columns taken out of the cells.
+
+    >>> without_units(["a", "45 %"], {1: "%"})
+    ['a', '45']
+    """
+    bare = list(cells)
+    for column, unit in units.items():
+        match = _WITH_UNIT.fullmatch(bare[column]) if column < len(bare) else None
+        if match and match[5] == unit:
+            bare[column] = match[1]
+    return bare
+
+
+def one_unit(words: Sequence[str], same: Callable[[str, str], bool], where: str) -> str:
+    """Return the unit of a column from all places that name one (heading, row below, cells).
+
+    Raises:
+        DataError: Two that ``same`` holds for different.
+    """
+    named = [word for word in words if word.strip("[](){} -")]
+    for word in named[1:]:
+        if not same(named[0], word):
+            raise DataError(
+                f'two units that contradict each other, "{named[0]}" and "{word}"',
+                where=where,
+                remedy="Keep the one that the numbers are in",
+            )
+    return next(iter(named), next(iter(filter(None, words)), ""))

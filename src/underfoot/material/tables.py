@@ -8,7 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match, text, to_si
-from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms
+from underfoot.core.numbers_text import (
+    NumberForm,
+    column_numbers,
+    number_forms,
+    one_unit,
+    units_in_cells,
+    without_units,
+)
 
 SYMBOLS: dict[str, str] = {
     symbol: quantity
@@ -79,6 +86,12 @@ _PER_MINUTE = {"1/min", "min^-1", "min-1", "min⁻¹", "/min", "min**-1", "min^{
 _RADIANS = re.compile(r"rad(ians?)?(/s(ec)?|[.·*]?s(ec)?(\^?-1|⁻¹))")
 _SHEAR = re.compile(r"(^|[|\s(_])(G|J|η|eta)t?(?![a-z])|shear|schub|viscosity|viskosit", re.I)
 _YOUNG = re.compile(r"(^|[|\s(_])(E|D)t?(?![a-z])|young|tensile|dehn|zug|elongation|bending", re.I)
+_LOGARITHM = re.compile(
+    r"(?P<kind>ln|lg|log[_ ]?10|log)\s*(?:\((?P<inner>.+?)\)\s*(?P<unit>[\[({/,].*)?"
+    r"|[\s_]\s*(?P<rest>\S.*))",
+    re.IGNORECASE,
+)
+"""Headings "log10(omega)", "log G' (Pa)", "lg(E' / MPa)", "ln(t) [s]"."""
 _NO_UNIT = {"t", "delta", "δ", "d", "ω", "w", "phi", "i"}
 _BRACKETS = re.compile(r"^(.*?)\s*[\[({]\s*([^\])}]*?)\s*[\])}]\s*$")
 _PARAMETERS = re.compile(r"^\s*([A-Za-z]\w*\s*=\s*[^;=]*;\s*)+([A-Za-z]\w*\s*=\s*[^;=]*)?$")
@@ -97,6 +110,8 @@ class Column:
     unit: str
     cells: tuple[str, ...]
     form: NumberForm = field(default_factory=NumberForm)
+    base: float | None = None
+    """Of the logarithm that the cells hold: of the number in the unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +165,8 @@ class Table:
                         allowed="numbers",
                     ) from None
             raise
+        if column.base is not None:
+            values = column.base**values
         missing = np.flatnonzero(np.isnan(values) if infinite else ~np.isfinite(values))
         if missing.size:
             raise DataError(
@@ -258,9 +275,38 @@ def _factor(number: float, unit: str, target: str, where: str) -> float:
         ) from error
 
 
+def _size(unit: str, quantity: str) -> float | str:
+    """Return a unit of a quantity in that of SI; "" of a word that leaves it open."""
+    plain = unit.strip("[](){} ")
+    folded = plain.replace(" ", "").casefold()
+    if "frequency" in quantity:
+        if _RADIANS.fullmatch(folded):
+            return "rad/s"
+        return _CYCLES.get(folded, "") if plain != "MHz" else 1e6
+    try:
+        return _factor(1, plain, UNITS.get(quantity, "1"), "")
+    except DataError:
+        return ""
+
+
 def quantity_of(name: str) -> str | None:
     """Return the quantity that a heading without its unit names, or None."""
     plain = re.sub(r"[’′`´]", "'", name.strip()).replace("″", "''").replace('"', "''")
+    if found := _named_by(plain):
+        return found
+    if len(plain) < 60:  # a symbol beside the word says the same: "Verlustfaktor tan δ"
+        for gap in re.finditer(r"[\s,]+", plain):
+            said = {_named_by(plain[: gap.start()]), _named_by(plain[gap.end() :])}
+            if len(said) == 1 and None not in said:
+                return said.pop()
+    parts = _BRACKETS.match(plain)
+    if parts and parts.group(1):
+        return quantity_of(parts.group(1)) or quantity_of(parts.group(2))
+    return None
+
+
+def _named_by(plain: str) -> str | None:
+    """Return the quantity of a symbol or of words alone."""
     if found := SYMBOLS.get(plain.replace(" ", "")):
         return found
     folded = re.sub(r"\s+", " ", plain.casefold()).strip()
@@ -270,10 +316,22 @@ def quantity_of(name: str) -> str | None:
         for pattern, quantity in WORDS:
             if re.fullmatch(pattern, candidate):
                 return quantity
-    parts = _BRACKETS.match(plain)
-    if parts and parts.group(1):
-        return quantity_of(parts.group(1)) or quantity_of(parts.group(2))
     return None
+
+
+def without_logarithm(heading: str) -> tuple[str, float | None]:
+    """Return a heading without the logarithm of a quantity that it names, and its base.
+
+    "log" is decadic, as in a rheologist's plot.
+
+    >>> without_logarithm("log10(omega) [rad/s]")
+    ('omega [rad/s]', 10.0)
+    """
+    found = _LOGARITHM.fullmatch(heading.strip())
+    inner = "" if found is None else found["rest"] or f"{found['inner']} {found['unit'] or ''}"
+    if found is None or quantity_of(heading_of(inner)[0]) is None:
+        return heading, None
+    return inner.strip(), float(np.e) if found["kind"].casefold() == "ln" else 10.0
 
 
 def heading_of(cell: str) -> tuple[str, str]:
@@ -385,17 +443,18 @@ def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> lis
     if len(lines) < 2:
         raise DataError("the file holds no table", where=where, allowed="headings and rows")
     separator = _separator([line for _, line in lines[:2000]])
+    inside = units_in_cells([text.cells_of(line, separator) for _, line in lines[:2000]], _is_unit)
     found: list[_Draft] = []
     above: list[tuple[int, str, list[str]]] = []
     draft: _Draft | None = None
     for number, line in lines:
-        cells = text.cells_of(line, separator)
+        cells = without_units(text.cells_of(line, separator), inside)
         if not _is_row(cells) or _PARAMETERS.match(line):
             draft = None
             above.append((number, line, cells))
             continue
         if draft is None:
-            draft = _begun(above, cells, where, not found) or (found[-1] if found else None)
+            draft = _begun(above, cells, inside, where, not found) or (found[-1] if found else None)
             if draft is None:  # a number in the lines above a table
                 above.append((number, line, cells))
                 continue
@@ -422,7 +481,8 @@ def _tableless(above: Sequence[tuple[int, str, list[str]]], where: str) -> DataE
 
 def _named(cells: Sequence[str]) -> int:
     """Return how many cells name a quantity."""
-    return sum(quantity_of(heading_of(cell)[0]) is not None for cell in cells if cell)
+    names = (heading_of(without_logarithm(cell)[0])[0] for cell in cells if cell)
+    return sum(quantity_of(name) is not None for name in names)
 
 
 @dataclass(slots=True)
@@ -434,6 +494,8 @@ class _Draft:
     rows: list[tuple[int, list[str]]] = field(default_factory=list)
     kelvin: float | None = None
     reptate: bool = False
+    inside: Mapping[int, str] = field(default_factory=dict)
+    """Units that stand in the cells, by column."""
     after: tuple[int, str] | None = None
     """A row that begins with a word, as below a table; among its rows it is damage."""
 
@@ -465,9 +527,20 @@ class _Draft:
             )
         self.rows.append((number, cells))
 
+    def _unit(self, named: tuple[str, str], k: int, quantity: str | None, where: str) -> str:
+        """Return the unit of a column: of its heading, the row below, its cells."""
+
+        def same(one: str, other: str) -> bool:
+            sizes = _size(one, quantity or ""), _size(other, quantity or "")
+            return quantity is None or "" in sizes or sizes[0] == sizes[1]
+
+        said = (named[1], self.units[k], self.inside.get(k, ""))
+        return one_unit(said, same, f"{where}, column {text.excerpt(named[0])}")
+
     def table(self, where: str, part: int, stated: Mapping[str, str]) -> Table:
         cells = list(zip(*(row for _, row in self.rows), strict=True))
-        named = [heading_of(head) for head in self.heads]
+        plain = [without_logarithm(head) for head in self.heads]
+        named = [heading_of(head) for head, _ in plain]
         kept = [k for k, (name, _) in enumerate(named) if name]
         names = [named[k][0] for k in kept]
         twice = [name for name in names if names.count(name) > 1 and quantity_of(name)]
@@ -479,8 +552,10 @@ class _Draft:
         numeric = [k for k, q in zip(kept, quantities, strict=True) if q is not None]
         forms = dict(zip(numeric, number_forms([cells[k] for k in numeric], where), strict=True))
         columns = tuple(
-            Column(names[n], quantities[n], named[k][1] or self.units[k], cells[k],
-                   forms.get(k, NumberForm()))
+            Column(
+                names[n], quantities[n], self._unit(named[k], k, quantities[n], where), cells[k],
+                forms.get(k, NumberForm()), plain[k][1],
+            )
             for n, k in enumerate(kept)
         )  # fmt: skip
         if self.reptate:
@@ -496,7 +571,11 @@ class _Draft:
 
 
 def _begun(
-    above: Sequence[tuple[int, str, list[str]]], row: Sequence[str], where: str, first: bool
+    above: Sequence[tuple[int, str, list[str]]],
+    row: Sequence[str],
+    inside: Mapping[int, str],
+    where: str,
+    first: bool,
 ) -> _Draft | None:
     """Return a table whose headings are the nearest above its first row; None without any."""
     parameters = [line for _, line, _ in above if _PARAMETERS.match(line)]
@@ -521,8 +600,9 @@ def _begun(
         if len(cells) == len(heads) and not any(map(_is_number, filter(None, cells))):
             units = list(cells)  # units that are not known are told when they are needed
     return _Draft(
-        heads, units, kelvin=_temperature(texts, parameters, where), reptate=bool(parameters)
-    )
+        heads, units, kelvin=_temperature(texts, parameters, where), reptate=bool(parameters),
+        inside=inside,
+    )  # fmt: skip
 
 
 def _temperature(

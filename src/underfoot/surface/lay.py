@@ -24,6 +24,8 @@ a lay: grinding both ways of unequal depth has 1.3 and more, the second highest 
 isotropic maps 1.5 at most, but these have no direction below 0.5 of the mean."""
 VALLEY = 0.4
 """Of the lower of two lays: what lies between them."""
+FEWEST_WAVES = 4.0
+"""Across the shorter side of a map: the window turns a wave by one in so many, 14 degrees here."""
 _KERNEL = math.radians(8.0)  # standard deviation
 ALONG_AXIS = math.radians(3.0)
 """Angle within which lines across a lay are rows of the map: heights 0.14 % off."""
@@ -105,12 +107,19 @@ def _crossed_lays(surface: HeightMap) -> tuple[float, ...]:
     """Return the directions of two and more lays, the strongest first; () of one or none.
 
     The power of the slopes by direction, of waves that both axes resolve, over a Gauss kernel of 8
-    degrees (by its Fourier terms): its peaks, with valleys between them.
+    degrees (by its Fourier terms): its peaks, with valleys between them. Waves so long that fewer
+    than four fit across the map have no direction of their own; where they hold most of the power,
+    several lays can't be told.
     """
     power, qx, qy = _power(surface)
     q = np.hypot(qx[:, None], qy[None, :])
     # a square of wave numbers holds more in its corners
     power = np.where(q < math.pi / max(surface.spacings), power * q**2, 0.0)
+    shortest = min(n * h for n, h in zip(surface.shape, surface.spacings, strict=True))
+    told = np.where(q >= 2 * math.pi * FEWEST_WAVES / shortest, power, 0.0)
+    if not told.sum() > 0.5 * power.sum():
+        return ()
+    power = told
     angle = np.arctan2(qy[None, :], qx[:, None])
     degrees = np.arange(180)
     share = np.ones(180)

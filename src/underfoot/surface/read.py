@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, text
-from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms
+from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms, one_unit
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Profile, profile_from_positions
@@ -47,19 +47,23 @@ class TextNumbers:
 
     def units(self) -> list[str]:
         """Return the length units of the headings, in order; none where headings name none."""
-        return _units(self.header)
+        return _units(self.header, self.where)
 
 
-def _units(header: tuple[str, ...]) -> list[str]:
+def _units(header: tuple[str, ...], where: str) -> list[str]:
     """Return the units of the last two lines above the numbers that hold no digits.
 
     A line such as "Length 12.5 mm" says nothing about the columns.
     """
-    for line in reversed(header[-2:]):
-        units = _LENGTH.findall(line)
-        if units and not re.search(r"\d", line):
-            return units
-    return []
+    lines = (line for line in reversed(header[-2:]) if not re.search(r"\d", line))
+    said = list(filter(None, map(_LENGTH.findall, lines)))
+    if len({len(units) for units in said}) > 1:
+        return said[0]  # the nearest line
+
+    def same(one: str, other: str) -> bool:
+        return length_factor(one, where) == length_factor(other, where)
+
+    return [one_unit(units, same, where) for units in zip(*said, strict=True)]
 
 
 def read_numbers(path: Path | str) -> TextNumbers:
@@ -107,7 +111,7 @@ def read_numbers(path: Path | str) -> TextNumbers:
                     where=where,
                     allowed="numbers",
                 ) from None
-    numbered = _is_numbered(values, len(_units(header)))
+    numbered = _is_numbered(values, len(_units(header, where)))
     decimals = tuple(
         max(len(form.plain(cell).partition(".")[2]) for cell in cells)
         if not any("e" in cell.lower() for cell in cells)

@@ -207,7 +207,8 @@ def overlap_lines(
             if last < 0 and own != 0:
                 whole = False
             # enters and leaves within ``near``, with free space before and behind
-            if k > 0 and within == 0 and height[here] - height[ranks[k - 1]] <= near:
+            opposite = k > 0 and side[here] + side[ranks[k - 1]] == 0
+            if opposite and within == 0 and height[here] - height[ranks[k - 1]] <= near:
                 free = k == 1 or height[ranks[k - 1]] - height[ranks[k - 2]] > near
                 free = free and (k + 1 == end - begin or height[ranks[k + 1]] - height[here] > near)
                 # of a line that ends within the body only what it meets first is sure

@@ -14,15 +14,18 @@ from .carriers import carried
 from .floor import without_floor
 from .mesh import Mesh
 from .orientation import box_axes, tread_share
-from .settings import FileSettings, likely_unit
+from .settings import DIRECTIONS, FileSettings, likely_unit
 from .view import view
 
 OUTSOLE_NAMES = re.compile(
     r"out.?sole|tread|rubber|lauf.?sohle|semelle|suela|suola|solado|bottom|^sole", re.IGNORECASE
 )
+_FLOOR_NAMES = re.compile(
+    r"floor|ground|boden|\btable\b|tisch|suelo|build.?plate|print.?bed", re.IGNORECASE
+)
 OTHER_NAMES = re.compile(
-    r"mid.?sole|in.?sole|sock.?liner|upper|shaft|leisten|\blast\b|horma|strobel|floor|ground|"
-    r"boden|\beva\b|foam|lace|tongue|zwischen.?sohle|brand.?sohle|einlege",
+    r"mid.?sole|in.?sole|sock.?liner|upper|shaft|leisten|\blast\b|horma|strobel|"
+    r"\beva\b|foam|lace|tongue|zwischen.?sohle|brand.?sohle|einlege|" + _FLOOR_NAMES.pattern,
     re.IGNORECASE,
 )
 _PLAINLY = re.compile(r"out.?sole|lauf.?sohle", re.IGNORECASE)
@@ -34,6 +37,7 @@ _BIG = (0.5, 0.4)  # of the longest body's extent along and across
 _SLENDER = 3.0  # height over width: a support, no lug
 _SAME = 0.03  # relative difference of the sizes of a pair
 _PARTED = 0.3  # of two bodies' heights that don't overlap: less is bodies that cross
+_BESIDE = 0.3  # of the shorter of two bodies: what they overlap at most, seen from above
 _SHEET = 1e-3  # of the length: a body thinner than it is a surface
 _CLEAR, _CLEARER = 0.03, 1.5  # share of channels that tells the ground's side, and its ratio
 _COARSE = 300  # cells along a body
@@ -48,11 +52,13 @@ class Found:
         meshes: One, or both shoes of a pair.
         down: Direction of the ground in the file's axes, None if the bodies don't tell.
         remarks: Sentences.
+        ground: How the bodies tell ``down``.
     """
 
     meshes: tuple[Mesh, ...]
     down: Array | None
     remarks: tuple[str, ...]
+    ground: str = "Ground side: away from the rest of the file."
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +121,13 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
             return _of_pair(mesh, pair, settings, where, remarks)
         keep, down, told = _without_stack(mesh, bodies, keep, settings)
         remarks += told
-    if down is None and others.any() and keep.any():
-        down = _away(bodies, keep, others)
-    return Found((_part(mesh, keep),), away if down is None else down, tuple(remarks))
+    found = Found((_part(mesh, keep),), away if down is None else down, tuple(remarks))
+    if down is None and others.any() and keep.any() and settings.down not in DIRECTIONS:
+        found = _beside(found, bodies, keep, others)
+    if found.down is not None and settings.down == "flip":
+        turned = "Ground side: turned over by the option down = flip."
+        found = replace(found, down=-found.down, ground=turned)
+    return found
 
 
 def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask, list[str]]:
@@ -306,6 +316,12 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     others = bodies.size[keep & ~plates, :2].max(axis=0, initial=0.0)
     plates &= (others > _ON_TABLE * bodies.size[:, :2]).all(axis=1)
     plates &= (bodies.size[:, :2] > _BIG[1] * others).all(axis=1)
+    rest = keep & ~plates
+    middle = (bodies.low + bodies.high)[:, 2] / 2
+    # what lies within the rest is a cavity or a core
+    plates &= (middle < bodies.low[rest, 2].min(initial=np.inf)) | (
+        middle > bodies.high[rest, 2].max(initial=-np.inf)
+    )
     if not plates.any():
         return keep, []
     rest = keep & ~plates
@@ -369,22 +385,19 @@ def _without_stack(
         keep & ~big & (middle <= bodies.high[low_end, axis]),
         keep & ~big & (middle >= bodies.low[high_end, axis]),
     )
-    groups[0][low_end] = groups[1][high_end] = True
+    for each, end in zip(groups, (low_end, high_end), strict=True):
+        each[end] = True
+        each |= big & _level_with(bodies, end, axis)
     unit = mesh.unit or likely_unit(longest, float(sorted_size[big, 1].max()))
-    frame = bodies.axes if axis == 2 else bodies.axes[[0, 2, 1]] * [[1], [-1], [1]]
-    seen = [view(_part(mesh, one).triangles, frame * unit, longest * unit / _COARSE)
-            for one in groups]  # fmt: skip
-    shares = [
-        tread_share(seen[0].lowest, seen[0].spacing),
-        tread_share(-seen[1].highest, seen[1].spacing),
-    ]
+    ends = [_part(mesh, one) for one in groups]
+    shares = [_treads(each, bodies.axes, axis, unit, longest)[n] for n, each in enumerate(ends)]
     most, least = max(shares), min(shares)
-    sure = most > _CLEAR and most > _CLEARER * least
+    sure = _clear(shares)
     up = bodies.axes[axis]
     upward = bool(up[int(np.argmax(np.abs(up)))] > 0)
     below = shares[0] == most if sure else upward
     group = groups[0] if below else groups[1]
-    down = None if settings.down != "auto" else -up if below else up
+    down = None if settings.down in DIRECTIONS else -up if below else up
     how = (
         f"determined as the end of the stack that carries the tread (channels over {most:.0%} of "
         f"it, {least:.0%} at the other end)"
@@ -394,6 +407,14 @@ def _without_stack(
     taken = _taken(bodies, group, keep, "of a stack of bodies")
     begin = "" if sure else "Assumed: "
     return group, down, [f"{begin}{taken[:-1]}. It is {how}."]
+
+
+def _level_with(bodies: _Bodies, one: int, axis: int) -> Mask:
+    """Return the bodies at the height of one and beside it, as heel and forepart of a sole."""
+    overlap = np.minimum(bodies.high, bodies.high[one]) - np.maximum(bodies.low, bodies.low[one])
+    share = overlap / np.maximum(np.minimum(bodies.size, bodies.size[one]), 1e-12)
+    beside = np.delete(share, axis, axis=1).min(axis=1) < _BESIDE
+    return (share[:, axis] > 1 - _PARTED) & beside
 
 
 def _parting(low: Array, high: Array) -> float:
@@ -406,17 +427,48 @@ def _parting(low: Array, high: Array) -> float:
     return float(np.mean(1 - np.clip(overlap / shortest, 0, 1)))
 
 
-def _away(bodies: _Bodies, keep: Mask, others: Mask) -> Array | None:
-    """Return the direction from the other bodies to the outsole where they lie on one side."""
+def _beside(found: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
+    """Return what was found with the ground's side, where the other bodies lie on one side.
+
+    The ground lies towards a floor and away from another part of a shoe. Where no name tells which
+    of them the others are, the tread does, if it is on one side only; else they are parts of a
+    shoe.
+    """
     box = bodies.low[keep].min(axis=0), bodies.high[keep].max(axis=0)
     big = others & (bodies.size[:, 0] > _BIG[0] * (box[1] - box[0])[0])
-    if not big.any():
-        return None
-    rest = bodies.low[big].min(axis=0), bodies.high[big].max(axis=0)
+    floor = np.array([bool(_FLOOR_NAMES.search(name)) for name in bodies.names])
+    shoe = np.array([_other(name) for name in bodies.names]) & ~floor
+    telling = next((each for each in (big & shoe, big & floor, big) if each.any()), None)
+    if telling is None:
+        return found
+    rest = bodies.low[telling].min(axis=0), bodies.high[telling].max(axis=0)
     offset = (box[0] + box[1] - rest[0] - rest[1]) / 2
     parted = [_parting(np.stack([box[0], rest[0]])[:, n], np.stack([box[1], rest[1]])[:, n])
               for n in (1, 2)]  # fmt: skip
     axis = 1 + int(np.argmax(parted))
     if parted[axis - 1] < 0.5:
-        return None
-    return np.sign(offset[axis]) * bodies.axes[axis]
+        return found
+    away = np.sign(offset[axis]) * bodies.axes[axis]
+    if (telling & shoe).any():
+        return replace(found, down=away)
+    if (telling & floor).any():
+        return replace(found, down=-away, ground="Ground side: towards the floor in the file.")
+    mesh, (length, width) = found.meshes[0], (box[1] - box[0])[:2]
+    unit = mesh.unit or likely_unit(float(length), float(width))
+    shares = _treads(mesh, bodies.axes, axis, unit, float(length))
+    towards = shares[0] > shares[1] if offset[axis] > 0 else shares[1] > shares[0]
+    if _clear(shares) and towards:
+        told = "Assumed: the ground side is the one with the tread, towards the rest of the file."
+        return replace(found, down=-away, ground=told)
+    return replace(found, down=away)
+
+
+def _treads(mesh: Mesh, axes: Array, axis: int, unit: float, length: float) -> list[float]:
+    """Return the share of channels below and above, seen along an axis of the bodies."""
+    frame = axes if axis == 2 else axes[[0, 2, 1]] * [[1], [-1], [1]]
+    seen = view(mesh.triangles, frame * unit, length * unit / _COARSE)
+    return [tread_share(each, seen.spacing) for each in (seen.lowest, -seen.highest)]
+
+
+def _clear(shares: list[float]) -> bool:
+    return max(shares) > _CLEAR and max(shares) > _CLEARER * min(shares)

@@ -105,7 +105,11 @@ def _claims(mesh: Mesh, sample: NDArray[np.intp], carrier: int) -> list[_Claim]:
     over = np.bincount(body, np.abs(normal[:, 2]) * there, len(mesh.bodies)) / 2
     near = _NEAR * length
     touching = level & there & (middle[:, 2] > lowest - near) & (middle[:, 2] < highest + near)
-    below = middle[:, 2] < (lowest + highest) / 2
+    out = [
+        np.bincount(body, np.where(there, np.abs(normal[:, 2]) * np.maximum(far, 0.0), 0.0))
+        for far in (lowest - middle[:, 2], middle[:, 2] - highest)
+    ]  # of each body, how far it stands out on either side
+    below = (out[0] > out[1])[body]
     size = _sizes(mesh.triangles[sample], body, axes, len(mesh.bodies))
     slender = size[:, 2] > _SLENDER * size[:, :2].max(axis=1)
     found = []

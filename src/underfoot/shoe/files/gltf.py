@@ -101,7 +101,9 @@ class _Asset:
             )
         required = set(self.json.get("extensionsRequired", ()))
         for name in sorted(required | set(self.json.get("extensionsUsed", ()))):
-            if name not in _DONE and not name.startswith(_LOOKS):
+            # where packing is no demand, the numbers lie there unpacked too
+            done = name not in required if name in _PACKED else name in _DONE
+            if not done and not name.startswith(_LOOKS):
                 self._unmet(f"extension {name}", name in required)
 
     def _unmet(self, what: str, required: bool) -> None:
@@ -246,8 +248,10 @@ class _Asset:
     def _view(self, number: int) -> tuple[np.ndarray, int]:
         """Return the bytes of a buffer view and their stride, 0 where they lie close."""
         accessor = self.json["bufferViews"][number]
-        for name in _PACKED:
-            if name in accessor.get("extensions", {}):
+        buffer = self.json["buffers"][accessor["buffer"]]
+        for name in _PACKED:  # its own numbers unpacked, unless they are a stand-in without bytes
+            stand_in = buffer.get("extensions", {}).get(name, {}).get("fallback")
+            if stand_in and "uri" not in buffer and name in accessor.get("extensions", {}):
                 self._unmet(f"extension {name}", required=True)
         begin = accessor.get("byteOffset", 0)
         data = self._buffer(accessor["buffer"])

@@ -11,6 +11,7 @@ from .._kernels.covering_discs import local_width
 from .._kernels.regions import pieces, without_holes
 from ..tread_measures import WIDEST_CHANNEL
 from .carriers import spanned
+from .mesh import Unmet
 from .view import Soundness
 
 NARROWEST, WIDEST = 0.020, 0.150
@@ -96,8 +97,12 @@ def check_tread(shape: Shape, has_tread: bool, where: str) -> None:
         )
 
 
-def check_carried(inside: Mask, land: Mask, spacing: float, where: str) -> None:
+def check_carried(
+    inside: Mask, land: Mask, spacing: float, unmet: tuple[Unmet, ...], where: str
+) -> None:
     """Refuse lugs without the body that carries them: all land, with open channels around.
+
+    ``unmet``: what the file asks for that was not done, which may be that body.
 
     Raises:
         DataError: Three parts and more, all land, with gaps as narrow as channels between them.
@@ -111,12 +116,15 @@ def check_carried(inside: Mask, land: Mask, spacing: float, where: str) -> None:
     narrow = gaps & (local_width(gaps, spacing) < WIDEST_CHANNEL)
     share = np.count_nonzero(narrow) / np.count_nonzero(inside)
     if share > _OPEN_AROUND:
+        lost = f" (not read: {', '.join(each.what for each in unmet)})" if unmet else ""
         raise DataError(
             f"its {parts} parts are all land, with open channels around: the body that carries "
-            "them is not among those that were taken",
+            f"them is not among those that were taken{lost}",
             where=where,
             allowed="lugs that touch the body they hang on",
-            remedy="Export lugs and base together, touching or as one body; --solid takes all "
+            remedy=unmet[0].remedy
+            if unmet
+            else "Export lugs and base together, touching or as one body; --solid takes all "
             "bodies whose name holds a word",
         )
 

@@ -22,7 +22,7 @@ from ..tread_measures import (
     without_noise,
 )
 from . import orientation
-from .bodies import found_outsole
+from .bodies import Found, found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
 from .mesh import Mesh
@@ -106,10 +106,8 @@ def outsole_from_mesh(
     outsole = found_outsole(mesh, chosen, where)
     remarks = [*mesh.remarks, *outsole.remarks]
     if len(outsole.meshes) == 1:
-        return _outsole(outsole.meshes[0], sound, outsole.down, remarks, chosen, name, where)
-    shoes = [
-        _outsole(one, sound, outsole.down, remarks, chosen, name, where) for one in outsole.meshes
-    ]
+        return _outsole(outsole.meshes[0], sound, outsole, remarks, chosen, name, where)
+    shoes = [_outsole(one, sound, outsole, remarks, chosen, name, where) for one in outsole.meshes]
     matching = [shoe for shoe in shoes if shoe.foot == chosen.side]
     if len(matching) != 1:
         feet = " and ".join(shoe.foot or "not determined" for shoe in shoes)
@@ -124,7 +122,7 @@ def outsole_from_mesh(
 def _outsole(
     mesh: Mesh,
     sound: Soundness,
-    down: Array | None,
+    found: Found,
     remarks: list[str],
     chosen: FileSettings,
     name: str,
@@ -132,14 +130,14 @@ def _outsole(
 ) -> FileOutsole:
     """Return the outsole that the triangles of one sole describe."""
     remarks = list(remarks)
-    axes = orientation.box_axes(mesh.triangles, chosen, down)
+    axes = orientation.box_axes(mesh.triangles, chosen, found.down)
     low, high = extents(mesh.triangles, axes)
     size = high - low
     stated = None if chosen.unit != "auto" else mesh.unit
     unit, _ = length_unit(
         float(max(size[:2])), float(min(size[:2])), chosen=chosen.unit, in_file=stated, where=where
     )
-    axes, side_remarks = _sides(mesh, axes, unit, chosen, down)
+    axes, side_remarks = _sides(mesh, axes, unit, chosen, found)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
     height, repaired = cleaned(seen.lowest, seen.spacing)
     draft = wall_draft(mesh.triangles, seen, height)
@@ -180,7 +178,7 @@ def _outsole(
     remarks += region_remarks
     surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
-    check_carried(surface.inside, surface.land, seen.spacing, where)
+    check_carried(surface.inside, surface.land, seen.spacing, mesh.unmet, where)
     alike = any(each.startswith("Assumed: the ground side") for each in side_remarks)
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
@@ -210,13 +208,13 @@ def _lag(mesh: Mesh, unit: float, spacing: float) -> int:
 
 
 def _sides(
-    mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, down: Array | None
+    mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, found: Found
 ) -> tuple[Array, list[str]]:
     """Return the axes forward, left, up (rows, m per unit of the file) and how they were found."""
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
-    if down is not None:
-        ground = orientation.Choice(-1, "Ground side: away from the rest of the file.")
+    if found.down is not None:
+        ground = orientation.Choice(-1, found.ground)
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)

@@ -64,8 +64,10 @@ def read_ply(path: Path) -> MeshFile:
     if not {"x", "y", "z"} <= set(vertex):
         raise DataError("the PLY file has no vertices with x, y and z", where=where, remedy=AGAIN)
     vertices = np.stack([vertex[name] for name in "xyz"], axis=1)
+    with np.errstate(invalid="ignore"):  # a nan that signals
+        doubles = vertices.astype(np.float64)
     if vertices.dtype != np.float32:
-        vertices = vertices.astype(np.float64)
+        vertices = doubles
     faces = [np.zeros((0, 3), dtype=np.int64)]
     for name, strips in (("face", False), ("tristrips", True)):
         own = columns.get(name, {})
@@ -74,7 +76,7 @@ def read_ply(path: Path) -> MeshFile:
             continue
         counts = own["\0counts"]
         if not strips:
-            faces.append(triangulated(vertices.astype(np.float64), counts, corners, "PLY", where))
+            faces.append(triangulated(doubles, counts, corners, "PLY", where))
             continue
         for strip in np.split(corners, np.cumsum(counts)[:-1]):
             for piece in np.split(strip, np.flatnonzero(strip < 0)):

@@ -65,11 +65,10 @@ def read_rhino(path: Path) -> MeshFile:
             "no meshes and no surfaces"
         )  # fmt: skip
         raise DataError(f"the 3DM file holds {what}", where=str(path), remedy=_SHADE)
-    remarks = ()
     if reader.bare:
-        remarks = (f"{reader.bare} surfaces of the 3DM file have no saved mesh and were left out.",)
+        reader.unmet[Unmet(f"{reader.bare} surfaces without a saved mesh", False, _SHADE)] = None
     unit = _UNITS.get(str(model.Settings.ModelUnitSystem).rsplit(".", 1)[-1])
-    return MeshFile("3DM", bodies, unit, tuple(reader.unmet), remarks)
+    return MeshFile("3DM", bodies, unit, tuple(reader.unmet))
 
 
 def _of_block(item: Any) -> bool:

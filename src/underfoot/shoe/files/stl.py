@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 
-from .mesh import Body, MeshFile
+from .mesh import Body, Mesh, MeshFile
+from .view import soundness
 
 _HEADER, _RECORD = 84, 50
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
@@ -94,13 +95,24 @@ def _text(path: Path) -> MeshFile:
         numbers = np.array(corners, dtype="S").astype(np.float64)
     except ValueError as error:
         raise DataError(f"a corner is no number ({error})", where=str(path)) from error
+    numbers = numbers.reshape(-1, 3)
+    remarks = ()
     if not re.search(rb"\bendsolid\b", data[-400:], re.IGNORECASE):
-        raise DataError(
-            f"the text ends after {facets} facets without the end mark endsolid: it is cut short",
-            where=str(path),
-            remedy="Export or copy it again; where all facets are there, add a last line endsolid",
+        soup = Mesh(numbers.reshape(-1, 3, 3).astype(np.float32), "STL (text)")
+        sound = soundness(soup, str(path))
+        if not sound.closed or sound.crowded_edges:
+            raise DataError(
+                f"the text ends after {facets} facets without the end mark endsolid, and they "
+                "leave its surface open: it is cut short",
+                where=str(path),
+                remedy="Export or copy it again; where no facet is missing, add a last line "
+                "endsolid",
+            )
+        remarks = (
+            "The text ends without the end mark endsolid; it was read, as its facets leave no "
+            "surface open.",
         )
-    return MeshFile("STL (text)", _solids(data, numbers.reshape(-1, 3)))
+    return MeshFile("STL (text)", _solids(data, numbers), remarks=remarks)
 
 
 def _solids(data: bytes, corners: NDArray[np.float64]) -> list[Body]:

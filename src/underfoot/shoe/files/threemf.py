@@ -34,16 +34,6 @@ _DONE = {
     _SCHEMA + "trianglesets/2021/07": "triangle sets",
 }
 """Namespaces that are read, or that do not bear on the shape."""
-_REST = {
-    _SCHEMA + "slice/2015/07": "slices",
-    _SCHEMA + "beamlattice/2017/02": "beam lattice",
-    _SCHEMA + "beamlattice/balls/2020/07": "balls of a beam lattice",
-    _SCHEMA + "securecontent/2019/04": "encrypted content",
-    _SCHEMA + "booleanoperations/2023/07": "boolean operations",
-    _SCHEMA + "volumetric/2022/01": "volumetric data",
-    _SCHEMA + "displacement/2022/07": "displacement",
-    _SCHEMA + "displacement/2023/10": "displacement",
-}
 UNITS = {
     "micron": 1e-6,
     "millimeter": 1e-3,
@@ -85,6 +75,12 @@ _WITHOUT = "Apply it in the program it comes from, and export the outsole as STL
 
 Key = tuple[str, str]
 """Part of the package and id of an object in it."""
+
+
+def _title(space: str) -> str:
+    """Return the words by which a namespace tells its extension: all but its host and month."""
+    words = re.search(r"/3dmanufacturing/(.+?)/\d{4}/\d\d$", space)
+    return words[1] if words else space
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,7 +323,7 @@ class _Package:
                         f'the file requires an extension "{prefix}" and names no such namespace'
                     )
                 if space not in _DONE:
-                    self._unmet(f"the 3MF extension {_REST.get(space, space)}", required)
+                    self._unmet(f"the 3MF extension {_title(space)}", required)
 
     def _unmet(self, what: str, required: bool) -> None:
         self.unmet[Unmet(what, required, _WITHOUT)] = None
@@ -357,14 +353,15 @@ class _Package:
                 raise self._error(f"a triangle of {part} names a vertex by no whole number")
             spaces = {str(child.tag).rpartition("}")[0][1:] for child in mesh}
             for space in sorted(spaces - set(_DONE)):
-                self._unmet(f"the 3MF extension {_REST.get(space, space)}", required=False)
+                self._unmet(f"the 3MF extension {_title(space)}", required=False)
         elif parts is not None:
             for child in parts.iterfind(f"{{{_CORE}}}component"):
                 placed.append((self._key(child, part, "component"), self._transform(child)))
         else:
             content = next((c.tag for c in each if not str(c.tag).startswith(f"{{{_CORE}}}")), None)
-            space = str(content).rpartition("}")[0][1:]
-            what = _REST.get(space, content) if content else "a mesh or components"
+            what = "a mesh or components"
+            if content:
+                what = f"the 3MF extension {_title(str(content).rpartition('}')[0][1:])}"
             self._unmet(f"{what} in object {each.get('id')}", required=True)
         name = each.get("name") or each.get("partnumber") or ""
         return _Object(name, kind, vertices, faces, tuple(placed))

@@ -5,17 +5,18 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from itertools import chain, zip_longest
 from math import nan
 from pathlib import Path
 
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.numbers_text import NumberForm
+from underfoot.core.numbers_text import NumberForm, one_unit, units_in_cells, without_units
 from underfoot.core.text import decoded
 
 from . import text
-from .text import si_unit
+from .text import force_unit, si_unit
 
 _MOST_CELLS = 50_000_000
 _FOOT = 40  # lines below the table
@@ -73,9 +74,11 @@ def sheet_from(
     """Return the table in a file's bytes; see ``read_sheet``."""
     notes: list[str] = []
     if is_workbook(data):
-        rows = workbook_rows(data, where, sheet)
+        rows = workbook_rows(data, where, sheet, notes)
+        inside = units_in_cells(rows, _known)
+        rows = [without_units(row, inside) for row in rows] if inside else rows
         table = _layout(rows, header_line, where)
-        return _sheet(rows, table, rows[table.first :], None, where, notes)
+        return _sheet(rows, table, rows[table.first :], None, inside, where, notes)
     lines = text.lines_of(decoded(data, where))
     while lines and not lines[-1].strip():
         lines.pop()
@@ -83,13 +86,15 @@ def sheet_from(
     if delimiter is None:
         delimiter = text.delimiter_of(body)
     rows = [text.split(line, delimiter) for line in lines[: max(_HEAD, header_line or 0) + 2]]
+    inside = units_in_cells(rows, _known)
+    rows = [without_units(row, inside) for row in rows] if inside else rows
     table = _layout(rows, header_line, where)
     lines = _without_footer(lines, table.first, delimiter, notes)
     values = text.plain_numbers(lines[table.first :], delimiter, notes)
     if values is not None and (table.head is None or values.shape[1] == len(rows[table.head])):
-        return _sheet(rows, table, [], values, where, notes)
-    rest = [text.split(line, delimiter) for line in lines[table.first :]]
-    return _sheet(rows, table, rest, None, where, notes)
+        return _sheet(rows, table, [], values, inside, where, notes)
+    rest = [without_units(text.split(line, delimiter), inside) for line in lines[table.first :]]
+    return _sheet(rows, table, rest, None, inside, where, notes)
 
 
 def _without_footer(lines: list[str], first: int, delimiter: str, notes: list[str]) -> list[str]:
@@ -126,6 +131,7 @@ def _sheet(
     table: _Layout,
     body: list[list[str]],
     values: np.ndarray | None,
+    inside: Mapping[int, str],
     where: str,
     notes: list[str],
 ) -> Sheet:
@@ -146,7 +152,9 @@ def _sheet(
     units: dict[str, str] = {}
     forms = text.written_forms(body, width, where, notes) if values is None else []
     for i, name in enumerate(text.unique_names([name for name, _ in pairs], "column", notes)):
-        units[name] = pairs[i][1] or (written[i] if i < len(written) else "")
+        below = written[i] if i < len(written) else ""
+        said = (pairs[i][1], below, inside.get(i, ""))
+        units[name] = one_unit(said, _same, f"{where}, column {name}")
         if values is not None:
             numbers[name] = text.measurable(values[:, i], notes)
             continue
@@ -179,7 +187,8 @@ def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layo
         if _are_units(rows[head + 1]) and head + 2 < len(rows):
             return _Layout(head, head + 1, head + 2)
         return _Layout(head, None, head + 1)
-    first = next((i for i in range(min(len(rows), _HEAD)) if _is_row(rows, i)), None)
+    columns = _columns_of_numbers(rows)
+    first = next((i for i in range(min(len(rows), _HEAD)) if _is_row(rows, i, columns)), None)
     if first is None:
         raise DataError("no table of numbers was found", where=where)
     above = [i for i in range(first) if any(rows[i])]
@@ -194,9 +203,21 @@ def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layo
     )
 
 
-def _is_row(rows: list[list[str]], i: int) -> bool:
-    """A row in which most cells are numbers and that looks like the one after it."""
+def _columns_of_numbers(rows: list[list[str]]) -> list[int]:
+    """Columns in which most cells of the later half of the rows are numbers."""
+    later = rows[len(rows) // 2 :]
+    cells = zip_longest(*later, fillvalue="")
+    shares = [[text.is_written_number(cell) for cell in column if cell] for column in cells]
+    return [i for i, numbers in enumerate(shares) if 2 * sum(numbers) > len(numbers)]
+
+
+def _is_row(rows: list[list[str]], i: int, columns: list[int]) -> bool:
+    """A row with numbers in most cells, where the table has them, like the row after it."""
     pair = rows[i : i + 2]
+    there = [rows[i][k] for k in columns if k < len(rows[i]) and rows[i][k]]
+    words = [cell for cell in there if not text.is_written_number(cell)]
+    if 2 * sum(cell.casefold() not in _NOTHING for cell in words) >= max(1, len(there)):
+        return False  # a word and its value above the table
     shares = [[text.is_written_number(cell) for cell in row if cell] for row in pair]
     if not any(shares[0]) or abs(len(pair[-1]) - len(pair[0])) > 1:
         return False
@@ -215,51 +236,75 @@ def _are_units(row: list[str]) -> bool:
     return bool(filled) and all(si_unit(cell) for cell in filled)
 
 
+def _known(word: str) -> bool:
+    return force_unit(word) is not None
+
+
+def _same(one: str, other: str) -> bool:
+    known = force_unit(one), force_unit(other)
+    return None in known or known[0] == known[1]
+
+
 def is_workbook(data: bytes) -> bool:
     """True for the bytes of an XLSX or XLS file."""
     return data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
-def workbook_rows(data: bytes, where: str, sheet: str | None = None) -> list[list[str]]:
-    """Return the cells of one sheet of an XLSX or XLS file as text, the first sheet by default."""
+def workbook_rows(
+    data: bytes, where: str, sheet: str | None = None, notes: list[str] | None = None
+) -> list[list[str]]:
+    """Return the cells of one sheet of an XLSX or XLS file as text, by default the first.
+
+    With ``notes`` the first one that holds half as many numbers as any other; which, is added.
+    """
     read = _xlsx if data[:4] == b"PK\x03\x04" else _xls
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # styles and extensions that do not matter here
-            rows = read(data, where, sheet)
+            sheets = read(data, where, sheet)
     except DataError:
         raise
     except Exception as error:  # both packages raise whatever their parsers meet
         raise DataError(
             "the workbook is damaged", where=where, remedy="Save it again, or export it as CSV"
         ) from error
+    counts = {name: sum(map(text.is_written_number, chain(*rows))) for name, rows in sheets.items()}
+    most = 0 if notes is None else max(counts.values())
+    name = next(name for name, count in counts.items() if 2 * count >= most)
+    if len(sheets) > 1 and notes is not None:
+        notes.append(f'sheet "{name}" of {", ".join(sheets)}')
+    rows = sheets[name]
     while rows and not any(rows[-1]):
         rows.pop()
     return rows
 
 
-def _xlsx(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
+def _xlsx(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str]]]:
     from openpyxl import load_workbook
 
     book = load_workbook(BytesIO(data), read_only=True, data_only=True)
-    name = _sheet_name(book.sheetnames, sheet, where)
-    return _texts(book[name].iter_rows(values_only=True), where)
+    names = _chosen([one.title for one in book.worksheets], sheet, where)
+    return {name: _texts(book[name].iter_rows(values_only=True), where) for name in names}
 
 
-def _xls(data: bytes, where: str, sheet: str | None) -> list[list[str]]:
+def _xls(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str]]]:
     import xlrd
 
     book = xlrd.open_workbook(file_contents=data, on_demand=True, logfile=io.StringIO())
-    table = book.sheet_by_name(_sheet_name(book.sheet_names(), sheet, where))
-    return _texts((table.row_values(i) for i in range(table.nrows)), where)
+    tables = (book.sheet_by_name(name) for name in _chosen(book.sheet_names(), sheet, where))
+    return {
+        table.name: _texts((table.row_values(i) for i in range(table.nrows)), where)
+        for table in tables
+    }
 
 
-def _sheet_name(names: Sequence[str], sheet: str | None, where: str) -> str:
+def _chosen(names: Sequence[str], sheet: str | None, where: str) -> Sequence[str]:
+    """Return the sheet asked for, or all of them."""
     if not names:
         raise DataError("the workbook has no sheet", where=where)
     if sheet is not None and sheet not in names:
         raise DataError(f'no sheet named "{sheet}"', where=where, allowed=", ".join(names))
-    return sheet or names[0]
+    return names if sheet is None else [sheet]
 
 
 def _texts(rows: Iterable[Sequence[object]], where: str) -> list[list[str]]:
