@@ -14,7 +14,7 @@ from .surface_mesh import LATTICE, SurfaceMesh
 
 Floats = NDArray[np.float64]
 CELLS = 1_200_000
-"""Cells at most from which a surface is made: a heel has lines within 0.05 mm, a sole 0.12 mm."""
+"""Cells at most from which a surface is made."""
 SMALL, MOST, LOADED = 1e-3, 24_000, 1e-3
 """m of a triangle's longest side where a pressure is; corners at most, above which it is doubled;
 share of a pressure's peak from which it counts."""

@@ -90,13 +90,16 @@ class _Scene:
         return np.repeat(cells[self.mesh.cell], 4, axis=0)
 
     def surface(self) -> tuple[SurfaceMesh, float]:
-        """Return the sole as few triangles, and within what (m) its lines are where cells end."""
+        """Return the sole as few triangles, and within what (m) its lines are of the drawing.
+
+        A line passes within ``TOLERANCE`` cells of where cells change, half a cell off the drawing.
+        """
         sole = self.sole
         if self.case is None:
             made = surface_mesh(sole.x, sole.y, sole.height, sole.land)
-            return made, TOLERANCE * sole.spacing
+            return made, (TOLERANCE + 0.5) * sole.spacing
         side = spacing_for(sole)
-        return designed_surface(self.case, side), TOLERANCE * side
+        return designed_surface(self.case, side), (TOLERANCE + 0.5) * side
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""
