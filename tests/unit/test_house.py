@@ -152,6 +152,7 @@ def test_each_package_that_the_source_imports_is_declared():
         lines += extra
     declared = {re.split(r"[^\w.-]", line)[0].lower().replace("-", "_") for line in lines}
     declared |= {"netgen", "pydantic_core"}  # of NGSolve, pydantic
+    declared |= {"pil"} if "pillow" in declared else set()
     imported = {
         name.partition(".")[0].lower() for path in files().values() for name in imported_names(path)
     }

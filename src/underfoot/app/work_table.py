@@ -135,9 +135,9 @@ def _of_file(path: Path, read: Callable[[Path], Any]) -> Any:
     return seen[1]
 
 
-def _stamps(path: Path, found: Any) -> list[tuple[int, int]]:
+def _stamps(path: Path, content: Any) -> list[tuple[int, int]]:
     stamps = []
-    for each in (path, *map(Path, getattr(found, "files", ()))):
+    for each in (path, *map(Path, getattr(content, "files", ()))):
         try:
             stamps.append((each.stat().st_mtime_ns, each.stat().st_size))
         except OSError:

@@ -203,13 +203,13 @@ def without_units(cells: Sequence[str], units: Mapping[int, str]) -> list[str]:
     return bare
 
 
-def one_unit(words: Sequence[str], same: Callable[[str, str], bool], where: str) -> str:
+def one_unit(units: Sequence[str], same: Callable[[str, str], bool], where: str) -> str:
     """Return the unit of a column from all places that name one (heading, row below, cells).
 
     Raises:
         DataError: Two that ``same`` holds for different.
     """
-    named = [word for word in words if word.strip("[](){} -")]
+    named = [word for word in units if word.strip("[](){} -")]
     for word in named[1:]:
         if not same(named[0], word):
             raise DataError(
@@ -217,4 +217,4 @@ def one_unit(words: Sequence[str], same: Callable[[str, str], bool], where: str)
                 where=where,
                 remedy="Keep the one that the numbers are in",
             )
-    return next(iter(named), next(iter(filter(None, words)), ""))
+    return next(iter(named), next(iter(filter(None, units)), ""))

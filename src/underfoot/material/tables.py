@@ -530,8 +530,8 @@ class _Draft:
     def _unit(self, named: tuple[str, str], k: int, quantity: str | None, where: str) -> str:
         """Return the unit of a column: of its heading, the row below, its cells."""
 
-        def same(one: str, other: str) -> bool:
-            sizes = _size(one, quantity or ""), _size(other, quantity or "")
+        def same(first: str, other: str) -> bool:
+            sizes = _size(first, quantity or ""), _size(other, quantity or "")
             return quantity is None or "" in sizes or sizes[0] == sizes[1]
 
         said = (named[1], self.units[k], self.inside.get(k, ""))

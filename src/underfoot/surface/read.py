@@ -60,8 +60,8 @@ def _units(header: tuple[str, ...], where: str) -> list[str]:
     if len({len(units) for units in said}) > 1:
         return said[0]  # the nearest line
 
-    def same(one: str, other: str) -> bool:
-        return length_factor(one, where) == length_factor(other, where)
+    def same(first: str, other: str) -> bool:
+        return length_factor(first, where) == length_factor(other, where)
 
     return [one_unit(units, same, where) for units in zip(*said, strict=True)]
 

@@ -46,7 +46,7 @@ def build(session: Session) -> None:
     async def show() -> None:
         nonlocal shown
         runs = _runs(session)
-        rows = await table.show({name: _words(session, task) for name, task in runs.items()})
+        rows = await table.show({name: _state_text(session, task) for name, task in runs.items()})
         waits = {name for name, task in runs.items() if task.open}
         missing[:] = [row["name"] for row in rows if row["state"] in ("not_computed", "earlier")]
         missing[:] = [name for name in missing if name not in waits]
@@ -90,7 +90,7 @@ def _runs(session: Session) -> dict[str, Task]:
     return {task.about: task for task in session.jobs.tasks.values() if task.function == RUN}
 
 
-def _words(session: Session, task: Task) -> str:
+def _state_text(session: Session, task: Task) -> str:
     """Return what a run does or why it has no result; empty where it is done."""
     if task.state == DONE:
         return ""

@@ -409,10 +409,12 @@ def _without_stack(
     return group, down, [f"{begin}{taken[:-1]}. It is {how}."]
 
 
-def _level_with(bodies: _Bodies, one: int, axis: int) -> Mask:
-    """Return the bodies at the height of one and beside it, as heel and forepart of a sole."""
-    overlap = np.minimum(bodies.high, bodies.high[one]) - np.maximum(bodies.low, bodies.low[one])
-    share = overlap / np.maximum(np.minimum(bodies.size, bodies.size[one]), 1e-12)
+def _level_with(bodies: _Bodies, number: int, axis: int) -> Mask:
+    """Return the bodies at the height of a body and beside it, as heel and forepart of a sole."""
+    overlap = np.minimum(bodies.high, bodies.high[number]) - np.maximum(
+        bodies.low, bodies.low[number]
+    )
+    share = overlap / np.maximum(np.minimum(bodies.size, bodies.size[number]), 1e-12)
     beside = np.delete(share, axis, axis=1).min(axis=1) < _BESIDE
     return (share[:, axis] > 1 - _PARTED) & beside
 
@@ -427,7 +429,7 @@ def _parting(low: Array, high: Array) -> float:
     return float(np.mean(1 - np.clip(overlap / shortest, 0, 1)))
 
 
-def _beside(found: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
+def _beside(outsole: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     """Return what was found with the ground's side, where the other bodies lie on one side.
 
     The ground lies towards a floor and away from another part of a shoe. Where no name tells which
@@ -440,27 +442,27 @@ def _beside(found: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     shoe = np.array([_other(name) for name in bodies.names]) & ~floor
     telling = next((each for each in (big & shoe, big & floor, big) if each.any()), None)
     if telling is None:
-        return found
+        return outsole
     rest = bodies.low[telling].min(axis=0), bodies.high[telling].max(axis=0)
     offset = (box[0] + box[1] - rest[0] - rest[1]) / 2
     parted = [_parting(np.stack([box[0], rest[0]])[:, n], np.stack([box[1], rest[1]])[:, n])
               for n in (1, 2)]  # fmt: skip
     axis = 1 + int(np.argmax(parted))
     if parted[axis - 1] < 0.5:
-        return found
+        return outsole
     away = np.sign(offset[axis]) * bodies.axes[axis]
     if (telling & shoe).any():
-        return replace(found, down=away)
+        return replace(outsole, down=away)
     if (telling & floor).any():
-        return replace(found, down=-away, ground="Ground side: towards the floor in the file.")
-    mesh, (length, width) = found.meshes[0], (box[1] - box[0])[:2]
+        return replace(outsole, down=-away, ground="Ground side: towards the floor in the file.")
+    mesh, (length, width) = outsole.meshes[0], (box[1] - box[0])[:2]
     unit = mesh.unit or likely_unit(float(length), float(width))
     shares = _treads(mesh, bodies.axes, axis, unit, float(length))
     towards = shares[0] > shares[1] if offset[axis] > 0 else shares[1] > shares[0]
     if _clear(shares) and towards:
         told = "Assumed: the ground side is the one with the tread, towards the rest of the file."
-        return replace(found, down=-away, ground=told)
-    return replace(found, down=away)
+        return replace(outsole, down=-away, ground=told)
+    return replace(outsole, down=away)
 
 
 def _treads(mesh: Mesh, axes: Array, axis: int, unit: float, length: float) -> list[float]:

@@ -122,7 +122,7 @@ def outsole_from_mesh(
 def _outsole(
     mesh: Mesh,
     sound: Soundness,
-    found: Found,
+    told: Found,
     remarks: list[str],
     chosen: FileSettings,
     name: str,
@@ -130,14 +130,14 @@ def _outsole(
 ) -> FileOutsole:
     """Return the outsole that the triangles of one sole describe."""
     remarks = list(remarks)
-    axes = orientation.box_axes(mesh.triangles, chosen, found.down)
+    axes = orientation.box_axes(mesh.triangles, chosen, told.down)
     low, high = extents(mesh.triangles, axes)
     size = high - low
     stated = None if chosen.unit != "auto" else mesh.unit
     unit, _ = length_unit(
         float(max(size[:2])), float(min(size[:2])), chosen=chosen.unit, in_file=stated, where=where
     )
-    axes, side_remarks = _sides(mesh, axes, unit, chosen, found)
+    axes, side_remarks = _sides(mesh, axes, unit, chosen, told)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
     height, repaired = cleaned(seen.lowest, seen.spacing)
     draft = wall_draft(mesh.triangles, seen, height)
@@ -208,13 +208,13 @@ def _lag(mesh: Mesh, unit: float, spacing: float) -> int:
 
 
 def _sides(
-    mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, found: Found
+    mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, told: Found
 ) -> tuple[Array, list[str]]:
     """Return the axes forward, left, up (rows, m per unit of the file) and how they were found."""
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
-    if found.down is not None:
-        ground = orientation.Choice(-1, found.ground)
+    if told.down is not None:
+        ground = orientation.Choice(-1, told.ground)
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)

@@ -240,8 +240,8 @@ def _known(word: str) -> bool:
     return force_unit(word) is not None
 
 
-def _same(one: str, other: str) -> bool:
-    known = force_unit(one), force_unit(other)
+def _same(first: str, other: str) -> bool:
+    known = force_unit(first), force_unit(other)
     return None in known or known[0] == known[1]
 
 
