@@ -9,8 +9,8 @@
 # Consequence: repeated measures (a walker's friction on several floors, left and right, markers of one segment), which correlate
 #   at 0.8 to 0.95, are "not missing at random" in a third of the studies although a dice threw them out; one drops the
 #   study or models a cause that is not there.
-# Seen: 300 rows, 4 columns, 30 per cent thrown out by chance, 60 studies, 3 of which should be below 0.05: correlation 0: 2, with EM 3;
-#   correlation 0.9: 20, with EM 1. In a longer run of 200 studies: 42.5 and 5.0 per cent.
+# Seen: 300 rows, 4 columns, 30 per cent thrown out by chance, 60 studies, 3 of which should be below 0.05: correlation 0: 2, with
+#   EM 3; correlation 0.9: 20, with EM 1. In a longer run of 200 studies: 42.5 and 5.0 per cent.
 set -euo pipefail
 export OMP_NUM_THREADS=1 MPLBACKEND=Agg
 d=$(mktemp -d); trap 'rm -rf "$d"' EXIT

@@ -6,8 +6,9 @@
 # Happens: the mean of two opposite faces is multiplied by the distance of their centres, which is the slant, not the height:
 #   the volume grows by 1 / cos of the lean. A CPYRAM's centre is put at half of its height, a tapered hexahedron gets the
 #   mean of its two faces. CTETRA is right, upright bricks too, which is why one does not see it. No warning.
-# Consequence: soles, tyres and feet are meshed with leaning bricks: weight, inertia and centre of gravity are off,
-#   the mass by 15 per cent at 30 degrees and 41 at 45; they change when the elements are renumbered, and are not those of the same block in tetrahedra.
+# Consequence: soles, tyres and feet are meshed with leaning bricks: weight, inertia and centre of gravity are off, the mass by
+#   15 per cent at 30 degrees and 41 at 45; they change when the elements are renumbered, and are not those of the same
+#   block in tetrahedra.
 # Seen: block 10 x 10 x 10 mm leaning by 45 degrees: CHEXA 1414 or 1000 mm3, by numbering, two CPENTA 1414, six CTETRA 1000, right
 #   1000; pyramid 12 mm high: centre at 6.0, right 3.0; leaning one 566, right 400 mm3; frustum 100 to 4 mm2: 520, right 413.
 set -euo pipefail

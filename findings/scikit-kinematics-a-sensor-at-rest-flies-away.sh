@@ -10,8 +10,8 @@
 # Consequence: the package's own example (R_init that turns y up) and every sensor on a shank, a thigh or a sloping shoe: stride
 #   lengths and foot clearance are off by metres after a second. A mount of 10 degrees gives 0.85 m in 1 s.
 # Seen, still for 10 s at 100 Hz: sensor's y axis up: .pos (0, 490.3, -490.3) m, analytical() (0, 0, 0); tilted by 10 degrees
-#   about x: (0, 85.1, -7.4) m, analytical() 0; z axis up: 0 in both. 8 m along x from rest
-#   to rest, y axis up: (8, 490.3, -490.3), analytical() (8, 0, 0).
+#   about x: (0, 85.1, -7.4) m, analytical() 0; z axis up: 0 in both. 8 m along x from rest to rest, y axis up:
+#   (8, 490.3, -490.3), analytical() (8, 0, 0).
 set -euo pipefail
 export OMP_NUM_THREADS=1 MPLBACKEND=Agg
 d=$(mktemp -d); trap 'rm -rf "$d"' EXIT
