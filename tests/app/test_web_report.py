@@ -55,7 +55,7 @@ def test_the_report_of_a_project_says_what_each_number_is_of(tmp_path, project):
 
 def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
     for number in range(3):
-        project.copy("heel", f"heel {number}", {"shoe.tread.lug_width": f"{6 + number} mm"})
+        project.copy("heel", f"heel {number}", {"shoe.tread.channel_width": f"{3 + number / 2} mm"})
     project.path("broken").write_text("[shoe\n")
     with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
         page.goto(app.base + "project")
@@ -85,7 +85,7 @@ def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
         lines = list(csv.DictReader(got.value.path().read_text().splitlines()))
         row = next(line for line in lines if line["variant"] == "heel 1")
         summary = project.summary("heel 1")
-        assert float(row["shoe.tread.lug_width (m)"]) == pytest.approx(7e-3)
+        assert float(row["shoe.tread.channel_width (m)"]) == pytest.approx(3.5e-3)
         for column, value in (("cof (1)", summary.cof), ("cof, 95 % low (1)", summary.low)):
             assert float(row[column]) == pytest.approx(value)
         page.goto(f"{app.base}answer?variant=heel 1")
