@@ -26,7 +26,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
 from queue import Queue
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
@@ -79,8 +79,8 @@ class Faults(ast.NodeVisitor):
             self._lines.append(self._lines[-1] + len(line))
         self.visit(ast.parse(text))
 
-    def _offsets(self, node: ast.AST) -> tuple[int, int]:
-        place = (node.lineno, node.end_lineno), (node.col_offset, node.end_col_offset)  # type: ignore[attr-defined]
+    def _offsets(self, node: Any) -> tuple[int, int]:
+        place = (node.lineno, node.end_lineno), (node.col_offset, node.end_col_offset)
         start, end = (self._lines[line - 1] + column for line, column in zip(*place, strict=True))
         return start, end
 

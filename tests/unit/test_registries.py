@@ -71,7 +71,7 @@ def test_every_fluid_of_the_catalogue_is_one_that_is_spilled(name):
 UNITS = {
     "force": "N", "load": "N", "pressure": "Pa", "area": "m^2", "thickness": "m", "depth": "m",
     "cof": "1", "probability": "1", "share": "1", "ratio": "1", "time": "s", "distance": "m",
-    "slide": "m", "speed": "m/s", "temperature": "K", "viscosity": "Pa s", "angle": "rad",
+    "slide": "m", "speed": "m/s", "temperature": "K", "viscosity": "Pa*s", "angle": "rad",
 }  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -141,10 +141,15 @@ def persons(
     """Print how many persons a study needs (in each group, for groups and slips)."""
     from underfoot.trials import statistics
 
-    settings = {"difference": difference, "sd": sd, "shares": shares, "conditions": conditions}
+    settings: dict[str, Any] = {
+        "difference": difference,
+        "sd": sd,
+        "shares": shares,
+        "conditions": conditions,
+    }
 
     def chance(count: int) -> float:
-        return statistics.power(design, count, **settings)  # type: ignore[arg-type]  # each design takes what it needs
+        return statistics.power(design, count, **settings)
 
     count = statistics.persons_needed(chance, power)
     each = " in each group" if design in ("groups", "slips", "slips_equivalent") else ""

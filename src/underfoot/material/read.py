@@ -264,14 +264,15 @@ def _series(
     """Return the series of a table, moduli as headed."""
     where, tau = table.where, _times(table)
     fraction, term = table.named("fraction"), table.named(*_TERMS)
-    if fraction is None and term is None:
+    terms = fraction or term
+    if terms is None:
         raise DataError(
             "no column of terms among "
             + ", ".join(text.excerpt(column.name) for column in table.columns),
             where=where,
             allowed="E_i or G_i (with unit), e_i or g_i (fractions)",
         )
-    values = table.si(fraction or term)  # type: ignore[arg-type]  # one of them is there
+    values = table.si(terms)
     wrong = np.flatnonzero(values < 0.0)
     if wrong.size and fraction is None:
         raise InputError(
