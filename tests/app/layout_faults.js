@@ -68,7 +68,7 @@
   for (const e of document.querySelectorAll("div, section, svg, img, canvas, fieldset, table")) {
     const r = e.getBoundingClientRect(), style = getComputedStyle(e);
     const framed = style.borderTopWidth !== "0px" || (style.backgroundColor !== "rgba(0, 0, 0, 0)" && e.parentElement && style.backgroundColor !== getComputedStyle(e.parentElement).backgroundColor);
-    if (!framed || r.width * r.height < 6000 || !shown(e) || e.closest("svg, .q-focus-helper")) continue;
+    if (!framed || r.width * r.height < 6000 || !shown(e) || e.closest("svg, .q-focus-helper, .q-linear-progress")) continue;
     if (e.innerText?.trim() || e.querySelector("svg, img, canvas, input, textarea, button, iframe") || ["svg", "IMG", "CANVAS"].includes(e.tagName)) continue;
     if ([e, ...e.querySelectorAll("*")].some((each) => getComputedStyle(each, "::after").content !== "none")) continue;
     say("an empty box", `${e.tagName}.${e.className}`);

@@ -75,16 +75,24 @@ def test_an_emptied_field_takes_back_what_was_given(tmp_path):
         field.blur()
         until(lambda: field.input_value() == shown)
         assert load(file).value("contaminant.viscosity") == pytest.approx(usual)
-        # what is typed while the form is drawn anew with another value is not lost
+        assert not page.complaints
+
+
+@pytest.mark.parametrize("leave", ["Enter", "Tab"])
+@pytest.mark.parametrize("pause", [0, 250])  # ms: the form is drawn anew after the text, or within
+def test_what_is_typed_while_the_form_is_drawn_anew_is_kept(tmp_path, pause, leave):
+    project = project_of(tmp_path / "project", "heel")
+    file = project.path("heel")
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "design?variant=heel")
         page.get_by_role("tab", name="Motion").click()
-        speed = page.get_by_label("Sliding speed", exact=True)
-        speed.fill("0.4")
+        page.get_by_label("Sliding speed", exact=True).fill("0.4")
         page.get_by_label("Load on the shoe", exact=True).click()
         page.keyboard.press("Control+A")
-        page.keyboard.type("432", delay=250)
+        page.keyboard.type("432", delay=pause)
         until(lambda: load(file).value("motion.speed") == pytest.approx(0.4))
         page.wait_for_timeout(500)
         assert page.get_by_label("Load on the shoe", exact=True).input_value() == "432"
-        page.keyboard.press("Enter")
+        page.keyboard.press(leave)
         until(lambda: load(file).value("motion.normal_force") == pytest.approx(432))
         assert not page.complaints

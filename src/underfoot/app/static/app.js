@@ -249,4 +249,12 @@ new MutationObserver(() => {
   if (text === null) { field.select(); return; }
   field.value = text;
   field.dispatchEvent(new Event("input", { bubbles: true }));
+  // A browser says nothing of a change that a script wrote: the field tells it itself when it is left.
+  let told = false;
+  const tell = () => setTimeout(() => {
+    if (!told && field.isConnected) field.dispatchEvent(new Event("change", { bubbles: true }));
+  });
+  field.addEventListener("change", () => { told = true; });
+  field.addEventListener("blur", tell);
+  field.addEventListener("keydown", ({ key }) => { if (key === "Enter") tell(); });
 }).observe(document, { childList: true, subtree: true });
