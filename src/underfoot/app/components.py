@@ -50,6 +50,13 @@ def sole_picture(session: Session, name: str) -> ui.element:
     return made
 
 
+def folded(heading: str) -> ui.element:
+    """Return a part of a page that is shown when its heading is clicked, and on paper."""
+    with ui.element("details").classes("section") as made, ui.element("summary"):
+        ui.label(heading)
+    return made
+
+
 SCALE_END = 0.8
 """COF at the end of the scale."""
 

@@ -42,7 +42,7 @@ def _wear_sections(series: WearSeries, pictures: dict[str, bytes]) -> tuple[Sequ
     parts = [*drawn, *table_sections(series), *remark_sections(series)]
     if not series.soles:
         return parts, ""
-    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)))
+    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)), stage=True)
     return [sole, *parts], viewer_script()
 
 
