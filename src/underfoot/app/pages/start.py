@@ -67,8 +67,8 @@ def _recent(session: Session) -> None:
         for name in recent:
             summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
-                sole_picture(session, name)
                 ui.link(name, address("/design", variant=name)).props('translate="no"')
+                sole_picture(session, name)
                 if summary is None or summary.cof is None:
                     ui.label(text("start.not_computed")).classes("soft")
                     continue
