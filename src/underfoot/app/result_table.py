@@ -95,7 +95,7 @@ class ResultTable:
         made = ui.table(columns=columns, rows=self.rows, row_key="name").props("flat dense")
         made.classes("result-table")
         link = '<a :href="props.row.link" translate="no">{{ props.row.name }}</a>'
-        made.add_slot("body-cell-name", f"<q-td>{link}{SOLE}</q-td>")
+        made.add_slot("body-cell-name", f'<q-td><div class="named">{link}{SOLE}</div></q-td>')
         for name in (*inputs, *NUMBERS):  # sorted by the number, shown with unit and interval
             old = "" if name in inputs else OLD
             cell = f"<q-td {old}>{{{{ props.row['{name}_text'] }}}}</q-td>"
