@@ -383,7 +383,9 @@ def test_the_scene_of_wear_holds_what_each_state_has_lost():
 
 def test_the_last_state_of_wear_is_the_sole_without_tread():
     series, _ = worn_series()
-    bare = heel_surface(Heel(length=0.06, width=0.06, rear_radius=0.028), spacing=1e-3)
+    bare = heel_surface(
+        Heel(length=0.06, width=0.06, rear_radius=0.028, outsole_thickness=0.02), spacing=1e-3
+    )
     without = {"untreaded": series.points[0].outcome, "soles": (*series.soles, bare)}
     pane = wear_scene(dataclasses.replace(series, **without))["panes"][0]
     labels = pane["histories"]["left"]["labels"]
