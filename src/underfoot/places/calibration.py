@@ -56,9 +56,14 @@ class FloorReading:
     kind: str = "value"
     sd: float | None = None
 
-    def __str__(self) -> str:
+    @property
+    def value_text(self) -> str:
+        """The reading with its unit and what bounds it."""
         bound = {"value": "", "lower": "at least ", "upper": "at most "}[self.kind]
-        return f"{self.machine.title}: {bound}{self.value:g} {self.machine.scale.unit}"
+        return f"{bound}{self.value:g} {self.machine.scale.unit}"
+
+    def __str__(self) -> str:
+        return f"{self.machine.title}: {self.value_text}"
 
 
 def learn_floor(
