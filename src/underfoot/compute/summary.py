@@ -93,7 +93,7 @@ PARTS: Mapping[str, str] = {
     "strobel_2012": "how much adhesion this fluid leaves",
     "patir_cheng_1978": "how roughness slows the fluid",
 }
-"""What each model is for, to who does not know its name."""
+"""What each model is for, in words for readers who do not know its name."""
 DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections whose assumed inputs move the film load most, the most sensitive first."""
 

@@ -356,7 +356,7 @@ class StudyResult(Presentable):
 
     @property
     def keys(self) -> Sequence[str]:
-        """Of what was set so far."""
+        """Keys of the cases that were set so far, in order."""
         return self.jobs.keys if isinstance(self.jobs, Jobs) else [job.key for job in self.jobs]
 
     @cached_property

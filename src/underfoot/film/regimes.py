@@ -21,7 +21,7 @@ SHARE_LIMITS = (0.1, 0.9)
 
 
 class Lubrication(StrEnum):
-    """Who separates the surfaces."""
+    """What separates the surfaces: fluid, solid contact, or both."""
 
     BOUNDARY = "boundary"
     MIXED = "mixed"

@@ -102,7 +102,7 @@ class BowdenTaborLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the law, the strength and the contact."""
+        """Sources of the law, the strength and the contact."""
         parts = (
             "Bowden and Tabor 1950, The Friction and Lubrication of Solids",
             self.shear_strength.source,

@@ -67,7 +67,7 @@ STEEPEST = 1.26
 CONTACT_PRESSURE = 300e3
 """Pa, of lugs under a shoe: where no pressure is known."""
 LEAST_PRESSURE = 1.0
-"""Pa below which the real area a load is that of light loads."""
+"""Pa; below it the real area per load is that in the limit of light loads."""
 
 
 def real_slope(rq: ArrayLike) -> Array:
@@ -445,7 +445,7 @@ class PairContactLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the calibration."""
+        """Source of the calibration."""
         return self.draws.source
 
     @property

@@ -96,7 +96,7 @@ class SpeedEffectLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the mechanism, then of the boundary friction."""
+        """Sources of the mechanism, then of the boundary friction."""
         return "; ".join(dict.fromkeys((self.effect.source, self.cof_boundary.source)))
 
     @property

@@ -48,7 +48,7 @@ LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
 
 
 EVEN = 5e-4
-"""COF below which a change is none: it is printed with three decimals."""
+"""Smallest change of COF that counts: COF is printed with three decimals."""
 WORN_REGION = (
     "Beschorner et al., worn region size, 57 shoes (abstract; doi 10.5061/dryad.vmcvdncsk)"
 )
