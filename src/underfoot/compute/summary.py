@@ -182,7 +182,13 @@ def verdict_sentence(
 def headline(
     status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
 ) -> tuple[str, ...]:
-    """Return the answer in a few sentences: COF and what spoils it, film, slip probability."""
+    """Return the answer in a few sentences: COF and what spoils it, film, slip probability.
+
+    Parameters:
+        status: Of the result.
+        scalars: Its numbers by name.
+        labels: Its sentences by name.
+    """
     if not status.usable:
         reason = f" ({labels['no_result']})" if "no_result" in labels else ""
         return (f"No result: {status}{reason}. {status.remedy}",)

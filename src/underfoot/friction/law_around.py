@@ -50,7 +50,13 @@ class LawAround:
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> list[Breach]:
-        """Return what leaves the range on which the law was measured."""
+        """Return what leaves the range on which the law was measured.
+
+        Parameters:
+            contact_pressure: Of the solid contact, Pa.
+            speed: Of sliding, m/s.
+            film_thickness: m.
+        """
         return self.law.breaches(
             contact_pressure=contact_pressure, speed=speed, film_thickness=film_thickness
         )

@@ -317,6 +317,11 @@ def correlation_length(
 
     1/e by default; 0.2 is the level of Sal in ISO 25178-2.
 
+    Parameters:
+        surface: Profile or map.
+        level: Of the autocorrelation, 0 to 1.
+        axis: Of a map: 0 for x, 1 for y.
+
     Raises:
         InputError: Level outside 0 to 1, or not reached within half the length.
     """
