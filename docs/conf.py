@@ -15,7 +15,7 @@ copyright = author
 release = metadata.version("underfoot")
 root = Path(__file__).parents[1]
 released = re.search(r'date-released: "(.*)"', (root / "CITATION.cff").read_text("utf-8"))
-changed = "\n## Unreleased\n" in (root / "CHANGELOG.md").read_text("utf-8")
+changed = "(not yet released)\n" in (root / "CHANGELOG.md").read_text("utf-8")
 
 extensions = [
     "myst_parser",

@@ -14,6 +14,7 @@ from underfoot.case.terms import TERMS
 from underfoot.cli.app import app
 from underfoot.cli.output import print_table, shortened
 from underfoot.compute.summary import ranked_assumptions
+from underfoot.core import Remark
 from underfoot.core.presentation import Table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -176,11 +177,11 @@ def test_trouble_with_files_is_told_in_words():
 
 def test_decisive_assumptions_come_first_one_section_after_the_other():
     listed = (
-        "motion: duration = 0.12 s (90 ms)",
-        "shoe.heel: length = 60 mm (no heel shape printed)",
-        "interface: roughness_beyond_cutoff = 2.0 (one reading)",
-        "interface: effective_rq = 14 um (composite)",
-        "Contact friction is proportional to the contact pressure.",
+        Remark("motion", "duration = 0.12 s (90 ms)"),
+        Remark("shoe.heel", "length = 60 mm (no heel shape printed)"),
+        Remark("interface", "roughness_beyond_cutoff = 2.0 (one reading)"),
+        Remark("interface", "effective_rq = 14 um (composite)"),
+        Remark("", "Contact friction is proportional to the contact pressure."),
     )
     assert [shortened(line) for line in ranked_assumptions(listed)] == [
         "interface: roughness_beyond_cutoff = 2.0",

@@ -452,7 +452,7 @@ NO_VALUE = (
     "Each value carries its origin", "its own fields with unit, range, default and source",
     "and the defaults of the people equal", "so it is no default", "So a table is no default",
     "**Defaults** have a source", "lists unit, range", "and default of one",
-    "commands, options, keys and defaults is held", "a default is read by the role",
+    "commands, options, keys and defaults is held", "Write a default with the role",
     "each default its `source`", "compares default answers with finer ones", "(JMP's default)",
     "that cases use by default", "default, and what runs carry", "Two defaults lie outside",
     "The defaults of the program are shown",

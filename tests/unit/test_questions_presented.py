@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from underfoot.compute import summary
-from underfoot.core import InputError, SourcedValue, Status
+from underfoot.core import InputError, Remark, SourcedValue, Status
 from underfoot.core.presentation import value_text
 from underfoot.questions.changes import Change
 from underfoot.questions.effects import ChangeEffect
@@ -67,16 +67,20 @@ def test_the_headline_has_the_number_first_and_marks_what_is_extrapolated():
     )
     assert "50 % of the load (mixed)" in second
     assert third == "Slip probability 60 % ± 10 %, extrapolated."
-    breaches = ("report_g6: x", "stribeck: pressure 3", "stribeck: speed 4")
+    breaches = (
+        Remark("report_g6", "x"),
+        Remark("stribeck", "pressure 3"),
+        Remark("stribeck", "speed 4"),
+    )
     cautions = summary.cautions(
-        made.status, made.scalars, breaches, ("interface: a = 1 (b)",), "report_g6"
+        made.status, made.scalars, breaches, (Remark("interface", "a = 1 (b)"),), "report_g6"
     )
     assert cautions[0].startswith("Slip probability extrapolated: ACOF - RCOF")
     assert cautions[1] == (
         "Beyond what was tested: the friction of this sole on this floor (stribeck)."
     )
     assert "interface roughness" in cautions[2]
-    assert summary.cautions(made.status, outcome().scalars, (), ("motion: a = 1",)) == ()
+    assert summary.cautions(made.status, outcome().scalars, (), (Remark("motion", "a = 1"),)) == ()
     failed = summary.headline(Status.NOT_CONVERGED, made.scalars, {})
     assert failed[0].startswith("No result: not converged.")
     assert summary.cautions(Status.NOT_CONVERGED, made.scalars, breaches, ()) == ()
@@ -315,7 +319,8 @@ def test_files_are_compared_by_their_names_and_checksums_only_where_these_are_al
 def test_breaches_begin_with_what_their_model_is_for():
     from underfoot.compute.summary import in_words
 
-    pair, own = in_words(["pair: speed 5 m/s is outside the tested range", "mine: a is outside b"])
+    breaches = [Remark("pair", "speed 5 m/s is outside b"), Remark("mine", "a is outside b")]
+    pair, own = in_words(breaches)
     assert pair.startswith("The friction of this sole on this floor: speed 5 m/s")
     assert "pair:" not in pair
     assert own == "mine: a is outside b"

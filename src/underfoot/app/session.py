@@ -50,7 +50,7 @@ class Page:
     """One page of the app.
 
     Attributes:
-        door: Whose page it is; "" stands in no door.
+        door: Name of the section that lists the page; "" for a page that no section lists.
         route: Its address.
         title: Key of its name in the text files.
         icon: Name of a Material icon.

@@ -81,6 +81,12 @@ def condensed_block(
     ``sideways`` keeps the lower nodes' motion along x and y too (three times the cost): sliding
     then follows where each node goes and the direction of the floor's normal there.
 
+    Parameters:
+        block: Mesh and material.
+        poisson_ratio: Poisson's ratio, below 0.5.
+        sideways: Keep the lower nodes' motion along x and y too.
+        progress: Called with stage, fraction and residual; an exception it raises stops the work.
+
     Raises:
         InputError: Poisson's ratio of 0.5 (no finite bulk modulus) or outside 0 to 0.5; roughness
             that turns an element inside out.

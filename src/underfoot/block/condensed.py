@@ -192,7 +192,15 @@ class CondensedMarch:
     def run(
         self, moments: list[Moment], loading: MicroLoading, started: float, progress: Progress
     ) -> MicroResult:
-        """March through all moments; ``started`` is the process time when the work began, s."""
+        """March through all moments; ``started`` is the process time when the work began, s.
+
+        Parameters:
+            moments: Times of the march, in order.
+            loading: Forces and motion of the block.
+            started: Process time when the work began, s.
+            progress: Called with stage, fraction and residual; an exception it raises stops the
+                work.
+        """
         rows: list[tuple[float, ...]] = []
         status, notes, now = Status.CONVERGED, [], 0.0
         try:

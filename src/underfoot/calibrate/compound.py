@@ -86,18 +86,22 @@ class Compound(Presentable):
         """Angular frequencies that were measured, rad/s."""
         return None if self.fit is None else self.fit.frequency_range
 
+    @property
+    def _time(self) -> float:
+        """Time of load (s) of the modulus."""
+        if not self.tested:
+            return LOAD_TIME
+        return min(max(LOAD_TIME, 1 / self.tested[1]), 1 / self.tested[0])
+
     def modulus(self) -> SourcedValue:
         """Return Young's modulus after ``LOAD_TIME``, or at the nearest time that was tested."""
         if self.spectrum is None:
             return SourcedValue(None, "Pa", reason="no test gives one; a case takes the hardness")
-        time = LOAD_TIME
-        if self.tested:
-            time = min(max(time, 1 / self.tested[1]), 1 / self.tested[0])
-        value = float(self.spectrum.relaxation_modulus(time))
+        value = float(self.spectrum.relaxation_modulus(self._time))
         deviation = 0.0 if self.fit is None else self.fit.rms_residual
         if self.compressions and self.sweep is None:
             deviation = math.hypot(deviation, self.compressions[0].deviation)
-        source = f"{self.name}: after {display(time, 's')} of load"
+        source = f"{self.name}: after {display(self._time, 's')} of load"
         return SourcedValue(value, "Pa", source=source, uncertainty=deviation * value or None)
 
     def headline(self) -> tuple[str, ...]:
@@ -105,9 +109,7 @@ class Compound(Presentable):
         if self.spectrum is None:
             assert self.hardness is not None
             return (f"Shore A {self.hardness.shore_a:.0f}: a hardness gives no loss tangent.",)
-        words = (
-            f"Young's modulus {_shown(self.modulus())} {self.modulus().source.partition(': ')[2]}"
-        )
+        words = f"Young's modulus {_shown(self.modulus())} after {display(self._time, 's')} of load"
         if self.fit is None or self.tested is None:
             return (f"{words}; {len(self.spectrum)} terms as given.",)
         rates = " to ".join(display(w / (2 * math.pi), "Hz") for w in self.tested)

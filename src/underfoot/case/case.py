@@ -472,8 +472,8 @@ class Case(Presentable):
         return tree
 
 
-def value_text(origin: Origin, unit: str) -> str:
-    """Return a value as given, with its uncertainty."""
+def value_text(origin: Origin, unit: str, *, spread: bool = True) -> str:
+    """Return a value as given, with its uncertainty unless ``spread`` is off."""
     given = origin.leaf.given
     if isinstance(given, bool):
         return "yes" if given else "no"
@@ -481,8 +481,8 @@ def value_text(origin: Origin, unit: str) -> str:
         return f"{len(given)} terms"
     if origin.kind == FILE and isinstance(origin.value, float):
         return display(origin.value, unit)
-    spread = origin.leaf.uncertainty
-    return f"{plain_text(given, unit)}" + ("" if spread is None else f" ± {spread}")
+    text, deviation = f"{plain_text(given, unit)}", origin.leaf.uncertainty
+    return text if deviation is None or not spread else f"{text} ± {deviation}"
 
 
 def _origin_text(origin: Origin) -> str:

@@ -1,6 +1,7 @@
 """A case in words: what was assumed, what leaves a tested range, what differs from another."""
 
-from underfoot.core import display
+from underfoot.core import Breach, display
+from underfoot.core.remark import Remark
 
 from .case import Case, value_text
 from .contact import HardnessOption
@@ -9,7 +10,7 @@ from .parts import unit_at
 _NOT_PHYSICAL = ("numerics.", "sensor.", "slip.")
 
 
-def assumptions(case: Case) -> list[str]:
+def assumptions(case: Case) -> list[Remark]:
     """Return in words what no measurement or publication stands behind, alike ones on one line."""
     groups: dict[tuple[str, str], list[str]] = {}
     for path, origin in case.origins.items():
@@ -25,29 +26,31 @@ def assumptions(case: Case) -> list[str]:
         section, _, key = path.rpartition(".")
         memory = "" if leaf.verified else "from memory, not verified"
         reason = "; ".join(filter(None, (leaf.note, leaf.erratum, leaf.source, memory)))
-        given = value_text(origin, unit_at(path)).partition(" ± ")[0]
+        given = value_text(origin, unit_at(path), spread=False)
         groups.setdefault((section, reason or "assumed"), []).append(f"{key} = {given}")
-    lines = [f"{section}: {', '.join(keys)} ({why})" for (section, why), keys in groups.items()]
+    lines = [
+        Remark(section, f"{', '.join(keys)} ({why})") for (section, why), keys in groups.items()
+    ]
     if case.interface.name == "composite":
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
             if roughness.rq_or_estimate is None:
-                lines.append(f"{path}.roughness: not given, the middle of what is usual")
+                lines.append(Remark(f"{path}.roughness", "not given, the middle of what is usual"))
             elif roughness.rq is None:
                 rq = display(roughness.rq_or_estimate or 0.0, "m")
-                lines.append(f"{path}.roughness: rq = {rq} (1.25 Ra, Gaussian heights)")
+                lines.append(Remark(f"{path}.roughness", f"rq = {rq} (1.25 Ra, Gaussian heights)"))
         rq = case.effective_rq
         value = display(rq.value or 0.0, rq.unit)
         if rq.assumed:
-            lines.append(f"interface: effective_rq = {value} ({rq.source}; {rq.note})")
+            lines.append(Remark("interface", f"effective_rq = {value} ({rq.source}; {rq.note})"))
     return lines
 
 
-def tested_range_breaches(case: Case) -> list[str]:
+def tested_range_breaches(case: Case) -> list[Remark]:
     """Return in words which inputs leave the range on which a property relation was tested."""
-    breaches: list[object] = []
+    breaches: list[Breach] = []
     shore_a = case.shoe.material.shore_a
     if isinstance(case.hardness, HardnessOption) and shore_a is not None:
         breaches += case.hardness.build(shore_a)[1]
     if case.contaminant is not None:
         breaches += case.contaminant.breaches()
-    return [str(breach) for breach in breaches]
+    return [breach.remark for breach in breaches]

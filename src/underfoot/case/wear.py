@@ -26,7 +26,7 @@ Taper = Annotated[float, Quantity("rad", math.radians(0.5), math.radians(60))]
 DIN_FORCE, DIN_WAY = 10.0, 40.0
 """N and m: load and way of the abrasion test, ISO 4649 (DIN 53516)."""
 USUAL_WEAR_RATE = 3.7500000000000005e-10
-"""m^2/N: "0.375 mm^3/(N*m)" to the last digit."""
+"""m^2/N: the float that "0.375 mm^3/(N*m)" becomes, one rounding above 3.75e-10."""
 _ABRASION = re.compile(
     r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d+(?:\.\d+)?)\s*mm(?:\^?3|³)\s*"
 )

@@ -7,6 +7,7 @@ from typing import Any
 from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
 from underfoot.core.fields import Fields, labelled
+from underfoot.core.remark import Remark, remarks
 from underfoot.film import NewtonianFilm
 
 from . import numbers
@@ -48,14 +49,19 @@ def answer(
         labels=labels,
         data=_fields(parts, solution, positions, reading),
         status=status,
-        breaches=_unique(map(str, breaches)),
-        assumptions=_unique(
-            assumptions(case),
-            outsole_notes(case),
-            parts.law.assumptions,
-            risk.assumptions if risk else (),
-            positions.assumptions() if positions else (),
-            (f"{slot}: an object given to run, {text}" for slot, text in objects.items()),
+        breaches=remarks(getattr(each, "remark", each) for each in breaches),
+        assumptions=remarks(
+            (
+                *assumptions(case),
+                *outsole_notes(case),
+                *parts.law.assumptions,
+                *(risk.assumptions if risk else ()),
+                *(positions.assumptions() if positions else ()),
+                *(
+                    Remark(slot, f"an object given to run, {text}")
+                    for slot, text in objects.items()
+                ),
+            )
         ),
         provenance=_provenance(parts, reading, objects, timings),
         case_text=case.to_toml(complete=True),

@@ -12,6 +12,7 @@ from underfoot.case import assumptions
 from underfoot.case.describe import tested_range_breaches
 from underfoot.core import InputError
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Remark
 from underfoot.sole_contact.cost import Cost, megabytes
 
 from .positions import run_cost
@@ -40,7 +41,7 @@ class CaseCheck(Presentable):
 
     case: Case
     refusal: str
-    breaches: tuple[str, ...]
+    breaches: tuple[Remark, ...]
     full: Cost
     quick: Cost
 
@@ -108,7 +109,7 @@ def case_check(case: Case) -> CaseCheck:
             "speed": case.motion.speed,
             "film_thickness": np.full(1, 1e-5),
         }
-        breaches += map(str, law.breaches(**local))
+        breaches += [breach.remark for breach in law.breaches(**local)]
     except InputError as error:
         refusal = str(error)
     return CaseCheck(

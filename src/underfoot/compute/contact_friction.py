@@ -130,7 +130,7 @@ def film_warmth(
 
     -b (T + u dT): b how fast the fluid thins, T the laboratory beside 22.5 C, dT what all heat of
     sliding at the ``cof`` warms the faces by, u a share of it between 0 and 1. The fluid's own
-    spread is drawn with its viscosity. One laboratory is that of all cases.
+    spread is drawn with its viscosity. All cases share one draw of the laboratory's temperature.
     """
     viscosity = context.viscosity_value
     if viscosity is None or case.contaminant is None:
@@ -187,7 +187,7 @@ def with_known_tread(law: FrictionLaw, case: Case, context: Context, sole: SoleM
 
 
 def _on_squares(parts: FrictionParts, at: CellState, contact: SoleContact) -> FrictionParts:
-    """Return the shear stresses of finer cells as means over what squares stand for, (nx, ny)."""
+    """Return the shear stresses of finer cells, averaged over their squares, (nx, ny)."""
     area = contact.areas["area"]
 
     def mean(stress: Array, weight: Array) -> Array:

@@ -86,7 +86,7 @@ class Continuation:
     Parameters:
         case: What to solve; steady motion or a load that rises and stays.
         quick: Use the coarse grid of the case.
-        progress: Hears of the march.
+        progress: Called with stage, fraction of the time and residual after each step.
 
     Changes may be of fluid, speed, load, shoe angle, wear, hardness and roughness; a change of the
     plan of the tread or of the grid needs a run. So do shoe angle and speed of a sole without lugs:
@@ -141,7 +141,7 @@ class Continuation:
 
     @cached_property
     def spreads(self) -> dict[str, tuple[float, float]]:
-        """How unknown the film is (``film_spreads``)."""
+        """Relative spread of the film (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
 
     @threads_limited(1)

@@ -222,7 +222,7 @@ def regime(share: float) -> dict[str, str]:
 
 
 def overload_words(overload: Sequence[Breach]) -> str:
-    """Return what to say where the load rests on what rubber cannot bear, else nothing."""
+    """Return a caution where contact pressure exceeds what the rubber can bear; "" elsewhere."""
     return "".join(
         f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
         "cannot bear, and so does this COF"

@@ -11,6 +11,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import SourcedValue, display
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Remark
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.shoe import Tread
 from underfoot.sole_contact.cost import Cost
@@ -213,13 +214,13 @@ class TreadPositions:
             **told,
         }
 
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Remark, ...]:
         """Return the band of the shoe angle, where it was used."""
         angle = bool(self.by_angle) or any(place.turn for place in self.places)
         yaw = any(place.yaw for place in self.places)
         return (
-            *("motion.shoe_angle: ±1 deg",) * angle,
-            *("shoe.tread: turned ±1 deg against the heel's corner",) * yaw,
+            *(Remark("motion.shoe_angle", "±1 deg"),) * angle,
+            *(Remark("shoe.tread", "turned ±1 deg against the heel's corner"),) * yaw,
         )
 
     def fields(self) -> dict[str, Any]:

@@ -60,7 +60,7 @@ class Prepared:
 
     @property
     def viscosity(self) -> float | None:
-        """Of the film, Pa s; None where no fluid builds up pressure."""
+        """Viscosity of the film, Pa s; None where no fluid builds up pressure."""
         return None if self.film is None else self.film.viscosity
 
     def on(

@@ -14,6 +14,7 @@ from underfoot.core import DataError, Provenance, SourcedValue, Status, Underfoo
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import checksum, whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
+from underfoot.core.remark import Remark
 
 from . import summary
 
@@ -53,8 +54,8 @@ class Result(Presentable):
     labels: dict[str, str]
     data: Fields
     status: Status
-    breaches: tuple[str, ...]
-    assumptions: tuple[str, ...]
+    breaches: tuple[Remark, ...]
+    assumptions: tuple[Remark, ...]
     provenance: Provenance
     case_text: str
 
@@ -293,8 +294,8 @@ class Result(Presentable):
                 labels=stored["labels"],
                 data=fields,
                 status=Status(stored["status"]["value"]),
-                breaches=tuple(stored["breaches"]),
-                assumptions=tuple(stored["assumptions"]),
+                breaches=tuple(map(Remark.stored, stored["breaches"])),
+                assumptions=tuple(map(Remark.stored, stored["assumptions"])),
                 provenance=_known(Provenance, provenance),
                 case_text=case_text,
             )

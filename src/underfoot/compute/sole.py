@@ -36,6 +36,7 @@ from underfoot.core import (
     display,
     silent,
 )
+from underfoot.core.remark import Remark
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
 from underfoot.shoe.row_division import row_cells
@@ -503,11 +504,11 @@ def overload_breaches(contact: SoleState, modulus: float) -> list[Breach]:
     return breaches("compliance", {name: MOST_OVERLOADED}, {name: share})
 
 
-def outsole_notes(case: Case) -> list[str]:
+def outsole_notes(case: Case) -> list[Remark]:
     """Return in words what was found, assumed and repaired in the outsole file; else nothing."""
     if case.shoe.outsole is None:
         return []
-    return [f"shoe.outsole: {line}" for line in file_outsole(case).surface.remarks]
+    return [Remark("shoe.outsole", line) for line in file_outsole(case).surface.remarks]
 
 
 class OutsoleLayer(Section):

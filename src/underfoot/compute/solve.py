@@ -136,7 +136,7 @@ def solved_at(
 ) -> tuple[Prepared, SoleContact]:
     """Return case and contact with the tread at a place, on cells of ``spacing`` (m).
 
-    ``finer``: ``solver_settings``.
+    ``finer`` divides the tolerance and the time steps, as in ``solver_settings``.
     """
     sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
     here = parts.on(sole, turn=place.turn)
@@ -263,7 +263,7 @@ def solved_motion(
     watch: Callable[[SoleState], None] | None = None,
     progress: Progress = silent,
 ) -> SoleContact:
-    """Return contact and film at the end of the case's motion; ``finer``: ``solver_settings``.
+    """Return contact and film at the end of the case's motion; ``finer`` as in ``solver_settings``.
 
     Where the local friction knows the edges of lugs, these say what film enters.
     """

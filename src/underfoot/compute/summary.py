@@ -15,8 +15,10 @@ from underfoot.core.presentation import (
     percent,
     probability_text,
     quantity_text,
+    shows_interval,
     value_text,
 )
+from underfoot.core.remark import Remark, subjects
 from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
@@ -91,7 +93,7 @@ PARTS: Mapping[str, str] = {
     "strobel_2012": "how much adhesion this fluid leaves",
     "patir_cheng_1978": "how roughness slows the fluid",
 }
-"""What each model is for, to who does not know its name."""
+"""What each model is for, in words for readers who do not know its name."""
 DECISIVE = ("interface", "shoe.heel", "shoe.tread", "shoe.sole", "motion")
 """Sections whose assumed inputs move the film load most, the most sensitive first."""
 
@@ -117,7 +119,8 @@ class FrictionLimit:
         drainage = self.cof_without_film > GAIN_MATTERS * self.cof
         return "film" if self.film_share > FILM_MATTERS and drainage else "boundary"
 
-    def __str__(self) -> str:
+    def sentence(self, regime: str = "") -> str:
+        """Return the limit as a sentence; ``regime`` (" (mixed)") stands behind the film's load."""
         if self.kind == "no fluid":
             return "The case has no fluid: the friction of the pair, as given, is the limit."
         limit = (
@@ -128,7 +131,10 @@ class FrictionLimit:
                 "without the film the same surfaces would have a COF of about "
                 f"{self.cof_without_film:.2f}."
             )
-        return f"The film carries {100 * self.film_share:.0f} % of the load; {limit}"
+        return f"The film carries {100 * self.film_share:.0f} % of the load{regime}; {limit}"
+
+    def __str__(self) -> str:
+        return self.sentence()
 
 
 def friction_limit(scalars: Mapping[str, SourcedValue]) -> FrictionLimit:
@@ -176,14 +182,20 @@ def verdict_sentence(
 def headline(
     status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
 ) -> tuple[str, ...]:
-    """Return the answer in a few sentences: COF and what spoils it, film, slip probability."""
+    """Return the answer in a few sentences: COF and what spoils it, film, slip probability.
+
+    Parameters:
+        status: Of the result.
+        scalars: Its numbers by name.
+        labels: Its sentences by name.
+    """
     if not status.usable:
         reason = f" ({labels['no_result']})" if "no_result" in labels else ""
         return (f"No result: {status}{reason}. {status.remedy}",)
     cof = scalars["cof"]
     text = value_text("cof", cof)
     if cof.uncertainty is not None:
-        measure = "one standard deviation" if "±" in text else "95 % interval"
+        measure = "95 % interval" if shows_interval("cof", cof) else "one standard deviation"
         text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
     if "cof_tread_position" in scalars:
         text += ", mean over positions of the tread"
@@ -193,8 +205,7 @@ def headline(
     if "overload" in labels:
         sentences.append(f"{labels['overload'][0].upper()}{labels['overload'][1:]}.")
     regime = f" ({labels['regime']})" if "regime" in labels else ""
-    limit = str(friction_limit(scalars))
-    sentences.append(limit.replace(" of the load", f" of the load{regime}", 1))
+    sentences.append(friction_limit(scalars).sentence(regime))
     slip = scalars.get("slip_probability")
     if slip is not None and slip.value is not None:
         text = value_text("slip_probability", slip)
@@ -222,8 +233,8 @@ def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[str, ...]:
 def cautions(
     status: Status,
     scalars: Mapping[str, SourcedValue],
-    breaches: Sequence[str],
-    assumptions: Sequence[str],
+    breaches: Sequence[Remark],
+    assumptions: Sequence[Remark],
     slip_model: str = "",
     labels: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[str, ...]:
@@ -234,10 +245,9 @@ def cautions(
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
         reasons.append(f"Slip probability {slip.note}.")
-    models = dict.fromkeys(line.partition(":")[0] for line in breaches)
-    if others := [name for name in models if name != slip_model]:
+    if others := [name for name in subjects(breaches) if name != slip_model]:
         reasons.append(beyond_tests(others))
-    sections = {line.partition(":")[0] for line in assumptions}
+    sections = subjects(assumptions)
     left_out = {"shoe.heel": "heel shape"}
     if "film_spread_basis" not in labels:
         left_out = {"interface": "interface roughness", **left_out}
@@ -261,17 +271,17 @@ def beyond_tests(models: Iterable[str]) -> str:
     return f"Beyond what was tested: {', '.join(named)}."
 
 
-def in_words(breaches: Iterable[str]) -> tuple[str, ...]:
+def in_words(breaches: Iterable[Remark]) -> tuple[str, ...]:
     """Return breaches of tested ranges that begin with what their model is for; its name ends them.
 
     A model that ``PARTS`` does not know keeps its name in front.
     """
-    told = []
+    lines = []
     for breach in breaches:
-        name, _, what = breach.partition(": ")
-        part = PARTS.get(name, "")
-        told.append(f"{part[:1].upper()}{part[1:]}: {what} [{name}]" if part else breach)
-    return tuple(told)
+        part = PARTS.get(breach.about, "")
+        named = f"{part[:1].upper()}{part[1:]}: {breach.what} [{breach.about}]"
+        lines.append(named if part else breach)
+    return tuple(lines)
 
 
 def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Table:
@@ -316,13 +326,13 @@ def notes(labels: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(f"{title}: {labels[key]}" for key, title in LABELS.items() if key in labels)
 
 
-def ranked_assumptions(assumptions: Sequence[str]) -> list[str]:
+def ranked_assumptions(assumptions: Sequence[Remark]) -> list[Remark]:
     """Return the assumptions, those of the sections that move the film load most first.
 
     The first line of each section precedes its further lines, so that the top of the list names
     different parts of the case.
     """
-    sections = [line.partition(":")[0] for line in assumptions]
+    sections = [line.about or line for line in assumptions]
     order = {name: number for number, name in enumerate(DECISIVE)}
 
     def place(k: int) -> tuple[int, bool, int, int]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .progress import Progress as Progress
     from .progress import silent as silent
     from .provenance import Provenance as Provenance
+    from .remark import Remark as Remark
     from .status import Status as Status
     from .units import display as display
     from .units import to_si as to_si
@@ -41,6 +42,7 @@ _HOMES = {
     "Progress": ".progress",
     "silent": ".progress",
     "Provenance": ".provenance",
+    "Remark": ".remark",
     "Status": ".status",
     "display": ".units",
     "to_si": ".units",

@@ -217,13 +217,20 @@ def value_text(name: str, scalar: SourcedValue) -> str:
     if name not in PROBABILITIES and scalar.unit != "1":
         return quantity_text(scalar.value, scalar.unit, scalar.uncertainty)
     shown = _plain(name, scalar.value)
-    wide = name in PROBABILITIES and is_wide(scalar.interval)
-    if scalar.interval is not None and (wide or _skewed(scalar.value, scalar.interval)):
+    if shows_interval(name, scalar):
         interval = interval_text(name, scalar)
         return f"{shown} ({interval})" if interval else shown
     if scalar.uncertainty is None or (name in PROBABILITIES and scalar.uncertainty < 1e-3):
         return shown
     return f"{shown} ± {_plain(name, scalar.uncertainty)}"
+
+
+def shows_interval(name: str, scalar: SourcedValue) -> bool:
+    """Return whether ``value_text`` gives the 95 % interval in place of a standard deviation."""
+    if scalar.value is None or scalar.interval is None:
+        return False
+    wide = name in PROBABILITIES and is_wide(scalar.interval)
+    return wide or _skewed(scalar.value, scalar.interval)
 
 
 def interval_text(name: str, scalar: SourcedValue) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .remark import Remark
 from .units import display
 
 
@@ -29,7 +30,9 @@ class Breach:
     high: float
     range: Range
 
-    def __str__(self) -> str:
+    @property
+    def remark(self) -> Remark:
+        """The breach as a line of a result, about its closure."""
         unit = self.range.unit
         given = display(self.low, unit)
         if self.high != self.low:
@@ -38,9 +41,11 @@ class Breach:
         if self.range.high == float("inf"):
             tested = f"{display(self.range.low, unit)} or more"
         source = f" ({self.range.source})" if self.range.source else ""
-        return (
-            f"{self.closure}: {self.quantity} {given} is outside the tested range {tested}{source}"
-        )
+        what = f"{self.quantity} {given} is outside the tested range {tested}{source}"
+        return Remark(self.closure, what)
+
+    def __str__(self) -> str:
+        return str(self.remark)
 
 
 def breaches(

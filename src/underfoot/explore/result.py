@@ -356,7 +356,7 @@ class StudyResult(Presentable):
 
     @property
     def keys(self) -> Sequence[str]:
-        """Of what was set so far."""
+        """Keys of the cases that were set so far, in order."""
         return self.jobs.keys if isinstance(self.jobs, Jobs) else [job.key for job in self.jobs]
 
     @cached_property
@@ -368,16 +368,16 @@ class StudyResult(Presentable):
         known = {key: self.records[key].ending for key in keys.keys() & self.records.keys()}
         return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 
-    def ended_text(self, left: int) -> str:
-        """Return how many cases ended and how, where so many are left."""
+    def ended_text(self, left: int, of: str = "cases") -> str:
+        """Return how many cases ended and how, where ``left`` are open; ``of`` names the cases."""
         ended = {name: n for name, n in self.endings.items() if name != Ending.OPEN}
         done, parts = sum(ended.values()), [f"{n} {name}" for name, n in ended.items()]
-        return f"{done} of {done + left} cases ended: {', '.join(parts) or 'none'}"
+        return f"{done} of {done + left} {of} ended: {', '.join(parts) or 'none'}"
 
     def headline(self) -> tuple[str, ...]:
         """Return how far it is, and the best design."""
-        done, _, parts = self.ended_text(self.endings[Ending.OPEN]).partition(" ended")
-        sentences = [f"{done} of {len(self.designs)} designs ended{parts}."]
+        of = f"cases of {len(self.designs)} designs"
+        sentences = [f"{self.ended_text(self.endings[Ending.OPEN], of)}."]
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:

@@ -47,7 +47,7 @@ def sweep(
         on, workers, progress: As for ``Study.run``.
 
     Raises:
-        CaseError: Everything that is wrong with what is varied.
+        CaseError: All errors of the inputs that are varied.
     """
     method = {"budget": budget, "grid": "quick" if quick else "standard"}
     tables = {"vary": vary, "conditions": conditions or {}, "method": method}
@@ -82,7 +82,7 @@ def optimise(
             positions of the tread and the standard grid.
 
     Raises:
-        CaseError: Everything that is wrong with what is asked.
+        CaseError: All errors of the request.
     """
     method = {"kind": "optimise", "budget": budget, "grid": "quick" if quick else "standard"}
     outputs = {"maximise": list(maximise), "minimise": list(minimise), "require": list(require)}

@@ -65,6 +65,13 @@ def patir_cheng_shear_flow(
     motion of the upper: 0 for walls equally rough, positive when the upper is the rougher.
 
     ``gap`` and both roughnesses (one may be 0) in m. Source as ``patir_cheng_shear_factor``.
+
+    Parameters:
+        gap: Between the mean planes, m.
+        rq_upper: Rq of the moving wall, m.
+        rq_lower: Rq of the wall at rest, m.
+        anisotropy_upper: Peklenik number of the upper wall: above 1 for ridges along sliding.
+        anisotropy_lower: The same of the lower wall.
     """
     upper = not_negative(rq_upper, "rq_upper")
     lower = not_negative(rq_lower, "rq_lower")

@@ -161,6 +161,14 @@ def film_history(
     holds the squeeze and the motion of textured walls. The film starts at the first time with
     ``start_fraction``. One implicit Euler step from each time to the next; equation and errors as
     ``film_pressure``.
+
+    Parameters:
+        film: The problem; its gap is replaced.
+        gap_at: Gap (nx, ny) m at a time in s.
+        times: s, ascending; the first is the start.
+        start_fraction: Liquid fraction of the gap at the start, 0 to 1.
+        backend: Name of the sparse solver; None takes the fastest installed.
+        progress: Called with stage, fraction and residual; an exception it raises stops the work.
     """
     instants = np.asarray(list(times), dtype=float)
     if instants.ndim != 1 or instants.size < 2 or not (np.diff(instants) > 0).all():

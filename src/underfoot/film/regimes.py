@@ -21,7 +21,7 @@ SHARE_LIMITS = (0.1, 0.9)
 
 
 class Lubrication(StrEnum):
-    """Who separates the surfaces."""
+    """What separates the surfaces: fluid, solid contact, or both."""
 
     BOUNDARY = "boundary"
     MIXED = "mixed"
@@ -150,6 +150,19 @@ def regime_map(
 
     ``viscosity`` (n,) Pa s, ``speed`` (m,) m/s; the rest as ``soft_ehl``, ``lambda_ratio`` and
     ``fluid_load_share``. Lambda takes the minimum film, the load share the central one.
+
+    Parameters:
+        viscosity: Pa s, (n,).
+        speed: m/s, (m,).
+        load: N.
+        radius: Reduced radius along the motion, m.
+        effective_modulus: Pa, as ``soft_ehl`` takes it.
+        rq_first: Rq of one wall, m.
+        rq_second: Rq of the other wall, m.
+        speed_is: "entrainment" or "sliding", as ``soft_ehl`` takes it.
+        ellipticity: k, 1 for a circle.
+        law: Pressure of the rough walls over their gap; None leaves the load share out.
+        mean_pressure: Pa; given where ``law`` is, and only there.
     """
     if (law is None) != (mean_pressure is None):
         raise InputError(

@@ -66,6 +66,13 @@ def squeeze_gap(
 
     1 / h^2 = 1 / h1^2 + 2 F t / (3 eta J); J (m^4) of the outline, pi R^4 / 2 for a disc,
     ``rectangle_torsion_constant`` for a lug. Validity as ``squeeze_time_disc``.
+
+    Parameters:
+        time: s, any shape.
+        viscosity: Pa s.
+        torsion_constant: J of the outline, m^4.
+        load: Constant force, N.
+        start_gap: h1 at time 0, m.
     """
     t = positive_array(time, "time", zero=True)
     shape = positive(torsion_constant, "torsion_constant")

@@ -97,6 +97,14 @@ def wedge_film(
 
     h0 = l (6 eta u b K eta_s / F)^(1/2); ``taper`` m = (h1 - h0) / h0, largest film at m = 1.19.
     Source as ``tapered_wedge``.
+
+    Parameters:
+        viscosity: Pa s.
+        speed: Of sliding, m/s.
+        length: Along sliding, m.
+        width: Across sliding, m.
+        load: N.
+        taper: m, above 0.
     """
     m = positive(taper, "taper")
     along, across = positive(length, "length"), positive(width, "width")

@@ -72,6 +72,11 @@ def glycerol_water_density(fraction: ArrayLike, temperature: ArrayLike, basis: s
 
     rho = rho_g C + rho_w (1 - C) with C the mass fraction, as Cheng (2008), Eq. 23-25, uses it.
 
+    Parameters:
+        fraction: Of glycerol, 0 to 1.
+        temperature: K.
+        basis: Of the fraction: "mass" or "volume".
+
     >>> round(float(glycerol_water_density(0.9, 293.15)))
     1237
     """

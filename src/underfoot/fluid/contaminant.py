@@ -91,6 +91,13 @@ def glycerol_water(
     note, so that a disagreement is seen. ``fraction`` 0 to 1, ``temperature`` in K, ``basis``
     "mass" or "volume".
 
+    Parameters:
+        fraction: Of glycerol, 0 to 1.
+        temperature: K.
+        basis: Of the fraction: "mass" or "volume".
+        measured_viscosity: Pa s; None takes the computed one.
+        blocking: How the fluid blocks adhesion; None where it is not known.
+
     >>> glycerol_water(0.9, 293.15).viscosity.unit
     'Pa*s'
     """
@@ -132,6 +139,11 @@ def compared_viscosity(
 
     Published percentages often don't say whether they are by mass or by volume, and the grant
     report mixes both: 25 and 50 % fit by mass, 75 and 90 % are nearer to by volume.
+
+    Parameters:
+        measured: Viscosity in Pa s.
+        fraction: Published, 0 to 1.
+        temperature: K.
     """
     _check(measured, "measured", "Pa*s")
     assert measured.value is not None  # _check refuses None

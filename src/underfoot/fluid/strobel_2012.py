@@ -126,7 +126,13 @@ def adhesion_blocking(fluid: str) -> AdhesionBlocking:
 def strobel_breaches(
     *, normal_force: ArrayLike, speed: ArrayLike, viscosity: ArrayLike | None = None
 ) -> list[Breach]:
-    """Return in which respect Eq. 26 is used beyond its tests (20.9 N, 0.01 m/s)."""
+    """Return in which respect Eq. 26 is used beyond its tests (20.9 N, 0.01 m/s).
+
+    Parameters:
+        normal_force: N.
+        speed: Of sliding, m/s.
+        viscosity: Pa s; None leaves it out.
+    """
     values: dict[str, ArrayLike] = {"normal_force": normal_force, "speed": speed}
     if viscosity is not None:
         values["viscosity"] = viscosity

@@ -59,6 +59,12 @@ def shear_strength_from_cof(
 
     At the pressure (Pa) and real contact fraction (1) of the measurement; constant with speed.
     It holds for that pair and fluid, and only as well as the contact fraction is known.
+
+    Parameters:
+        cof_adhesion: Measured, without hysteresis.
+        contact_pressure: Nominal, Pa.
+        real_contact_fraction: A_real / A, above 0 to 1.
+        source: Of the measurement.
     """
     if not 0 < real_contact_fraction <= 1:
         raise InputError(
@@ -102,7 +108,7 @@ class BowdenTaborLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the law, the strength and the contact."""
+        """Sources of the law, the strength and the contact."""
         parts = (
             "Bowden and Tabor 1950, The Friction and Lubrication of Solids",
             self.shear_strength.source,

@@ -26,7 +26,7 @@ class FilmShearLaw(LawAround):
 
     @property
     def source(self) -> str:
-        """Of both."""
+        """Sources of the film shear and of the law."""
         return f"{self.law.source}; {self.film.source}"
 
     def __call__(

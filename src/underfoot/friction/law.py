@@ -79,7 +79,13 @@ class FrictionLaw(AssumingModel, Protocol):
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> list[Breach]:
-        """Return what leaves the range on which the law was measured."""
+        """Return what leaves the range on which the law was measured.
+
+        Parameters:
+            contact_pressure: Of the solid contact, Pa.
+            speed: Of sliding, m/s.
+            film_thickness: m.
+        """
         ...
 
 
@@ -128,6 +134,11 @@ class UncertainInputs(Presentable):
 
         The contact pressure is the mean that the load sees (sum p^2 / sum p): single cells may go
         above it.
+
+        Parameters:
+            contact_pressure: Of the solid contact, Pa.
+            speed: Of sliding, m/s.
+            film_thickness: m.
         """
         law: Any = self
         pressure, velocity, film = checked(contact_pressure, speed, film_thickness)

@@ -24,33 +24,39 @@ class LawAround:
 
     @property
     def name(self) -> str:
-        """Of the law."""
+        """Name of the law."""
         return self.law.name
 
     @property
     def source(self) -> str:
-        """Of the law."""
+        """Source of the law."""
         return self.law.source
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """Of the law."""
+        """Assumptions behind the law."""
         return self.law.assumptions
 
     @property
     def inputs(self) -> Mapping[str, SourcedValue]:
-        """Of the law."""
+        """Inputs of the law, with their standard deviations."""
         return self.law.inputs
 
     @property
     def error_of_model(self) -> float | None:
-        """Of the law."""
+        """Error of the law itself, relative; None where it is not known."""
         return self.law.error_of_model
 
     def breaches(
         self, *, contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
     ) -> list[Breach]:
-        """Return what leaves the range on which the law was measured."""
+        """Return what leaves the range on which the law was measured.
+
+        Parameters:
+            contact_pressure: Of the solid contact, Pa.
+            speed: Of sliding, m/s.
+            film_thickness: m.
+        """
         return self.law.breaches(
             contact_pressure=contact_pressure, speed=speed, film_thickness=film_thickness
         )

@@ -31,6 +31,12 @@ def stribeck_cof(
 
     ``speed`` and ``tau_hydro`` in m/s; fitted from 0.05 to 1 m/s at 266.1 kPa on a pin of 10 mm.
 
+    Parameters:
+        speed: Of sliding, m/s.
+        cof_boundary: COF_BL, at rest.
+        tau_hydro: Speed over which the COF falls, m/s.
+        cof_asymptote: At high speed.
+
     >>> round(float(stribeck_cof(0.3, 0.2, 0.2, 0.05)), 3)
     0.083
     """

@@ -44,6 +44,7 @@ from scipy.special import erf, ndtri
 from underfoot.core import DataError, InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
+from underfoot.core.remark import Remark
 
 from .law import FILM_RANGE, PIN_PRESSURE, UncertainInputs
 from .propagation import named_shares
@@ -66,7 +67,7 @@ STEEPEST = 1.26
 CONTACT_PRESSURE = 300e3
 """Pa, of lugs under a shoe: where no pressure is known."""
 LEAST_PRESSURE = 1.0
-"""Pa below which the real area a load is that of light loads."""
+"""Pa; below it the real area per load is that in the limit of light loads."""
 
 
 def real_slope(rq: ArrayLike) -> Array:
@@ -444,7 +445,7 @@ class PairContactLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the calibration."""
+        """Source of the calibration."""
         return self.draws.source
 
     @property
@@ -453,32 +454,43 @@ class PairContactLaw(UncertainInputs):
         words = [*self.draws.notes]
         if LABORATORY not in self.draws.errors:
             words.append(
-                "friction.pair: nobody measured this sole on this floor; a reading of your "
-                "own narrows it (underfoot calibrate pair)."
+                Remark(
+                    "friction.pair",
+                    "nobody measured this sole on this floor; a reading of your own narrows it "
+                    "(underfoot calibrate pair).",
+                )
             )
         if self.pair.family == "dry":
             words.append(
-                "friction.pair: no dry reading stands behind the law; dry adhesion is what water "
-                "leaves at rest, with the real contact area of the roughness (Persson 2001)"
+                Remark(
+                    "friction.pair",
+                    "no dry reading stands behind the law; dry adhesion is what water leaves at "
+                    "rest, with the real contact area of the roughness (Persson 2001)",
+                )
             )
         both = zip(("shoe", "floor"), self.pair._rq, self.pair.measured, strict=True)
         for part, (low, high), measured in both:
             if high > low and not measured:
                 words.append(
-                    f"{part}.roughness: not given; the friction is drawn over Rq = "
-                    f"{1e6 * low:.2g} to {1e6 * high:.2g} um"
+                    Remark(
+                        f"{part}.roughness",
+                        "not given; the friction is drawn over Rq = "
+                        f"{1e6 * low:.2g} to {1e6 * high:.2g} um",
+                    )
                 )
         low, high = self.pair.loss_tangent
         if self.pair.hysteresis is None and high > low:
             words.append(
-                "shoe.material.loss_tangent: not given; the hysteresis is drawn over "
-                f"{low:g} to {high:g}"
+                Remark(
+                    "shoe.material.loss_tangent",
+                    f"not given; the hysteresis is drawn over {low:g} to {high:g}",
+                )
             )
         elif self.pair.hysteresis is None:
-            words.append(f"friction.pair: hysteresis from a loss tangent of {low:g}")
+            words.append(Remark("friction.pair", f"hysteresis from a loss tangent of {low:g}"))
         else:
             given = f"hysteresis COF {self.pair.hysteresis:.3f} from {self.pair.hysteresis_origin}"
-            words.append(f"friction.pair: {given}")
+            words.append(Remark("friction.pair", given))
         return tuple(words)
 
     @property

@@ -252,6 +252,15 @@ def sampled_points(
 
     Pressure (Pa), speed (m/s) and film (m) broadcast; otherwise as ``sampled_cof``: one draw holds
     for all points.
+
+    Parameters:
+        law: Friction law.
+        contact_pressure: Pa.
+        speed: Of sliding, m/s.
+        film_thickness: m.
+        fluid_inputs: "viscosity" (Pa s) with its standard deviation.
+        samples: Number of draws.
+        seed: Of the random numbers: equal seeds give equal draws.
     """
     inputs = _inputs(law, fluid_inputs)
     if inputs is None:

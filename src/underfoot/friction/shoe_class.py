@@ -24,6 +24,7 @@ from scipy.special import log_ndtr
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Remark
 
 from .pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, PairContactLaw, PairDraws
 from .propagation import named_shares
@@ -188,10 +189,10 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
             "roughness and tread of the sole"
         )
         note = (
-            f"shoe.class: {known.name} ({says}) is contradicted: what else is known of the sole "
+            f"{known.name} ({says}) is contradicted: what else is known of the sole "
             f"leaves it a probability of {passing:.1%}. It was not used; {reason}."
         )
-        kept = replace(start, notes=(*start.notes, note))
+        kept = replace(start, notes=(*start.notes, Remark("shoe.class", note)))
         return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing, contradicted=True)
     generator = np.random.default_rng(seed)
     ends = (np.arange(COUNT) + generator.random()) / COUNT
@@ -204,10 +205,10 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
         if calibrated
         else ", without a measurement of this sole on this floor"
     )
-    note = f"shoe.class: {known.name} ({known.source}): " + "; ".join(map(str, known.readings))
+    note = f"{known.name} ({known.source}): " + "; ".join(map(str, known.readings))
     note += " is not reached" if known.fails else ""
     note += f". Before that was known, {passing:.0%} of such soles would have it."
-    kept = replace(kept, basis=basis, notes=(*start.notes, note))
+    kept = replace(kept, basis=basis, notes=(*start.notes, Remark("shoe.class", note)))
     return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing)
 
 

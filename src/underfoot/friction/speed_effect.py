@@ -41,6 +41,14 @@ def cof_with_speed(
     Without the viscous part; ``viscosity`` Pa s or None for a dry floor, ``speed`` m/s,
     ``contact_pressure`` Pa. COF_BL is the friction at rest, and all of it is hysteresis where it
     is below ``cof_hysteresis``.
+
+    Parameters:
+        effect: The mechanism.
+        viscosity: Pa s; None for a dry floor.
+        speed: Of sliding, m/s.
+        cof_boundary: COF_BL, at rest.
+        cof_hysteresis: Part that speed leaves.
+        contact_pressure: Pa.
     """
     left = effect.adhesion_left(viscosity=viscosity, speed=speed, contact_pressure=contact_pressure)
     hysteresis = min(cof_hysteresis, cof_boundary)
@@ -96,7 +104,7 @@ class SpeedEffectLaw(UncertainInputs):
 
     @property
     def source(self) -> str:
-        """Of the mechanism, then of the boundary friction."""
+        """Sources of the mechanism, then of the boundary friction."""
         return "; ".join(dict.fromkeys((self.effect.source, self.cof_boundary.source)))
 
     @property

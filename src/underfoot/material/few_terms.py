@@ -19,6 +19,12 @@ def single_exponential_spectrum(
     """Return G(t) = G_inf + (G_0 - G_inf) exp(-beta t) as a spectrum of one term (Eq. 7).
 
     Moduli in Pa (E or G, the spectrum is of the same kind), ``decay_rate`` beta in 1/s.
+
+    Parameters:
+        instantaneous_modulus: G_0, Pa.
+        equilibrium_modulus: G_inf, Pa.
+        decay_rate: beta, 1/s.
+        source: Where the numbers are from.
     """
     if not (np.isfinite(decay_rate) and decay_rate > 0.0):
         raise InputError(

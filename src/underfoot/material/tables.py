@@ -111,7 +111,7 @@ class Column:
     cells: tuple[str, ...]
     form: NumberForm = field(default_factory=NumberForm)
     base: float | None = None
-    """Of the logarithm that the cells hold: of the number in the unit."""
+    """Base of the logarithm that the cells hold, taken of the number in the unit."""
 
 
 @dataclass(frozen=True, slots=True)

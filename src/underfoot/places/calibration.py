@@ -56,9 +56,14 @@ class FloorReading:
     kind: str = "value"
     sd: float | None = None
 
-    def __str__(self) -> str:
+    @property
+    def value_text(self) -> str:
+        """The reading with its unit and what bounds it."""
         bound = {"value": "", "lower": "at least ", "upper": "at most "}[self.kind]
-        return f"{self.machine.title}: {bound}{self.value:g} {self.machine.scale.unit}"
+        return f"{bound}{self.value:g} {self.machine.scale.unit}"
+
+    def __str__(self) -> str:
+        return f"{self.machine.title}: {self.value_text}"
 
 
 def learn_floor(
@@ -239,10 +244,11 @@ def class_bounds(device: Machine, name: str, where: str) -> tuple[FloorReading, 
 
 
 class PairReadOption(PairOption):
-    """The law of the pair, narrowed by what machines read of the floor: every shoe on it is.
+    """The law of the pair, narrowed by readings that machines took of the floor.
 
-    Readings go in through the machine's model and are no COF of the shoe. A slip class of the shoe
-    and draws of ``underfoot calibrate pair`` go with them.
+    A reading narrows the law of every shoe on that floor. It enters through the machine's model: it
+    is no COF of the shoe. A slip class of the shoe and draws of ``underfoot calibrate pair`` may be
+    given too.
     """
 
     name: ClassVar[str] = "pair_read"

@@ -95,7 +95,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class ShoeAnswer:
-    """What is said of a shoe: the share of steps in a fluid that slip, the chance that it is best.
+    """The answer for one shoe: the share of steps in a fluid that slip, the chance that it is best.
 
     ``reported`` are the slips that people will report, where those of today are given and reports
     go with slips.

@@ -349,7 +349,7 @@ class MachineScores(Presentable):
             each = row.evidence
             low, median, high = (f"{x:.{_digits(each.machine)}f}" for x in row.predicted)
             ends = " to ".join(f"{1e6 * end:.3g}" for end in each.rq)
-            read = ", ".join(str(one).partition(": ")[2] for one in each.bounds)
+            read = ", ".join(one.value_text for one in each.bounds)
             verdict = "inside" if row.inside else "OUTSIDE"
             basis = "printed" if each.printed else "finish"
             rows.append((each.floor, each.machine.title, ends, basis,

@@ -553,7 +553,16 @@ def prediction(
     fluid: Fluid,
     known: bool,
 ) -> MachinePrediction:
-    """Return what a machine will print of a floor, by joint draws that may have learned of it."""
+    """Return what a machine will print of a floor, by joint draws that may have learned of it.
+
+    Parameters:
+        device: The machine.
+        joint: Draws of what is known of soles, floors and fluids.
+        floor: Name of the floor in the draws.
+        floor_rq: Least and greatest Rq, m.
+        fluid: What is on the floor.
+        known: What the prediction says of the floor: whether readings of it are known.
+    """
     reading = device.read(joint, floor, floor_rq, fluid)
     names = np.array([device.class_of(float(x)) for x in reading])
     classes = tuple((label, float(np.mean(names == label))) for _, label in device.classes)

@@ -18,6 +18,7 @@ from underfoot.core import InputError, Progress, SourcedValue, nearest_match, si
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
+from underfoot.core.remark import subjects
 from underfoot.slip import slip_chances
 
 from .order import SEEN, Order, Verdict, order_of_draws, order_of_values
@@ -454,7 +455,7 @@ def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
         reasons.append(f"Computed with different versions: {', '.join(sorted(versions))}.")
     for letter, result in zip(LETTERS, results, strict=False):
         if result.status.usable and result.breaches:
-            models = dict.fromkeys(line.partition(":")[0] for line in result.breaches)
+            models = subjects(result.breaches)
             reasons.append(f"{letter}: {summary.beyond_tests(models)}")
     return tuple(reasons)
 

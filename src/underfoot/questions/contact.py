@@ -16,7 +16,7 @@ from underfoot.rough_contact import ContactTable, SteadySliding, steady_sliding,
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
 from underfoot.surface import HeightMap, Profile, levelled, read_scan
-from underfoot.surface.scan import unlikely_height
+from underfoot.surface.scan import height_cautions
 
 ROWS = (
     ("Mean pressure", "pressure_Pa", "Pa", ""),
@@ -59,19 +59,29 @@ class RoughContact(Presentable):
     def usable(self) -> bool:
         return self.contact.status.usable
 
-    def headline(self) -> tuple[str, ...]:
+    @property
+    def _at(self) -> str:
         contact = self.contact
-        at = f"{display(contact.nominal_pressure, 'Pa')}, {display(contact.speed, 'm/s')}"
-        if not self.usable:
-            return (f"No result at {at}: {contact.status}. {contact.status.remedy}",)
+        return f"{display(contact.nominal_pressure, 'Pa')}, {display(contact.speed, 'm/s')}"
+
+    @property
+    def answer(self) -> str:
+        """The real contact and hysteresis of a usable solution, with pressure and speed."""
         return (
-            f"Real contact {100.0 * contact.real_contact_fraction_corrected:.3g} %, hysteresis COF "
-            f"{contact.cof_hysteresis:.3g} at {at} ({self.rubber}).",
+            f"Real contact {100.0 * self.contact.real_contact_fraction_corrected:.3g} %, "
+            f"hysteresis COF {self.contact.cof_hysteresis:.3g} at {self._at}"
         )
+
+    def headline(self) -> tuple[str, ...]:
+        if not self.usable:
+            return (
+                f"No result at {self._at}: {self.contact.status}. {self.contact.status.remedy}",
+            )
+        return (f"{self.answer} ({self.rubber}).",)
 
     def cautions(self) -> tuple[str, ...]:
         """Return why the heights are none of a floor."""
-        return tuple(filter(None, [unlikely_height(self.floor.rms_height)]))
+        return height_cautions(self.floor.rms_height)
 
     def table(self) -> Table:
         content = self.to_dict()

@@ -169,6 +169,14 @@ def change_effects(
     x_1 as computed for the change, F the load on the film, x the mean of the present result (for
     another plan, which has positions of its own: the present result at its first). Without
     ``quick`` each change is a run on the grid of the case.
+
+    Parameters:
+        case: The case as it is.
+        present: Its result.
+        changes: What is tried, each by itself.
+        quick: Go on from the coarse grid; else a run each.
+        processes: Changes that are run at the same time.
+        progress: Called with stage, fraction and residual; an exception it raises stops the work.
     """
     effects: dict[int, ChangeEffect] = {}
     variants: dict[int, Case] = {}

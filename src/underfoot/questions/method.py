@@ -14,6 +14,7 @@ from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
+from underfoot.core.remark import Remark, subjects
 
 from .ask import ask
 from .outcomes import Outcome, outcomes
@@ -132,8 +133,7 @@ class MethodPrediction(Presentable):
                 f"{len(unsure)} of {len(self.requirements)} settings are not verified against the "
                 "printed method or depart from it; see the table."
             )
-        models = dict.fromkeys(line.partition(":")[0] for line in self._breaches())
-        if models:
+        if models := subjects(self._breaches()):
             reasons.append(summary.beyond_tests(models))
         return tuple(reasons)
 
@@ -222,7 +222,7 @@ class MethodPrediction(Presentable):
             "requirements": Table("", names, required),
         }
 
-    def _breaches(self) -> list[str]:
+    def _breaches(self) -> list[Remark]:
         return list(dict.fromkeys(b for each in self.conditions for b in each.outcome.breaches))
 
 

@@ -18,6 +18,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
+from underfoot.core.remark import Remark
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -37,8 +38,8 @@ class Outcome:
     labels: dict[str, str]
     status: Status
     remedy: str
-    breaches: tuple[str, ...]
-    assumptions: tuple[str, ...]
+    breaches: tuple[Remark, ...]
+    assumptions: tuple[Remark, ...]
     seconds: float
     maps: dict[str, Array] = field(default_factory=dict, compare=False, repr=False)
 
@@ -94,7 +95,7 @@ class Outcome:
         plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
         plain["status"] = Status(plain["status"])
         for name in ("breaches", "assumptions"):
-            plain[name] = tuple(plain[name])
+            plain[name] = tuple(map(Remark.stored, plain[name]))
         return cls(**plain)
 
 

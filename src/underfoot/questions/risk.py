@@ -345,6 +345,12 @@ def model_risks(
 
     Each as the result has it: a mean over the same draws of the friction, those of the model's
     constants on top.
+
+    Parameters:
+        case: Who walks where.
+        acof: Available friction.
+        draws: Of it, (samples,); None where its spread is not known.
+        target: Slip probability that is aimed at, 0 to 1.
     """
     people, risks = required_friction(case), []
     for name in MODELS:

@@ -282,7 +282,16 @@ def slip_population(
     quick: bool = True,
     progress: Progress = silent,
 ) -> SlipPopulation:
-    """Return the slips of a case's population; arguments as for ``compute.slips.slips``."""
+    """Return the slips of a case's population; arguments as for ``compute.slips.slips``.
+
+    Parameters:
+        case: Shoe, floor, fluid and people.
+        subjects: Number of persons drawn; None takes the number of the case.
+        histories: Steps of your own in place of the packaged ones.
+        full_model: Solve the contact in each slip, not the reduced model.
+        quick: Use the coarse grid.
+        progress: Called with stage, fraction and residual; an exception it raises stops the work.
+    """
     study = slips(
         case,
         subjects=subjects,

@@ -48,7 +48,7 @@ LONGEST_HEEL, WIDTH_OF_HEEL = 0.12, 0.65
 
 
 EVEN = 5e-4
-"""COF below which a change is none: it is printed with three decimals."""
+"""Smallest change of COF that counts: COF is printed with three decimals."""
 WORN_REGION = (
     "Beschorner et al., worn region size, 57 shoes (abstract; doi 10.5061/dryad.vmcvdncsk)"
 )
@@ -522,7 +522,14 @@ def deepest_wear(text: str | None, mode: str) -> float | None:
 
 
 def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list[Case]:
-    """Return the case new and worn in ``steps`` equal steps."""
+    """Return the case new and worn in ``steps`` equal steps.
+
+    Parameters:
+        case: The new shoe.
+        mode: Name of an option of ``shoe.wear``.
+        steps: Number of equal steps.
+        deepest: Wear of the last one, m; m^2 of a patch. None takes what the sole allows.
+    """
     depth, heel_length, heel_width = _extent(case)
     angle = case.value("shoe.wear.angle")
     if angle is None or case.origins["shoe.wear.angle"].kind == "default":

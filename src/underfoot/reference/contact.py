@@ -49,6 +49,11 @@ def hertz_line(line_force: float, radius: float, modulus: float) -> HertzContact
     ``line_force`` is the normal force per length (N/m, > 0). Valid for a << R, plane strain.
     Source: Johnson (1985) Contact Mechanics, Eqs. 4.43 to 4.45.
 
+    Parameters:
+        line_force: Normal force per length, N/m, above 0.
+        radius: Of the cylinder, m.
+        modulus: E*, Pa.
+
     >>> round(hertz_line(1e3, 0.01, 5e6).half_width * 1e3, 3)
     1.596
     """
@@ -68,6 +73,11 @@ def sinusoid_full_contact_pressure(amplitude: float, wavelength: float, modulus:
 
     The surface is h(x) = a cos(2 pi x / lambda), peak to valley 2a.
     Source: Westergaard (1939) J. Appl. Mech. 6:A49; Johnson (1985) Eq. 13.7.
+
+    Parameters:
+        amplitude: a, m.
+        wavelength: lambda, m.
+        modulus: E*, Pa.
 
     >>> round(sinusoid_full_contact_pressure(1e-6, 1e-4, 5e6))
     157080
@@ -93,6 +103,11 @@ def sinusoid_mean_gap(pressure: ArrayLike, amplitude: float, full_contact_pressu
 
     It follows from du/dp = (a/p*) ln P, the compliance of a row of strip punches at the present
     contact width, integrated from full contact (zero gap); it is the mean of ``sinusoid_gap``.
+
+    Parameters:
+        pressure: Mean, Pa.
+        amplitude: a, m.
+        full_contact_pressure: p*, Pa.
     """
     ratio = np.minimum(_pressure_ratio(pressure, full_contact_pressure), 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -166,6 +181,12 @@ def sliding_checkerboard_cof(
     plane-strain modulus at the angular frequency k v (Pa). Valid only in full contact,
     p >= k a |E*(k v)| / sqrt(2); raises ValueError otherwise.
     Source: the sum of q cos(phi) over the four waves of wave number sqrt(2) k (derived here).
+
+    Parameters:
+        pressure: Mean, Pa.
+        amplitude: a, m.
+        wavelength: lambda, m.
+        modulus: Complex plane-strain modulus at k v, Pa.
     """
     k = 2.0 * np.pi / wavelength
     e = np.asarray(modulus, dtype=complex)
@@ -192,6 +213,12 @@ def bonded_layer_compliance(
     q = k T. Limits: 2/(E* k) for k T >> 1; T (1+nu)(1-2nu)/(E (1-nu)) for k -> 0, nu < 1/2;
     k^2 T^3 / (3 G) for k -> 0, nu = 1/2. ``wavenumber`` k >= 0 (rad/m); at k = 0 the limit.
     Source: Bentall and Johnson (1968) Int. J. Mech. Sci. 10:637; Johnson (1985) section 5.8.
+
+    Parameters:
+        wavenumber: k >= 0, rad/m.
+        thickness: T, m.
+        young_modulus: E, Pa.
+        poisson_ratio: nu, 0 to 0.5.
 
     >>> round(float(bonded_layer_compliance(1e3, 0.01, 5e6, 0.49)) * 1e9, 3)
     0.304

@@ -51,6 +51,14 @@ def inclined_bearing_pressure(
     """Return the pressure (Pa) at ``place`` (m from the leading edge) of the inclined bearing.
 
     p = 6 eta u l / (h1^2 - h0^2) (h1 - h)(h - h0) / h^2, infinitely wide. Source as the load.
+
+    Parameters:
+        place: From the leading edge, m.
+        viscosity: Pa s.
+        speed: Of sliding, m/s.
+        length: Along sliding, m.
+        leading_gap: h1, m.
+        trailing_gap: h0, m.
     """
     h1, h0 = leading_gap, trailing_gap
     h = h1 - (h1 - h0) * np.asarray(place, dtype=float) / length
@@ -136,6 +144,15 @@ def tapered_wedge_load(
     """Return the load (N) of a tapered wedge with side leakage, F = W b eta_s.
 
     ``leakage`` is the factor eta_s, tabulated in ``SIDE_LEAKAGE`` against length / width.
+
+    Parameters:
+        viscosity: Pa s.
+        speed: Of sliding, m/s.
+        length: Along sliding, m.
+        width: Across sliding, m.
+        leading_gap: h1, m.
+        trailing_gap: h0, m.
+        leakage: eta_s, 0 to 1.
     """
     infinite = inclined_bearing_load(
         viscosity=viscosity,
@@ -166,6 +183,13 @@ def squeeze_disc_pressure(
     """Return the pressure (Pa) under the disc, p = 3 eta v (R^2 - r^2) / h^3.
 
     Source as the load.
+
+    Parameters:
+        radius_at: r, m, at most ``radius``.
+        viscosity: Pa s.
+        radius: R, m.
+        gap: h, m.
+        closing_speed: v, m/s, positive when the gap closes.
     """
     r = np.asarray(radius_at, dtype=float)
     return 3 * viscosity * closing_speed * (radius**2 - r**2) / gap**3

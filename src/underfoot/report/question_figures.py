@@ -135,8 +135,7 @@ def wear_figure(series: WearSeries) -> Figure:
 def _contact(shown: RoughContact) -> FigureMakers:
     if not shown.usable:
         return {}
-    floor = shown.floor
-    title = shown.headline()[0].partition(" (")[0]
+    floor, title = shown.floor, shown.answer
     return {"contact": partial(contact_figure, floor.heights, floor.spacing, shown.contact, title)}
 
 

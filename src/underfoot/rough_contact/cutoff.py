@@ -58,6 +58,15 @@ def cutoff_dependence(
 
     ``shortest_waves`` (m, falling, 2 or more, none below twice the grid spacing); the other
     arguments are those of ``steady_sliding``. The filter is sharp in the wave number.
+
+    Parameters:
+        surface: Periodic heights, m.
+        modulus: Complex modulus of the rubber over frequency, or E in Pa.
+        speed: Of sliding, m/s.
+        pressure: Nominal, Pa.
+        shortest_waves: Cut-offs, m, falling.
+        poisson_ratio: Poisson's ratio, 0 to 0.5.
+        progress: Called with stage, fraction and residual; an exception it raises stops the work.
     """
     waves = np.asarray(shortest_waves, dtype=float)
     limit = 2.0 * surface.spacing * (1.0 - 1e-9)

@@ -36,6 +36,13 @@ def greenwood_williamson(
     Valid at light load only: summits neither interact nor merge. Beside half-space solutions of a
     self-affine surface the area is 8 % low at 1 % contact, 14 % at 5 %, 26 % at 20 %; the gap 5 %
     low at 2 % contact and useless above 10 %, where the mean planes cross.
+
+    Parameters:
+        pressure: Nominal, Pa, above 0.
+        moments: Spectral moments of the heights.
+        modulus: E of the elastic body, Pa.
+        poisson_ratio: Poisson's ratio, 0 to 0.5.
+
     Raises RangeError when no separation down to minus eight deviations carries the pressure.
     """
     p = np.atleast_1d(np.asarray(pressure, dtype=float))
@@ -71,6 +78,13 @@ def greenwood_williamson_law(
 
     Arguments as ``persson_law``. The range ends at 5 % of real contact: beyond it summits merge,
     and the gap falls to 0 too soon.
+
+    Parameters:
+        wavenumber: rad/m, ascending, (m,).
+        spectrum: C(q), m^4, (m,).
+        modulus: E of the elastic body, Pa.
+        poisson_ratio: Poisson's ratio, 0 to 0.5.
+        flow_factor: Of the gap (m); None takes none.
     """
     q, c = checked_spectrum(wavenumber, spectrum)
     m0, m2, m4 = (

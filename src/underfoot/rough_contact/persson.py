@@ -42,6 +42,15 @@ def persson(
 
     The arguments are those of ``persson_growth``. The mean gap is given for speed 0 or a constant
     modulus; otherwise None with the reason.
+
+    Parameters:
+        pressure: Nominal, Pa, above 0.
+        wavenumber: rad/m, ascending, (m,).
+        spectrum: C(q), m^4, (m,).
+        modulus: Complex modulus of the rubber over frequency, or E in Pa.
+        speed: Of sliding, m/s.
+        poisson_ratio: Poisson's ratio, 0 to 0.5.
+        directions: How the spectrum is spread over directions; None for an isotropic one.
     """
     q, c = checked_spectrum(wavenumber, spectrum)
     p = np.atleast_1d(np.asarray(pressure, dtype=float))

@@ -163,9 +163,9 @@ def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) ->
 
 
 def _middle(cells: NDArray[np.intp], y: Array) -> NDArray[np.intp]:
-    """Return that of the cells (n, 2) which is next to the centre of all.
+    """Return the cell, of ``cells`` (n, 2), that is nearest to their centroid.
 
-    Of equals the one farthest from the middle line, so that mirrored lugs have mirrored peaks.
+    A tie goes to the cell farthest from the middle line: mirrored lugs have mirrored peaks.
     """
     away = np.hypot(*(cells - cells.mean(axis=0)).T)
     return cells[np.lexsort((-np.abs(y[cells[:, 1]]), away.round(6)))[0]]

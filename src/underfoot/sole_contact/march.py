@@ -1,4 +1,4 @@
-"""One accepted time step of the contact after the other: the wet cells follow, failures shorten."""
+"""Time steps of the contact: each updates the wet cells, and one that fails is tried shorter."""
 
 from __future__ import annotations
 

@@ -27,7 +27,10 @@ from .sole_state import CellState, SoleState, SolverSettings
 
 FAR = 1.0  # m, clearance that stands for "outside the plan form"
 FIRST_STEP = 1 / 30  # of the rise time
-PASSED = (10.0, 1e-3)  # times the tolerance, at most the second: a balance that is only passed
+PASSED = (
+    10.0,
+    1e-3,
+)  # times the tolerance, at most the second: a force balance that is crossed, not reached
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
 LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
@@ -44,7 +47,7 @@ MOST_STRETCH = 0.15  # of the grid along x, by which a sole may roll away from i
 
 @dataclass(frozen=True, slots=True)
 class Reporting:
-    """Who hears of the steps of a ``SlidingSole``.
+    """Callbacks of a ``SlidingSole``, called as it steps.
 
     Parameters:
         progress: Receives stage, fraction of the time and residual; an exception it raises stops
@@ -83,11 +86,11 @@ class SlidingSole:
         compliance: Surface deflection under pressure on the same grid.
         law: Asperity pressure and flow factor against the mean gap.
         viscosity: Pa s; None for a dry floor, where time does nothing.
-        settings: Pool, start film, first step (``rise_time`` / 150) and accuracy.
+        settings: Pool, start film, first step (``FIRST_STEP`` of ``rise_time``) and accuracy.
         shoe_angle: Angle (rad, toe up positive) at which ``sole`` was made; at others it is
             ``rolled_clearance``.
         typical_force: N, a load of the order to come: sets the scale of the asperity law.
-        reporting: Who hears of the steps.
+        reporting: Callbacks that are called as the sole steps.
         before: The problem of another case, whose compliance serves again on the same sole.
         inlet: What edges of lugs let in; None: what cells have, which is too much under lugs.
 

@@ -48,6 +48,13 @@ def checkerboard(
     valleys, as linear elements that are moved up and down at every other node make it: grant
     report G.1.1). Periodic.
 
+    Parameters:
+        shape: Number of points, one for both axes or (nx, ny).
+        spacing: m.
+        peak_to_valley: m.
+        wavelength: m; a whole number of them fits the lengths.
+        form: "cosine" or "triangular".
+
     Raises:
         InputError: Wavelength that does not fit into both lengths a whole number of times, another
             form.
@@ -284,6 +291,13 @@ def surface_of_density(
     longest and the shortest, m. A wave of the grid has the mean of the density over its cell of
     wave numbers, as far as that lies in the range: heights and slopes are those of the range within
     about 1 %.
+
+    Parameters:
+        density: C(q) in m^4 of wave numbers in rad/m.
+        waves: Longest and shortest, m.
+        shape: Number of points, one for both axes or (nx, ny).
+        spacing: m.
+        seed: Of the random numbers: equal seeds give equal draws.
     """
     nx, ny = _points(shape)
     low, high = (2.0 * np.pi / wave for wave in waves)

@@ -191,6 +191,14 @@ def profile_from_positions(
     then heights are interpolated linearly to an even grid with as many points, and the profile
     says so.
 
+    Parameters:
+        positions: m, ascending, (n,).
+        heights: m, (n,).
+        resample: Interpolate uneven positions.
+        rounding: Half the last printed digit of positions, m.
+        tip_radius: Of the stylus, m; None where it is not known.
+        source: Where the heights are from.
+
     Raises:
         DataError: Positions missing, not ascending, uneven without ``resample``, heights missing.
     """

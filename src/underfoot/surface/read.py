@@ -199,6 +199,15 @@ def read_profile(
     heights are refused unless ``fill_missing`` (then up to 5 % are interpolated). Both are said
     in ``processing``.
 
+    Parameters:
+        path: Text file.
+        length_unit: Of positions; None takes that of the heading.
+        height_unit: Of heights; None takes that of the heading.
+        spacing: m, of one column of heights.
+        tip_radius: Of the stylus, m.
+        resample: Interpolate uneven positions.
+        fill_missing: Interpolate up to 5 % of the heights.
+
     Raises:
         DataError: Unreadable, units missing, positions uneven, heights missing.
     """
@@ -251,6 +260,13 @@ def read_map(
     A matrix needs ``spacing`` (m), or the size that Gwyddion writes above it; its lines run along
     x. Three columns have to form a full grid, whose cells may be oblong. Units come from the
     heading unless given: the first for x and y, the last for z.
+
+    Parameters:
+        path: Text file.
+        length_unit: Of x and y; None takes that of the heading.
+        height_unit: Of z; None takes that of the heading.
+        spacing: m, of a matrix.
+        fill_missing: Interpolate up to 5 % of the heights.
 
     Raises:
         DataError: Unreadable, units missing, no full grid, heights missing.

@@ -285,6 +285,12 @@ def areal_roughness(
 
     Sdq = sqrt(mean(z_x^2 + z_y^2)), see ``rms_slope``.
 
+    Parameters:
+        surface: The map.
+        long_cutoff: L-filter, m; None leaves it out.
+        short_cutoff: S-filter, m; None leaves it out.
+        ends: What the filters do at the rims, as ``long_waves``.
+
     Raises:
         RangeError: Short cut-off below what the measurement resolves.
         DataError, InputError: See ``long_waves``.

@@ -29,6 +29,7 @@ from .spectrum import (
     isotropic_from_profile,
     isotropic_spectrum,
     profile_spectrum,
+    rises_text,
 )
 
 CUTOFFS = (0.8e-3, 0.25e-3, 0.08e-3)
@@ -131,7 +132,7 @@ class Scan(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return why the heights are none of a floor or sole, and which waves they lack."""
-        return tuple(filter(None, (unlikely_height(self.values["rq"].value or 0.0), self.short)))
+        return (*height_cautions(self.values["rq"].value or 0.0), *filter(None, [self.short]))
 
     def table(self) -> Table:
         """Return the numbers with their standard errors."""
@@ -203,13 +204,15 @@ class Scan(Presentable):
 def unlikely_height(rq: float) -> str:
     """Return why an Rq (m) is none of a floor or sole; "" for a likely one."""
     if rq < NO_FLOOR:
-        return (
-            f"an Rq of {display(rq, 'm')} is no floor and no sole (the smoothest steel floor has "
-            "90 nm): is the unit of the heights right?"
-        )
-    if rq > NO_ROUGHNESS:
-        return f"an Rq of {display(rq, 'm')} is no roughness: is the unit of the heights right?"
-    return ""
+        smoothest = "the smoothest steel floor has 90 nm"
+        return f"an Rq of {display(rq, 'm')} is no floor and no sole ({smoothest})"
+    return f"an Rq of {display(rq, 'm')} is no roughness" if rq > NO_ROUGHNESS else ""
+
+
+def height_cautions(rq: float) -> tuple[str, ...]:
+    """Return the question that an unlikely Rq (m) asks; nothing of a likely one."""
+    unlikely = unlikely_height(rq)
+    return (f"{unlikely}: is the unit of the heights right?",) if unlikely else ()
 
 
 def read_scan(
@@ -272,7 +275,7 @@ def read_scan(
     unlikely = unlikely_height(values["rq"].value or 0.0)
     if strict and unlikely:
         raise DataError(
-            unlikely.partition(":")[0],
+            unlikely,
             where=str(path),
             allowed=f"{display(NO_FLOOR, 'm')} to {display(NO_ROUGHNESS, 'm')}",
             remedy='Name the unit of the heights (height_unit = "mm"), or write rq yourself',
@@ -290,7 +293,8 @@ def read_scan(
         )
     if isinstance(surface, Profile):
         notes.append("one direction measured: the spectrum counts as that of every direction")
-    notes += [note for note in spectrum.notes if "levelled" in note]
+    if rises := spectrum.levelled_rises:
+        notes.append(rises_text(rises))
     return Scan(
         *(Path(path).name, surface, cutoff, values, spectrum, hurst, roll_off, ends),
         *(tuple(notes), short, found),
@@ -362,11 +366,14 @@ def _without_spikes(surface: Profile | HeightMap) -> Profile | HeightMap:
     dead = np.abs(z - median_filter(z, size=5, mode="nearest")) > SPIKE * robust
     if not dead.any() or robust == 0.0:
         return surface
-    heights, note = filled(np.where(dead, np.nan, surface.heights))
-    note = note.replace(
-        "missing heights", "points stand out of their neighbours (dead pixels) and are"
+    marked = np.where(dead, np.nan, surface.heights)
+    heights, _ = filled(marked)
+    count = int((~np.isfinite(marked)).sum())
+    return surface.changed(
+        heights,
+        f"{count} of {dead.size} points stand out of their neighbours (dead pixels) and are "
+        "interpolated",
     )
-    return surface.changed(heights, note)
 
 
 def _lines(surface: Profile | HeightMap) -> list[Profile]:

@@ -84,6 +84,8 @@ class IsotropicSpectrum(_Spectrum):
             square height is sum C area.
         reliable: Lowest and highest wave number that can be believed, rad/m.
         notes: Window, form removed, inversion, what limits it.
+        levelled_rises: Largest relative change of a profile's density where it rose with q and was
+            levelled; 0 where it fell everywhere.
     """
 
     wavenumber: np.ndarray
@@ -91,6 +93,7 @@ class IsotropicSpectrum(_Spectrum):
     area: np.ndarray
     reliable: tuple[float, float]
     notes: tuple[str, ...] = ()
+    levelled_rises: float = 0.0
     moment_shares: ClassVar[tuple[float, float, float]] = (1.0, 0.5, 0.375)
 
     def within(self, low: float, high: float) -> Self:
@@ -234,11 +237,15 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
         f"extrapolated beyond {q[-1]:.4g} rad/m with the power {exponent:.3g} for the inversion",
     )
     if changed > 0.0:
-        most = f"up to {100 * changed:.0f} %" if changed < 10.0 else "more than tenfold"
-        notes += (f"rises of the profile spectrum levelled (by {most})",)
-    return IsotropicSpectrum(
-        q, density, np.pi * np.diff(edges**2), (float(q[0]), float(q[-1])), notes
-    )
+        notes += (rises_text(changed),)
+    area = np.pi * np.diff(edges**2)
+    return IsotropicSpectrum(q, density, area, (float(q[0]), float(q[-1])), notes, changed)
+
+
+def rises_text(levelled: float) -> str:
+    """Return by how much rises were levelled; ``levelled`` is the largest relative change."""
+    most = f"up to {100 * levelled:.0f} %" if levelled < 10.0 else "more than tenfold"
+    return f"rises of the profile spectrum levelled (by {most})"
 
 
 def averaged(
@@ -309,6 +316,11 @@ def correlation_length(
     """Return the lag, m, at which the autocorrelation first falls to ``level``.
 
     1/e by default; 0.2 is the level of Sal in ISO 25178-2.
+
+    Parameters:
+        surface: Profile or map.
+        level: Of the autocorrelation, 0 to 1.
+        axis: Of a map: 0 for x, 1 for y.
 
     Raises:
         InputError: Level outside 0 to 1, or not reached within half the length.

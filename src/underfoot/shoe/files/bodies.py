@@ -53,12 +53,14 @@ class Found:
         down: Direction of the ground in the file's axes, None if the bodies don't tell.
         remarks: Sentences.
         ground: How the bodies tell ``down``.
+        ground_assumed: Whether that is a guess.
     """
 
     meshes: tuple[Mesh, ...]
     down: Array | None
     remarks: tuple[str, ...]
     ground: str = "Ground side: away from the rest of the file."
+    ground_assumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -461,7 +463,7 @@ def _beside(outsole: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     towards = shares[0] > shares[1] if offset[axis] > 0 else shares[1] > shares[0]
     if _clear(shares) and towards:
         told = "Assumed: the ground side is the one with the tread, towards the rest of the file."
-        return replace(outsole, down=-away, ground=told)
+        return replace(outsole, down=-away, ground=told, ground_assumed=True)
     return replace(outsole, down=away)
 
 

@@ -148,10 +148,13 @@ def _extents(points: Array, angle: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A decision: its sign (1 keep, -1 turn) and how it was made ("" when stated by the user)."""
+    """A decision: its sign (1 keep, -1 turn), how it was made ("" when stated by the user), and
+    whether that is a guess.
+    """
 
     sign: int
     remark: str
+    assumed: bool = False
 
 
 def ground_side(seen: View, settings: FileSettings) -> Choice:
@@ -194,6 +197,7 @@ def _ground_side(seen: View) -> Choice:
     return Choice(
         1 if _file_side(seen) else -1,
         "Assumed: the ground side is the lower one of the file; both sides look alike.",
+        assumed=True,
     )
 
 
@@ -377,7 +381,7 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
         return best, Choice(
             1, f"Ground side: the side that stands flat, {shares[order[0]]:.0%} of it on the floor."
         )
-    return best, Choice(1, "Assumed: the ground side is the one that stands flattest.")
+    return best, Choice(1, "Assumed: the ground side is the one that stands flattest.", True)
 
 
 def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:

@@ -137,7 +137,7 @@ def _outsole(
     unit, _ = length_unit(
         float(max(size[:2])), float(min(size[:2])), chosen=chosen.unit, in_file=stated, where=where
     )
-    axes, side_remarks = _sides(mesh, axes, unit, chosen, told)
+    axes, side_remarks, alike = _sides(mesh, axes, unit, chosen, told)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
     height, repaired = cleaned(seen.lowest, seen.spacing)
     draft = wall_draft(mesh.triangles, seen, height)
@@ -179,7 +179,6 @@ def _outsole(
     surface, tread_remarks = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
     check_carried(surface.inside, surface.land, seen.spacing, mesh.unmet, where)
-    alike = any(each.startswith("Assumed: the ground side") for each in side_remarks)
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
     body = float(np.median(thickness[surface.land]))
@@ -209,12 +208,14 @@ def _lag(mesh: Mesh, unit: float, spacing: float) -> int:
 
 def _sides(
     mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, told: Found
-) -> tuple[Array, list[str]]:
-    """Return the axes forward, left, up (rows, m per unit of the file) and how they were found."""
+) -> tuple[Array, list[str], bool]:
+    """Return the axes forward, left, up (rows, m per unit of the file), how they were found, and
+    whether the ground side is a guess.
+    """
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
     if told.down is not None:
-        ground = orientation.Choice(-1, told.ground)
+        ground = orientation.Choice(-1, told.ground, told.ground_assumed)
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)
@@ -246,7 +247,7 @@ def _sides(
         for choice, name, axis in ((ground, "down", -thin), (toe, "forward", along))
         if choice.remark
     ]
-    return turned * unit, remarks
+    return turned * unit, remarks, ground.assumed
 
 
 def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, list[str]]:

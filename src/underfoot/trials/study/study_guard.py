@@ -580,7 +580,7 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
-    """What nobody can judge, told once."""
+    """Yield the checks that need a person, each once."""
     said = [m["conventions"] for one in files for m in one.measurements]
     if any(c.get("calibration", "").startswith("no record") for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"

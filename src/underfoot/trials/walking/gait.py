@@ -281,7 +281,7 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
         return ()
     text = (
         f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
-        f"are taken as on a slope of {math.degrees(stated):.1f} deg: is the ramp given rightly?"
+        f"are taken as on a slope of {math.degrees(stated):.1f} deg: check the angle of the ramp"
     )
     return (Flag("plate slope", text, True, abs(slope - stated), _TILT, "rad"),)
 

@@ -1,0 +1,105 @@
+"""No rule hangs on the text of a message: what a line means is handed on as a value."""
+
+import ast
+import pickle
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+import underfoot
+from underfoot.core.remark import Remark, remarks, subjects
+
+SOURCE = Path(underfoot.__file__).parent
+CUTS = {
+    *("endswith", "find", "index", "partition", "removeprefix", "removesuffix"),
+    *("replace", "rpartition", "rsplit", "split", "startswith"),
+}
+FORMATS = {
+    "app": "text of requests and of its own file of languages",
+    "block/_kernels/generate.py": "source text of kernels",
+    "case/errors.py": "what pydantic allows",
+    "case/explanation.py": "docstrings",
+    "case/tables.py": "tables of users",
+    "case/text.py": "what tomlkit says",
+    "cli/output.py": "brackets are cut off where a line is too long",
+    "case/section.py": "addresses module:Class",
+    "cli/outsole_make.py": "addresses module:Class",
+    "core/installation.py": "requirements of packages",
+    "core/registry.py": "addresses module:Class",
+    "core/remark.py": "stored lines",
+    "explore/engines.py": "addresses of queues",
+    "explore/inputs.py": "addresses module:Class",
+    "material": "tables of instruments",
+    "report/sole_export.py": "files",
+    "shoe/files": "files",
+    "slip/dynamics/gait.py": "tables",
+    "studies": "names of effects and fluids",
+    "surface/instruments.py": "files",
+    "surface/read.py": "files",
+    "trials": "recordings and tables of users; has a test of its own",
+}
+"""Rooms and files that read text of others, and whose."""
+
+
+def _reads_text(node: ast.AST) -> bool:
+    """Whether a node cuts a text at a sentence's mark or words, or looks for words in it."""
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        given = [part for each in node.args for part in ast.walk(each)]
+        return node.func.attr in CUTS and any(map(_of_a_sentence, given))
+    if not isinstance(node, ast.Compare) or not isinstance(node.ops[0], ast.In | ast.NotIn):
+        return False
+    read = ast.unparse(node.comparators[0])
+    return _of_a_sentence(node.left) or (
+        isinstance(node.left, ast.Constant) and read.startswith(("str(", "message", "remark"))
+    )
+
+
+def _of_a_sentence(node: ast.AST) -> bool:
+    if not isinstance(node, ast.Constant) or not isinstance(node.value, str):
+        return False
+    words = node.value.strip(" .:;(").split(" ")
+    return node.value in (": ", ":", " (", "; ", ". ", "±") or (
+        len(words) > 1 and words[0].isalpha() and words[0] != "ISO"
+    )
+
+
+def _found(code: str) -> list[int]:
+    return [node.lineno for node in ast.walk(ast.parse(code)) if _reads_text(node)]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'line.partition(":")[0]',
+        'note.startswith("no record of it")',
+        'limit.replace(" of the load", "")',
+        '"not converged" in remark',
+        '"converged" in str(error)',
+    ],
+)
+def test_reading_a_sentence_back_is_seen(code):
+    assert _found(code) == [1]
+
+
+def test_no_text_of_ours_is_read_back():
+    found = {}
+    for file in sorted(SOURCE.rglob("*.py")):
+        place = file.relative_to(SOURCE).as_posix()
+        if not any(place == known or place.startswith(f"{known}/") for known in FORMATS):
+            lines = _found(file.read_text())
+            found |= {place: lines} if lines else {}
+    assert not found
+
+
+def test_a_remark_knows_what_it_is_about_wherever_it_goes():
+    remark = Remark("shoe.heel", "length: 60 mm")
+    for copy in (deepcopy(remark), pickle.loads(pickle.dumps(remark)), Remark.stored(str(remark))):
+        assert (copy, copy.about, copy.what) == (
+            "shoe.heel: length: 60 mm",
+            *remark.__reduce__()[1],
+        )
+    assert subjects(remarks([remark, "the whole", remark, "the whole"])) == (
+        "shoe.heel",
+        "the whole",
+    )
