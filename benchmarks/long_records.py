@@ -19,7 +19,7 @@ from ._separate import peak_memory, separate
 _WALKS = Path(__file__).parents[1] / "tests/data/trials"
 WALKS = {
     "291 points": _WALKS / "biomechzoo/HC030A05.c3d",
-    "33 points": _WALKS / "bmc/Gait.c3d",
+    "40 points": _WALKS / "opensim/walking5.c3d",
 }
 SIZES = (50, 200, 600)
 CPU_LIMIT, MEMORY_LIMIT = 0.060, 1.5  # s/MB, MB/MB

@@ -87,7 +87,7 @@ class C3DFile:
 def parse(data: bytes | FileBytes, where: str) -> C3DFile:
     """Return what a C3D file holds; what is truncated or inconsistent is a DataError.
 
-    Of a long file (``FileBytes``) analog samples stay as short as its floats are.
+    Of a long file (``FileBytes``) all samples are kept in single precision.
     """
     if len(data) < 2 * BLOCK or data[1] != 0x50 or data[0] == 0:
         raise DataError("not a C3D file", where=where, allowed="a file that begins as c3d.org says")
@@ -132,8 +132,9 @@ def parse(data: bytes | FileBytes, where: str) -> C3DFile:
         notes.append(f"the header counts {n_points} points, POINT:USED {points_used:g}")
     count = frames if width else 0
     # Each marker and each channel lies in one piece.
-    points = np.empty((n_points, count, 3), "f4" if real else float).swapaxes(0, 1)
-    kept = "f4" if real and isinstance(data, FileBytes) else float
+    long = isinstance(data, FileBytes)
+    points = np.empty((n_points, count, 3), "f4" if real or long else float).swapaxes(0, 1)
+    kept = "f4" if long else float
     analog = np.empty((channels, count * per_frame), kept).T
     step = max(_READ // (width * size), 1) if width else 1
     for first_read in range(0, count, step):
