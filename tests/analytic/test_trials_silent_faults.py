@@ -11,7 +11,7 @@ from underfoot.trials import Marker, finished_plate, read_trial, required_fricti
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.study_guard import study_doubts
-from underfoot.trials.walking.likelihood import Reference, unseen_gain
+from underfoot.trials.walking.likelihood import Reference, references, unseen_gain
 from underfoot.trials.walking.plausibility import rcof_flags
 from underfoot.trials.walking.slips import contact_from_heel
 
@@ -120,6 +120,20 @@ def test_the_bound_of_unseen_gains_is_that_of_the_narrowest_features():
     assert not flag.matters
     (wider,) = unseen_gain({known[0].feature: 0.0}, 0.2, mass=False, known=known)
     assert (wider.measured or 0.0) > (flag.measured or 1.0)
+
+
+def test_a_gain_that_drifts_within_a_step_is_bound_by_the_half_that_brakes():
+    """A gain of 0.45 at contact and 1 at toe off hides in the impulse of both halves."""
+    known = [one for one in references() if one.logarithm]
+    features = {one.feature: one.mean for one in known}
+    (flag,) = unseen_gain(features, 0.13, mass=True)
+    (even,) = unseen_gain(
+        {n: v for n, v in features.items() if "braking" not in n}, 0.13, mass=True
+    )
+    braking = next(one for one in known if one.feature == "braking impulse")
+    reach = braking.limit(braking.mean + 1e-9) - braking.mean
+    assert flag.measured == pytest.approx(0.13 * math.expm1(math.hypot(reach, 0.14)), rel=1e-3)
+    assert (flag.measured or 0.0) > 1.5 * (even.measured or 1.0)
 
 
 def test_a_slow_walk_may_need_less_friction():

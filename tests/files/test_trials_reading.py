@@ -446,3 +446,50 @@ def test_units_row_header_rate_and_markers_are_recognised(tmp_path):
     assert trial.marker("heel").rate == 200.0
     np.testing.assert_allclose(trial.marker("heel").positions[10], [0.01, 0.02, 0.03])
     assert trial.channel("p1").values[0] == pytest.approx(5e4)
+
+
+C3D_FILES = sorted(DATA.rglob("*.c3d"))
+
+
+@pytest.mark.parametrize("path", C3D_FILES, ids=lambda path: path.stem)
+def test_a_long_file_read_in_parts_holds_what_it_holds_as_a_whole(path, monkeypatch):
+    from underfoot.trials.readers import file_bytes
+
+    whole = c3d.parse(path.read_bytes(), path.name)
+    monkeypatch.setattr(c3d, "_READ", 50_000)
+    file = file_bytes.FileBytes(path)
+    parts = c3d.parse(file, path.name)
+    file.close()
+    assert (parts.first_frame, parts.notes) == (whole.first_frame, whole.notes)
+    assert parts.points.dtype == parts.analog.dtype == np.float32
+    np.testing.assert_allclose(parts.points, whole.points, rtol=1e-6)
+    np.testing.assert_allclose(parts.analog, whole.analog, rtol=1e-6)
+
+
+def test_a_long_recording_gives_the_same_friction_and_checksum(monkeypatch):
+    from underfoot.trials import readers, required_frictions
+
+    path = DATA / "biomechzoo/HC030A05.c3d"
+    whole = read_trial(path)
+    monkeypatch.setattr(readers, "_LONG", 1000)
+    parts = read_trial(path)
+    assert parts.checksum == whole.checksum
+    first, second = (
+        [step.measurement.value for step in required_frictions(one)] for one in (whole, parts)
+    )
+    assert second == pytest.approx(first, rel=1e-5)
+    assert len(first) == 2
+
+
+def test_steps_of_a_long_record_are_those_of_the_short_one(tmp_path):
+    """A walk again and again: each time the same steps."""
+    from benchmarks.long_records import WALKS, write_repeated
+
+    from underfoot.trials import required_frictions
+
+    walk = WALKS["291 points"]
+    write_repeated(walk, 3.5e-6 * walk.stat().st_size, tmp_path / "long.c3d")
+    once = [step.measurement.value for step in required_frictions(read_trial(walk))]
+    again = [s.measurement.value for s in required_frictions(read_trial(tmp_path / "long.c3d"))]
+    assert len(again) > 2 * len(once)
+    assert again[: len(once)] == pytest.approx(once, abs=2e-3)

@@ -122,3 +122,9 @@ def test_scatter_of_rounding_alone_is_none():
     study = study_of(files_of(STUDIES["the same value in a shoe"]), LEVEL)
     mixed = next(one for one in study.findings if one.name == "mixed_rcof")
     assert "not done" in mixed.table.columns
+
+
+def test_trials_of_one_person_tell_of_that_person():
+    study = study_of(files_of(STUDIES["one person"]), LEVEL)
+    (anova,) = (one for one in study.findings if one.name.startswith("anova"))
+    assert "one person" in " ".join(anova.cautions)

@@ -1,15 +1,16 @@
 """Readers of measurement files: the format is found, the answer is a Trial or a DataError."""
 
-import hashlib
 from dataclasses import replace
 from pathlib import Path
 
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.registry import offered
 
-from ..recording.trial import Trial
+from ..recording.trial import Trial, file_checksum
 from .draft import Draft
+from .file_bytes import FileBytes
 from .formats import (
+    C3D,
     READERS,
     TABLE,
     TrialReader,
@@ -38,6 +39,7 @@ __all__ = [
 ]
 
 _LARGEST = 2_000_000_000  # bytes; a recording of hours stays far below
+_LONG = 64_000_000  # bytes, above which a file is not held beside what was read of it
 
 
 def read_trials(
@@ -59,14 +61,15 @@ def read_trials(
         profile = Profile()
     elif not isinstance(profile, Profile):
         profile = read_profile(Path(profile))
-    data, ending = _bytes(path), path.suffix.casefold()
+    ending = path.suffix.casefold()
+    data, file = _content(path, in_parts=ending in C3D.suffixes)
     reader = None if ending in trial_suffixes() else offered("trial_readers", ending[1:])
     if reader is None:
         kind = file_format(data, path)
         reader = (TABLE if kind.name == "BioWare" and profile.plates else kind).function
     subtracted = subtract_baseline and profile.subtract_baseline
     try:
-        draft = Draft(data, path.name, profile, subtracted)
+        draft = Draft(data, path.name, profile, subtracted, file=file)
         trials = reader(draft)
     except UnderfootError as error:
         error.where = error.where or path.name
@@ -79,9 +82,12 @@ def read_trials(
             where=path.name,
             remedy="Export the file again; if it opens elsewhere, please report it",
         ) from error
+    finally:
+        if file is not None:
+            file.close()
     settings = {} if profile.body_mass is None else {"body mass (kg)": f"{profile.body_mass:g}"}
     accuracy = {} if profile.accuracy is None else {"accuracy": profile.accuracy}
-    checksum = hashlib.sha256(data).hexdigest()
+    checksum = file_checksum(path)
     return tuple(
         replace(
             trial,
@@ -113,14 +119,18 @@ def read_trial(
     return trials[(step or 1) - 1]
 
 
-def _bytes(path: Path) -> bytes:
+def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
+    """Bytes of a file, or the long file that a reader reads ``in_parts``."""
     try:
-        if path.stat().st_size > _LARGEST:
+        size = path.stat().st_size
+        if size > _LARGEST:
             raise DataError("larger than any recording", where=path.name)
+        if in_parts and size > _LONG:
+            return b"", FileBytes(path)
         data = path.read_bytes()
     except OSError as error:
         words = f"can't be read: {error.strerror or error}"
         raise DataError(words, where=path.name or str(path)) from error
     if not data:
         raise DataError("empty", where=path.name)
-    return data
+    return data, None

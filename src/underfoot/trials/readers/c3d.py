@@ -18,12 +18,14 @@ from ..recording.axes import axis_vector
 from ..recording.measurement import Flag
 from ..recording.trial import Event, Trial, Vertical
 from .draft import Draft
+from .file_bytes import FileBytes
 from .text import force_unit, si_unit, truncated
 
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
 _VAX = 85
 _POSSIBLE = 1e30  # no sample of any instrument in any unit is larger
+_READ = 16_000_000  # bytes that are read at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +84,11 @@ class C3DFile:
         return found
 
 
-def parse(data: bytes, where: str) -> C3DFile:
-    """Return what a C3D file holds; what is truncated or inconsistent is a DataError."""
+def parse(data: bytes | FileBytes, where: str) -> C3DFile:
+    """Return what a C3D file holds; what is truncated or inconsistent is a DataError.
+
+    Of a long file (``FileBytes``) all samples are kept in single precision.
+    """
     if len(data) < 2 * BLOCK or data[1] != 0x50 or data[0] == 0:
         raise DataError("not a C3D file", where=where, allowed="a file that begins as c3d.org says")
     start = (data[0] - 1) * BLOCK
@@ -97,7 +102,7 @@ def parse(data: bytes, where: str) -> C3DFile:
             allowed="84 (Intel), 85 (DEC) or 86 (SGI/MIPS)",
             remedy="The file is damaged: export it again",
         )
-    words = np.frombuffer(data, dtype=_ENDIAN[processor] + "u2", count=BLOCK // 2)
+    words = np.frombuffer(data[:BLOCK], dtype=_ENDIAN[processor] + "u2")
     scale, frame_rate = _floats(data[12:16] + data[20:24], processor)
     data_start = (int(words[8]) - 1) * BLOCK
     parameters, notes = _parameters(data, start, data_start, processor, where)
@@ -119,24 +124,30 @@ def parse(data: bytes, where: str) -> C3DFile:
             raise DataError("holds neither points nor analog samples", where=where)
         if data_start < BLOCK or data_start >= len(data):
             raise DataError("truncated: the data section is missing", where=where)
-        frames, said = _frames(data[data_start:end], width * size, counts, where)
+        frames, said = _frames(data, data_start, end, width * size, counts, where)
         notes += said
     else:
         frames = max(counts.values())
     if n_points != (points_used := shell.number("POINT", "USED", n_points)):
         notes.append(f"the header counts {n_points} points, POINT:USED {points_used:g}")
-    kind = "f4" if real else "i2"
-    if not width:
-        raw = np.empty(0)
-    elif real and processor == _VAX:
-        raw = _floats(data[data_start : data_start + frames * width * 4], processor)
-    else:
-        raw = np.frombuffer(data, _ENDIAN[processor] + kind, frames * width, data_start)
-    raw = raw.reshape(frames if width else 0, width)
-    with np.errstate(all="ignore"):  # damaged floats overflow; the sums are checked later
-        points = _points(raw[:, : 4 * n_points].reshape(len(raw), n_points, 4), float(scale), real)
-        samples = raw[:, 4 * n_points :].reshape(len(raw) * per_frame, channels)
-        analog = _scaled_analog(samples, shell, real)
+    count = frames if width else 0
+    # Each marker and each channel lies in one piece.
+    long = isinstance(data, FileBytes)
+    points = np.empty((n_points, count, 3), "f4" if real or long else float).swapaxes(0, 1)
+    kept = "f4" if long else float
+    analog = np.empty((channels, count * per_frame), kept).T
+    step = max(_READ // (width * size), 1) if width else 1
+    for first_read in range(0, count, step):
+        last_read = min(first_read + step, count)
+        part = data[data_start + first_read * width * size : data_start + last_read * width * size]
+        raw = _floats(part, processor) if real else np.frombuffer(part, _ENDIAN[processor] + "i2")
+        raw = raw.reshape(last_read - first_read, width)
+        with np.errstate(all="ignore"):  # damaged floats overflow; the sums are checked later
+            places = raw[:, : 4 * n_points].reshape(len(raw), n_points, 4)
+            _points(places, float(scale), real, points[first_read:last_read])
+            samples = raw[:, 4 * n_points :].reshape(len(raw) * per_frame, channels)
+            scaled = _scaled_analog(samples, shell, real)
+            analog[first_read * per_frame : last_read * per_frame] = scaled
     point_rate, analog_rate = _rates(float(frame_rate), per_frame, shell, where)
     poses, rate = _rotations(data, shell, used, frames, point_rate, processor, where)
     read = points, analog, point_rate, analog_rate, first, parameters
@@ -145,7 +156,13 @@ def parse(data: bytes, where: str) -> C3DFile:
 
 @np.errstate(invalid="ignore")  # a damaged float may signal when it is cast
 def _rotations(
-    data: bytes, shell: C3DFile, used: int, frames: int, rate: float, processor: int, where: str
+    data: bytes | FileBytes,
+    shell: C3DFile,
+    used: int,
+    frames: int,
+    rate: float,
+    processor: int,
+    where: str,
 ) -> tuple[np.ndarray, float]:
     """Return the poses (frames, segments, 4, 4) of the ROTATION group: by columns, a mark each.
 
@@ -194,15 +211,16 @@ def _frame_counts(header: np.ndarray, shell: C3DFile) -> tuple[int, dict[str, in
 
 
 def _frames(
-    section: bytes, width: int, counts: dict[str, int], where: str
+    data: bytes | FileBytes, begin: int, end: int, width: int, counts: dict[str, int], where: str
 ) -> tuple[int, list[str]]:
     """Return how many frames of ``width`` bytes a data section holds, and what else was said.
 
     Its bytes decide: the count that fills its last block, else all frames down to the last byte
     that is not zero. Fewer bytes than every place counts: the file is cut short, a DataError.
     """
-    whole = len(section) // width
-    fewest = max(len(section) - BLOCK, 0) // width + 1
+    size = end - begin
+    whole = size // width
+    fewest = max(size - BLOCK, 0) // width + 1
     fitting = [count for count in counts.values() if fewest <= count <= whole]
     largest = max(counts.values())
     if fitting:
@@ -211,8 +229,11 @@ def _frames(
         words = f"truncated or damaged: {largest} frames are counted, the file holds {whole}"
         raise truncated(words, where)
     else:
-        content = len(section[: whole * width].rstrip(b"\0"))
-        frames = max(largest, -(-content // width))
+        content = begin + whole * width
+        while content > begin and not data[max(content - BLOCK, begin) : content].strip(b"\0"):
+            content = max(content - BLOCK, begin)
+        content -= BLOCK - len(data[content - BLOCK : content].rstrip(b"\0"))
+        frames = max(largest, -(-(content - begin) // width))
     told = {
         place: count
         for place, count in counts.items()
@@ -234,14 +255,11 @@ def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tup
     return point, point * per_frame if per_frame else point
 
 
-def _points(raw: np.ndarray, scale: float, real: bool) -> np.ndarray:
-    """Return positions (frames, points, 3); floats stay as short as they are in a long record."""
-    positions = raw[:, :, :3].astype("f4") if real else raw[:, :, :3] * scale
-    for i in range(positions.shape[1]):  # a point after the other: nothing else of that size
-        place = positions[:, i]
-        lost = (raw[:, i, 3] < 0) | (place == 0.0).all(axis=1)
-        place[lost | ~(np.abs(place) < _POSSIBLE).all(axis=1)] = np.nan
-    return positions
+def _points(raw: np.ndarray, scale: float, real: bool, positions: np.ndarray) -> None:
+    """Fill positions (frames, points, 3) from the file's numbers (frames, points, 4)."""
+    positions[:] = raw[:, :, :3] if real else raw[:, :, :3] * scale
+    lost = (raw[:, :, 3] < 0) | (positions == 0.0).all(axis=2)
+    positions[lost | ~(np.abs(positions) < _POSSIBLE).all(axis=2)] = np.nan
 
 
 def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
@@ -268,7 +286,7 @@ _NEEDED = ("POINT", "ANALOG", "FORCE_PLATFORM", "ROTATION")
 
 
 def _parameters(
-    data: bytes, start: int, data_start: int, processor: int, where: str
+    data: bytes | FileBytes, start: int, data_start: int, processor: int, where: str
 ) -> tuple[dict[str, dict[str, Any]], list[str]]:
     """Return the parameters by group, and notes on damaged ones that no number depends on."""
     names: dict[int, str] = {}
@@ -277,7 +295,8 @@ def _parameters(
     blocks = data[start + 2]
     # Some systems count too few blocks: the section ends where the data begin.
     end = max(start + BLOCK * blocks, data_start) if blocks else len(data)
-    end = min(len(data), end)
+    data = data[: min(len(data), end)]
+    end = len(data)
     at = start + 4
     order = "little" if _ENDIAN[processor] == "<" else "big"
     while at + 4 <= end:
@@ -356,7 +375,7 @@ def read_c3d(draft: Draft) -> Trial:
 
     A plate that can't be worked out is kept with its reason; the rest of the file is read.
     """
-    raw = parse(draft.data, draft.name)
+    raw = parse(draft.file or draft.data, draft.name)
     unit = (raw.texts("POINT", "UNITS") or [""])[0]
     places = raw.points if raw.points.size else raw.rotations[..., :3, 3]
     scale = draft.length_unit(unit, places if np.isfinite(places).any() else np.array(1000.0))
@@ -378,7 +397,10 @@ def read_c3d(draft: Draft) -> Trial:
     computed = {label for group in _COMPUTED for label in raw.texts("POINT", group)}
     for i, name in enumerate(draft.names(labels, "marker")):
         if labels[i] not in computed:
-            draft.marker(name, raw.points[:, i].astype(float) * scale)
+            path = raw.points[:, i]
+            draft.marker(
+                name, path * np.float32(scale) if draft.file else path.astype(float) * scale
+            )
     draft.rate = raw.rotation_rate
     poses = raw.texts("ROTATION", "LABELS")
     for i in range(raw.rotations.shape[1]):
@@ -457,7 +479,7 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         origin = _of_plate(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN", 1) * scale
         if origin.shape != (3,) or not np.isfinite(origin).all():
             raise DataError("ORIGIN is damaged")
-        signals = raw.analog[:, columns]
+        signals = raw.analog[:, columns].astype(float)
         notes: list[str] = []
         if kind == 4:
             matrix = raw.numbers("FORCE_PLATFORM", "CAL_MATRIX")
@@ -477,7 +499,7 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         draft.plate(
             force @ axes.T,
             name,
-            moment=moment @ axes.T,
+            moment=(moment @ axes.T).astype(raw.analog.dtype),
             corners=corners,
             raw=signals,
             kind=text,

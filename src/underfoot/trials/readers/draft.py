@@ -13,6 +13,7 @@ from underfoot.core.text import decoded
 from ..recording.axes import found_vertical, heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
+from .file_bytes import FileBytes
 from .profile import Profile
 from .seen import KINDS, camera_clock, coded_forces, unseen
 from .text import (
@@ -51,7 +52,7 @@ class Draft:
 
     ``up`` is the axis that the format says is up, for where neither plates nor markers tell it.
     ``every_repeat``: the system repeats the place of a marker that it lost. ``metres``: in one unit
-    of length of the file.
+    of length of the file. ``file``: a long file, read in parts; ``data`` is empty then.
     """
 
     data: bytes
@@ -70,6 +71,7 @@ class Draft:
     up: Vertical | None = None
     every_repeat: bool = False
     metres: float = 1.0
+    file: FileBytes | None = None
 
     def lines(self) -> list[str]:
         """Return the lines of a text file."""
@@ -137,7 +139,8 @@ class Draft:
         if note is None:
             note = "" if unit else "no unit in the file"
             note = f'in "{written}" in the file' if written else note
-        values = values * (scale * factor) + offset
+        if (scale * factor, offset) != (1.0, 0.0):
+            values = values * (scale * factor) + offset
         if si == "N" and (lost := coded(values, least=1.0)).any():
             values = np.where(lost, np.nan, values)
             self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
@@ -146,8 +149,9 @@ class Draft:
     def marker(self, name: str, positions: np.ndarray) -> None:
         """Add the path (n, 3) of a marker in m; exact zeros are a marker that was not seen."""
         zero = (positions == 0.0).all(axis=1)
-        seen = np.where(zero[:, None], np.nan, positions)
-        self.markers[name] = Marker(seen, self.rate, self.start, self.times)
+        if zero.any():
+            positions = np.where(zero[:, None], np.nan, positions)
+        self.markers[name] = Marker(positions, self.rate, self.start, self.times)
 
     def plate(self, force: np.ndarray, name: str = "", **more: Any) -> None:
         """Add a force plate (n, 3), N; ``more`` as ``finished_plate`` takes it but ``up``."""
@@ -199,17 +203,15 @@ class Draft:
             markers=self.markers,
             stated=self.up,
         )
+        del raw
+        for i, one in enumerate(self.plates):  # the raw ones go as they are done
+            if isinstance(one, _RawPlate):
+                out = plate_up(one.corners, np.array(up.axis))
+                self.plates[i] = finished_plate(force=one.force, up=out, **one.more)
         return Trial(
             self.name,
             self.channels,
-            tuple(
-                finished_plate(
-                    force=one.force, up=plate_up(one.corners, np.array(up.axis)), **one.more
-                )
-                if isinstance(one, _RawPlate)
-                else one
-                for one in self.plates
-            ),
+            tuple(plate for plate in self.plates if isinstance(plate, Plate)),
             self.markers,
             source,
             notes=tuple(dict.fromkeys(self.notes)),
@@ -261,15 +263,18 @@ class Draft:
 
     def _check_lengths(self) -> None:
         """Refuse markers whose unit can't be: a body of a millimetre, a foot of three metres."""
-        paths = [m.positions[~m.missing] for m in self.markers.values() if (~m.missing).sum() > 2]
-        if not paths:
+        ends = [
+            np.percentile(m.positions[~m.missing], (1, 99), axis=0)
+            for m in self.markers.values()
+            if (~m.missing).sum() > 2
+        ]
+        if not ends:
             return
-        ends = [np.percentile(path, (1, 99), axis=0) for path in paths]
         low, high = (
             np.min([end[0] for end in ends], axis=0),
             np.max([end[1] for end in ends], axis=0),
         )
-        sizes = [("the markers", float((high - low).max()), _BODY)] if len(paths) > 1 else []
+        sizes = [("the markers", float((high - low).max()), _BODY)] if len(ends) > 1 else []
         trial = Trial(self.name, markers=self.markers)
         heels, toes = heel_candidates(trial), toe_candidates(trial)
         for side in ("left", "right"):

@@ -97,6 +97,7 @@ _ABOVE = 0.2  # m between the feet and the middle of a body's other markers
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
 _ALONG = 0.7  # cosine of the angle between the way of a foot's pressure and that of the walk
 _NAMES = "xyz"
+_ONES = np.ones(3)
 _LOW = 0.12  # m above the lowest marker; the heel stands lower than a hand or a shin
 
 
@@ -196,14 +197,16 @@ def marker_velocity(
     """
     velocities = []
     for marker in moving_markers(trial.markers).values():
-        frames, time = _sightings(marker)
+        time = marker.time
         first, stop = time.searchsorted(begin), time.searchsorted(end, "right")
-        if stop - first < 3:
+        path = marker.positions[first:stop]
+        frames = np.flatnonzero(np.isfinite(path @ _ONES))
+        if len(frames) < 3:
             continue
-        lasting = time[stop - 1] - time[first]
+        last, begun = frames[-1], frames[0]
+        lasting = time[first + last] - time[first + begun]
         if lasting >= 0.05:
-            way = marker.positions[frames[stop - 1]] - marker.positions[frames[first]]
-            velocities.append(way / lasting)
+            velocities.append((path[last].astype(float) - path[begun]) / lasting)
     if len(velocities) < 3:
         return None
     ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
@@ -233,13 +236,6 @@ def _span(marker: Marker) -> float:
         return 0.0
     low, high = np.percentile(seen, (1, 99), axis=0)
     return float((high - low).max())
-
-
-@lru_cache(maxsize=4096)  # asked for by every step of a recording
-def _sightings(marker: Marker) -> tuple[np.ndarray, np.ndarray]:
-    """Frames (n,) in which a marker was seen and their times (s)."""
-    frames = np.flatnonzero(~marker.missing)
-    return frames, marker.time[frames]
 
 
 def walking_direction(

@@ -171,7 +171,8 @@ def finished_plate(
         baseline, samples = force[empty].mean(axis=0), int(empty.sum())
         force = force - baseline
         if moment is not None:
-            moment = moment - moment[empty].mean(axis=0)
+            middle = moment[empty].mean(axis=0, dtype=float)
+            moment = moment - middle.astype(moment.dtype)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
@@ -261,7 +262,7 @@ def _centre_of_pressure(
 ) -> np.ndarray:
     """r = up x M / (up . F), from M = r x F + T up with r in the surface."""
     vertical = force @ up
-    place = np.full(force.shape, np.nan)
+    place = np.full(force.shape, np.nan, moment.dtype)
     loaded = vertical > _LOADED
     place[loaded] = moment[loaded] @ _crossing(up).T / vertical[loaded, None] + centre
     return place

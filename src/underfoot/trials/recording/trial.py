@@ -303,14 +303,18 @@ def _other_end_up(trial: Trial) -> Trial:
 
 def file_checksum(path: Path) -> str:
     """Return the SHA-256 of a file's bytes (hex)."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    with Path(path).open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _named(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: str) -> _T:
-    folded = {_folded(name): value for name, value in reversed(list(known.items()))}
+    folded: dict[str, _T] = {}
     for name in names:
-        if name in known or _folded(name) in folded:
-            return known[name] if name in known else folded[_folded(name)]
+        if name in known:
+            return known[name]
+        folded = folded or {_folded(key): value for key, value in reversed(list(known.items()))}
+        if _folded(name) in folded:
+            return folded[_folded(name)]
     listed = list(known)
     shown = ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
     raise DataError(

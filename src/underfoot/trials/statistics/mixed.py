@@ -22,6 +22,10 @@ def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
     names = {str(person) for person in persons}
     if len(names) == len(persons):
         return ()
+    if len(names) == 1:
+        return (
+            f"{len(persons)} trials of one person: this test tells of that person, not of others",
+        )
     return (
         f"{len(persons)} trials of {len(names)} persons: this test takes them as independent, "
         "and its p is too small",

@@ -11,7 +11,7 @@ from ..recording.axes import Direction
 from ..recording.measurement import Flag
 from ..recording.plates import plate_axes, plate_contacts, plate_named
 from ..recording.signals import CONTACT_FORCE
-from ..recording.trial import Edit, Plate, Trial
+from ..recording.trial import Edit, Marker, Plate, Trial
 from .walkway import Walkway, walkway_of
 
 _UNKNOWN = Direction()
@@ -333,6 +333,17 @@ class _Edges:
         return np.abs((places - self.middle) @ self.axes) - self.half
 
 
+def _lowest(height: np.ndarray) -> float:
+    """Lowest of heights (n,); NaN where none is known."""
+    return float(np.nanmin(height)) if np.isfinite(height).any() else np.nan
+
+
+def _between(marker: Marker, begin: float, end: float, *, beside: int = 0) -> slice:
+    """Frames of a marker between two times (s), both included, and some on both sides."""
+    first = int(marker.time.searchsorted(begin)) - beside
+    return slice(max(first, 0), int(marker.time.searchsorted(end, "right")) + beside)
+
+
 class _Feet:
     """The heels of a trial, the best-seen marker of each side, against one plate."""
 
@@ -343,6 +354,7 @@ class _Feet:
         self.edges = None if plate.corners is None else _Edges(plate.corners)
         self.others = [_Edges(corners) for corners in others if corners is not None]
         self.seen: dict[tuple[float, float], dict[str, int]] = {}
+        self.lowest = {side: _lowest(m.positions @ self.up) for side, m in self.markers.items()}
 
     def surface(self, stance: Stance) -> np.ndarray:
         """Velocity (3,) of the surface under a stance (m/s)."""
@@ -364,13 +376,13 @@ class _Feet:
             return self.seen.get(span, {})
         frames = self.seen[span] = {}
         for side, marker in self.markers.items():
-            time, at = marker.time, marker.positions
-            height = at @ self.up
-            if not np.isfinite(height).any():
+            near = _between(marker, stance.contact, stance.toe_off, beside=1)
+            time, at = marker.time[near], marker.positions[near]
+            if len(at) < 2:
                 continue
-            inside = (time >= stance.contact) & (time <= stance.toe_off) & ~marker.missing
-            inside &= self.over(self.edges, at)
-            inside &= height < np.nanmin(height) + 0.06
+            inside = (time >= stance.contact) & (time <= stance.toe_off)
+            inside &= np.isfinite(at).all(axis=1) & self.over(self.edges, at)
+            inside &= at @ self.up < self.lowest[side] + 0.06
             velocity = np.gradient(at, 1.0 / marker.rate, axis=0) - self.surface(stance)
             speed = np.linalg.norm(velocity, axis=1)
             inside &= np.nan_to_num(speed, nan=9.0) < 0.8
@@ -386,10 +398,10 @@ class _Feet:
         early = self.early(stance, max(5, (stance.stop - stance.start) // 5))
         distance, end = 0.15, stance.contact + 0.2 * stance.duration
         for name, marker in self.markers.items() if not side and len(early) else ():
-            inside = (marker.time >= stance.contact) & (marker.time <= end)
-            inside &= ~marker.missing
-            if inside.any():
-                away = self.flat(np.median(marker.positions[inside], axis=0), early)
+            at = marker.positions[_between(marker, stance.contact, end)]
+            at = at[np.isfinite(at).all(axis=1)]
+            if len(at):
+                away = self.flat(np.median(at, axis=0), early)
                 if away < distance:
                     side, distance = name, away
         return (side, self.walk.heels[side]) if side else ("unknown", "")
@@ -417,16 +429,16 @@ class _Feet:
         if self.edges is None or not len(early) or self.on_plate(stance):
             return 0.0
         most = 0.0
-        for marker in self.markers.values():
-            at = marker.positions
-            inside = (marker.time >= stance.contact) & (marker.time <= stance.contact + 0.04)
-            inside &= ~marker.missing
+        for side, marker in self.markers.items():
+            near = _between(marker, stance.contact, stance.contact + 0.04)
+            time, at = marker.time[near], marker.positions[near]
+            inside = np.isfinite(at).all(axis=1)
             if inside.sum() < 2:
                 continue
             stand = np.median(at[inside], axis=0)
-            carried = np.outer(marker.time[inside] - stance.contact, self.surface(stance))
+            carried = np.outer(time[inside] - stance.contact, self.surface(stance))
             speed = float(np.linalg.norm(np.ptp(at[inside] - carried, axis=0))) / 0.04
-            low = float(stand @ self.up - np.nanmin(at @ self.up)) < 0.06
+            low = float(stand @ self.up - self.lowest[side]) < 0.06
             if speed < 0.8 and low and self.flat(stand, early) < _FOOT_LENGTH:
                 most = max(most, float(np.linalg.norm(np.maximum(self.edges.beyond(stand), 0.0))))
         return most
@@ -435,12 +447,16 @@ class _Feet:
         """Side of the lower of the heels low over the plate at contact: a slipping heel is fast."""
         best, lowest = "", 0.06
         for side, marker in self.markers.items() if self.edges else ():
-            near = np.abs(marker.time - stance.contact) < max(0.03, 1.0 / marker.rate)
-            near &= ~marker.missing
-            if not near.any():
+            most = max(0.03, 1.0 / marker.rate)
+            near = _between(marker, stance.contact - most, stance.contact + most)
+            at = marker.positions[near]
+            at = at[
+                (np.abs(marker.time[near] - stance.contact) < most) & np.isfinite(at).all(axis=1)
+            ]
+            if not len(at):
                 continue
-            place = np.median(marker.positions[near], axis=0)
-            lift = float(place @ self.up - np.nanmin(marker.positions @ self.up))
+            place = np.median(at, axis=0)
+            lift = float(place @ self.up - self.lowest[side])
             if self.edges and lift < lowest and (self.edges.beyond(place) <= 0.1).all():
                 best, lowest = side, lift
         return best

@@ -139,6 +139,7 @@ def impossible(
 
 
 _SHEAR_GAIN = ("slope of the force line", "both impulses")
+_DRIFTING_GAIN = "braking impulse"  # of the half step with the peak: no other follows it alone
 _NORMAL_GAIN = ("mass by acceleration",)
 _MASS_GAIN = 0.14  # logarithm, from the mean force over body weight: 0.74 to 0.97 about 0.84
 _ANY_GAIN = 0.35  # logarithm, of a normal force that nothing is compared with: its units at least
@@ -155,8 +156,9 @@ def unseen_gain(
     """Return by how much RCOF ``value`` may be off by gains that no check would notice.
 
     From a sound step the gain of the shear, or of the normal force, must grow to the limit of the
-    narrowest feature that follows it; both together, as squares. ``mass``: body mass is known.
-    ``speed``: of the walk (m/s).
+    narrowest feature that follows it; both together, as squares. One that drifts within the step
+    is held by the braking impulse alone: the larger bound is ``measured``. ``mass``: body mass is
+    known. ``speed``: of the walk (m/s).
     """
     if not features:
         return ()
@@ -168,9 +170,11 @@ def unseen_gain(
     shear = min((reach[name] for name in _SHEAR_GAIN if name in reach), default=_ANY_GAIN)
     judged = [reach[name] for name in _NORMAL_GAIN if name in reach]
     normal = min([*judged, _MASS_GAIN if mass else _ANY_GAIN])
-    bound = value * (math.exp(math.hypot(shear, normal)) - 1.0)
+    drift = max(reach.get(_DRIFTING_GAIN, shear), shear)
+    bound, drifting = (value * math.expm1(math.hypot(one, normal)) for one in (shear, drift))
     text = (
         f"gains that no check sees (shear {100 * math.expm1(shear):.0f} %, normal force "
-        f"{100 * math.expm1(normal):.0f} %) could move RCOF by {bound:.2f}; not in its uncertainty"
+        f"{100 * math.expm1(normal):.0f} %) could move RCOF by {bound:.2f}, a gain of the shear "
+        f"that drifts within the step by {drifting:.2f}; not in its uncertainty"
     )
-    return (Flag("unseen gain", text, False, bound, None, "1"),)
+    return (Flag("unseen gain", text, False, drifting, None, "1"),)

@@ -1,5 +1,7 @@
 """Signs that forces were changed before they were stored: a moving average, a dead band."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from ..recording.signals import runs
@@ -23,18 +25,27 @@ def comb_depth(forces: np.ndarray, rate: float) -> tuple[float, float]:
     level = forces - (forces[0] + (forces[-1] - forces[0]) * line)
     power = np.abs(np.fft.rfft(level, count, axis=0)) ** 2
     log = (10.0 * np.log10(power + 1e-12 * power.max(axis=0) + 1e-300)).mean(axis=1)
-    frequency, best = rate / count * np.arange(len(log)), (0.0, 0.0)
-    for window in _WINDOWS:
-        most = int(min(_HIGHEST, 0.45 * rate) * window)
-        if most < _FEWEST:
-            continue
-        order = np.arange(1, min(most, _HARMONICS) + 1)
-        middles = np.concatenate((order[:1] - 0.5, order + 0.5))
-        holes, tops = (np.interp(at / window, frequency, log) for at in (order, middles))
-        depth = float(tops.mean() - holes.mean())
-        if depth > best[0]:
-            best = depth, float(window)
-    return best
+    windows, orders, at = _combs(rate)
+    if not len(windows):
+        return 0.0, 0.0
+    levels = np.interp(at, rate / count * np.arange(len(log)), log)
+    firsts = np.concatenate(([0], np.cumsum(2 * orders + 1)[:-1]))
+    parts = np.add.reduceat(levels, np.column_stack((firsts, firsts + orders)).ravel())
+    depths = parts[1::2] / (orders + 1) - parts[::2] / orders
+    best = int(np.argmax(depths))
+    return (float(depths[best]), float(windows[best])) if depths[best] > 0.0 else (0.0, 0.0)
+
+
+@lru_cache(maxsize=8)  # every step of a recording asks
+def _combs(rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Windows (s), how many multiples of each, and these and what lies between (Hz) in a row."""
+    most = (min(_HIGHEST, 0.45 * rate) * _WINDOWS).astype(int)
+    windows, orders = _WINDOWS[most >= _FEWEST], np.minimum(most[most >= _FEWEST], _HARMONICS)
+    at = [
+        np.concatenate((np.arange(1, order + 1), np.arange(order + 1) + 0.5)) / window
+        for window, order in zip(windows, orders, strict=True)
+    ]
+    return windows, orders, np.concatenate(at) if at else np.empty(0)
 
 
 def averaged(
