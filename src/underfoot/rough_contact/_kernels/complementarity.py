@@ -114,7 +114,6 @@ def _on_grid(
     points = height.shape[0] * height.shape[1]
     load = mean_pressure * points
     single = xp.astype(height, xp.float32)
-    work = xp.zeros_like(single)
     double = False
     contact = pressure > 0.0
     p = pressure
@@ -137,7 +136,7 @@ def _on_grid(
             del closed
         if not bool(xp.any(contact)):
             contact = height == xp.max(height)
-        part = Restriction(contact, xp, work)
+        part = Restriction(contact, xp)
         if known is None or changed > _RENEW * part.nodes:
             known = operators.pressure(part.spread(part.constant()))
             known = xp.where(known > 0.0, known, xp.zeros_like(known))

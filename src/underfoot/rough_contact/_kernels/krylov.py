@@ -1,6 +1,7 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -20,17 +21,18 @@ class Restriction:
     """Single-precision vectors on the nodes where ``inside`` is true.
 
     Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. NumPy puts
-    a gathered vector back by assignment into ``work``; the array API has none by index, so that
+    a gathered vector back by assignment into one buffer; the array API has none by index, so that
     other arrays take each point from the vector by its number there, a zero behind it elsewhere.
     """
 
-    def __init__(self, inside: AnyArray, xp: Any, work: AnyArray) -> None:
+    def __init__(self, inside: AnyArray, xp: Any) -> None:
         self.xp = xp
         flat = xp.reshape(inside, (-1,))
         self.points = flat.shape[0]
         self.nodes = int(xp.count_nonzero(flat))
         self.gathered = self.nodes < _GATHER_BELOW * self.points
         self._shape = inside.shape
+        self._buffer: AnyArray = None
         if not self.gathered:
             self._mask = xp.astype(flat, xp.float32)
             self.size = self.points
@@ -38,8 +40,7 @@ class Restriction:
         self.size = self.nodes
         self._index = xp.nonzero(flat)[0]
         if xp is np:
-            self._work = work
-            work[...] = 0.0
+            self._buffer = np.empty(inside.shape, np.float32)
         else:
             integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
             number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
@@ -52,14 +53,20 @@ class Restriction:
             return self.xp.take(flat, self._index, axis=0)
         return flat * self._mask
 
+    def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
+        """Return ``product`` of the field of a vector as a new vector."""
+        field = self.spread(vector)
+        return self.take(product(field, field if self._buffer is not None else None))
+
     def spread(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
         xp = self.xp
         if not self.gathered:
             return xp.reshape(vector, self._shape)
         if xp is np:
-            xp.reshape(self._work, (-1,))[self._index] = vector
-            return self._work
+            self._buffer[...] = 0.0
+            xp.reshape(self._buffer, (-1,))[self._index] = vector
+            return self._buffer
         zero = xp.zeros_like(vector[:1])
         return xp.reshape(xp.take(xp.concat((vector, zero)), self._number, axis=0), self._shape)
 
@@ -131,9 +138,9 @@ def residual_correction(
     total = float(xp.sum(response))
     step = 0
     while left > goal and step < steps:
-        z = part.take(operators.pressure(part.spread(r)))
+        z = part.through(operators.pressure, r)
         z -= response * (float(xp.sum(z)) / total)
-        w = part.take(operators.displacement(part.spread(z)))
+        w = part.through(operators.displacement, z)
         part.shift(w, -float(xp.sum(w)) / part.nodes)
         raw = _norm(w)
         if step:
