@@ -55,8 +55,12 @@ class Restriction:
 
     def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
         """Return ``product`` of the field of a vector as a new vector."""
-        field = self.spread(vector)
-        return self.take(product(field, field if self._buffer is not None else None))
+        field = product(self.spread(vector), self._buffer)
+        if self.gathered:
+            return self.take(field)
+        flat = self.xp.reshape(field, (-1,))
+        flat *= self._mask
+        return flat
 
     def spread(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
@@ -91,7 +95,7 @@ class Workspace:
     def __init__(
         self, steps: int, xp: Any, like: AnyArray = None, *, arrays: float = math.inf
     ) -> None:
-        self._steps, self._arrays = steps, arrays
+        self.steps, self._arrays = steps, arrays
         self._xp = xp
         device = {} if xp is np else {"device": like.device}
         self._kind: dict[str, Any] = {"dtype": xp.float32, **device}
@@ -101,15 +105,20 @@ class Workspace:
 
     def rows(self, size: int, points: int) -> tuple[AnyArray, AnyArray]:
         """Return two (steps, size) arrays of undefined content for a grid of ``points``."""
-        steps = min(self._steps, max(3, int(min(self._arrays * points / size, 1e6))))
+        steps = min(self.steps, max(3, int(min(self._arrays * points / size, 1e6))))
         if steps * size > self._length:
-            self._images = self._directions = None
+            self.release()
             self._length = steps * size
             self._images = self._xp.empty(self._length, **self._kind)
             self._directions = self._xp.empty(self._length, **self._kind)
         shape, end = (steps, size), steps * size
         reshape = self._xp.reshape
         return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
+
+    def release(self) -> None:
+        """Give the memory back until rows are asked for again."""
+        self._images = self._directions = None
+        self._length = 0
 
 
 def residual_correction(
@@ -152,10 +161,11 @@ def residual_correction(
             break
         triangle[step, step] = length
         weight = float(w @ r) / length
-        images[step, :] = w * (1.0 / length)
+        w *= 1.0 / length
+        images[step, :] = w
         directions[step, :] = z
         weights[step] = weight
-        w *= weight / length
+        w *= weight
         r -= w
         left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1

@@ -18,7 +18,7 @@ class Body:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
     ``moduli`` returns E*(qx v) for a column of qx of NumPy (real when elastic), ``unit`` the
-    compliance for E = 1 on |q| of any namespace. ``spacing`` is that of the fine grid. ``asarray``
+    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid. ``asarray``
     brings a row or column of NumPy to the namespace ``xp`` and its device. ``library`` names the
     FFT (see ``transform``).
     """
@@ -77,16 +77,15 @@ class Operators:
         compliance in phase: less close to the inverse, but symmetric, so that the minimum-residual
         iteration can't stagnate (the operator is positive in that inner product).
         """
-        kept = self.compliance, self.stiffness
-        softened = self.compliance + softness
-        in_phase = self.xp.real(softened) if self._lossy else softened
-        in_phase[0, 0] = 1.0
-        self.compliance, self.stiffness = softened, 1.0 / in_phase
-        self.compliance[0, 0] = self.stiffness[0, 0] = 0.0
+        kept = self.compliance
+        self.compliance = kept + softness
+        self.compliance[0, 0] = 0.0
+        in_phase = self.xp.real(self.compliance) if self._lossy else self.compliance
+        self.stiffness = _inverse(in_phase)
         try:
             yield
         finally:
-            self.compliance, self.stiffness = kept
+            self.compliance, self.stiffness = kept, _inverse(kept)
 
     def softness_range(self) -> tuple[float, float]:
         """Return the least and the largest compliance of a wave."""
@@ -97,8 +96,11 @@ class Operators:
 
     def unit(self) -> AnyArray:
         """Return the compliance for E = 1 in double precision, made anew: it is rarely used."""
-        unit = self._body.unit(self.xp.hypot(*self._waves))
+        q = self.xp.hypot(*self._waves)
+        q[0, 0] = 1.0
+        unit = self._body.unit(q)
         unit *= self._body.scale
+        unit[0, 0] = 0.0
         return unit
 
     def displacement(self, pressure: AnyArray, out: AnyArray = None) -> AnyArray:
@@ -112,6 +114,7 @@ class Operators:
     def exact_displacement(self, pressure: AnyArray) -> AnyArray:
         """Return A p in double precision."""
         self.count += 1
+        self._spectrum = None
         spectrum = self.exact.forward(pressure)
         spectrum *= self.unit()
         spectrum *= self._inverse_rows
@@ -120,6 +123,7 @@ class Operators:
     def exact_pressure(self, displacement: AnyArray) -> AnyArray:
         """Return S u in double precision."""
         self.count += 1
+        self._spectrum = None
         spectrum = self.exact.forward(displacement)
         spectrum *= self.rows
         unit = self.unit()
@@ -146,3 +150,11 @@ class Operators:
     def _transform(self, dtype: Any) -> Transform:
         body = self._body
         return transform(self.shape, dtype, xp=body.xp, threads=body.threads, library=body.library)
+
+
+def _inverse(symbol: AnyArray) -> AnyArray:
+    """Return 1 / symbol, 0 for the mean as in ``symbol``."""
+    symbol[0, 0] = 1.0
+    inverse = 1.0 / symbol
+    symbol[0, 0] = inverse[0, 0] = 0.0
+    return inverse
