@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core.arrays import AnyArray
+from underfoot.core.threads import on_host
 
 from .operators import Operators
 
@@ -80,7 +81,7 @@ class Restriction:
             return self.xp.ones_like(self._index, dtype=self.xp.float32)
         return self._mask
 
-    def shift(self, vector: AnyArray, value: float) -> None:
+    def shift(self, vector: AnyArray, value: AnyArray) -> None:
         """Add ``value`` to the vector on its nodes, in place."""
         vector += value if self.gathered else self._mask * value
 
@@ -88,8 +89,9 @@ class Restriction:
 class Workspace:
     """Room for the search directions, allocated once and grown when a contact needs more.
 
-    ``steps`` of them at most; fewer, down to 3, where contact is so large that they and their
-    images would take more than ``arrays`` double arrays of the grid.
+    ``steps`` of their images at most; fewer, down to 3, where contact is so large that they would
+    take more than ``arrays`` double arrays of the grid. The directions have room beside them or
+    none: then a product finds their sum.
     """
 
     def __init__(
@@ -104,16 +106,25 @@ class Workspace:
         self._length = 0
 
     def rows(self, size: int, points: int) -> tuple[AnyArray, AnyArray]:
-        """Return two (steps, size) arrays of undefined content for a grid of ``points``."""
-        steps = min(self.steps, max(3, int(min(self._arrays * points / size, 1e6))))
-        if steps * size > self._length:
-            self.release()
-            self._length = steps * size
-            self._images = self._xp.empty(self._length, **self._kind)
-            self._directions = self._xp.empty(self._length, **self._kind)
+        """Return (steps, size) of undefined content for images, and for directions or None.
+
+        ``points`` are those of the grid.
+        """
+        room = self._arrays * points
+        both = self.steps * size <= room
+        steps = min(self.steps, max(3, int(min(2.0 * room / size, 1e6))))
         shape, end = (steps, size), steps * size
+        if end > self._length or (both and self._directions is None):
+            self.release()
+            self._length = end
+            self._images = self._xp.empty(end, **self._kind)
+        if not both:
+            self._directions = None
+        elif self._directions is None:
+            self._directions = self._xp.empty(self._length, **self._kind)
         reshape = self._xp.reshape
-        return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
+        images = reshape(self._images[:end], shape)
+        return images, reshape(self._directions[:end], shape) if both else None
 
     def release(self) -> None:
         """Give the memory back until rows are asked for again."""
@@ -134,7 +145,7 @@ def residual_correction(
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero sum
     with ``response`` (S 1 on the contact), images A z orthonormal. Stops when the residual's norm
     has fallen by ``reduction``, or after the workspace's steps. ``residual`` has zero mean and is
-    overwritten.
+    overwritten. The host waits for the device once a step.
     """
     xp = operators.xp
     images, directions = workspace.rows(part.size, part.points)
@@ -142,28 +153,31 @@ def residual_correction(
     triangle = np.zeros((steps, steps))
     weights = np.zeros(steps)
     r = residual
-    left = _norm(r)
+    left = float(r @ r) ** 0.5
     goal = reduction * left
-    total = float(xp.sum(response))
+    total = xp.sum(response)
     step = 0
     while left > goal and step < steps:
         z = part.through(operators.pressure, r)
-        z -= response * (float(xp.sum(z)) / total)
+        z -= response * (xp.sum(z) / total)
         w = part.through(operators.displacement, z)
-        part.shift(w, -float(xp.sum(w)) / part.nodes)
-        raw = _norm(w)
+        part.shift(w, -xp.sum(w) / part.nodes)
+        raw = w @ w
+        overlap = images[:step, :] @ w
         if step:
-            overlap = images[:step, :] @ w
             w -= overlap @ images[:step, :]
-            triangle[:step, step] = overlap if xp is np else [float(o) for o in overlap]
-        length = _norm(w)
-        if not length > _DEPENDENT * raw:
+        *before, raw, square, along = on_host(
+            xp.concat((overlap, xp.stack((raw, w @ w, w @ r))))
+        ).tolist()
+        if not square > _DEPENDENT**2 * raw:
             break
-        triangle[step, step] = length
-        weight = float(w @ r) / length
+        length = square**0.5
+        triangle[:step, step], triangle[step, step] = before, length
+        weight = along / length
         w *= 1.0 / length
         images[step, :] = w
-        directions[step, :] = z
+        if directions is not None:
+            directions[step, :] = z
         weights[step] = weight
         w *= weight
         r -= w
@@ -171,9 +185,12 @@ def residual_correction(
         step += 1
     if step == 0:
         return xp.zeros_like(r)
-    y = np.linalg.solve(triangle[:step, :step], weights[:step]).astype(np.float32)
-    return operators.asarray(y) @ directions[:step, :]
-
-
-def _norm(vector: AnyArray) -> float:
-    return float(vector @ vector) ** 0.5
+    y = np.linalg.solve(triangle[:step, :step], weights[:step])
+    if directions is not None:
+        return operators.asarray(y.astype(np.float32)) @ directions[:step, :]
+    # the sum of y times the residuals of each step, by their images; S of it is that of y times z
+    r *= float(y.sum())
+    r += operators.asarray((weights[:step] * np.cumsum(y)).astype(np.float32)) @ images[:step, :]
+    z = part.through(operators.pressure, r)
+    z -= response * (xp.sum(z) / total)
+    return z

@@ -18,9 +18,9 @@ class Body:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
     ``moduli`` returns E*(qx v) for a column of qx of NumPy (real when elastic), ``unit`` the
-    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid. ``asarray``
-    brings a row or column of NumPy to the namespace ``xp`` and its device. ``library`` names the
-    FFT (see ``transform``).
+    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid.
+    ``asarray`` brings a row or column of NumPy to the namespace ``xp`` and its device. ``library``
+    names the FFT (see ``transform``).
     """
 
     moduli: Callable[[AnyArray], AnyArray]
