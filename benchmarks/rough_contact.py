@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import resource
 import subprocess
@@ -21,6 +22,7 @@ import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 os.environ["OMP_NUM_THREADS"] = "1"
 os.environ["MKL_NUM_THREADS"] = "1"
@@ -29,6 +31,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 
 from benchmarks._table import Row
+from underfoot.core.device import described_card, on_card
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, SteadySliding, steady_sliding
 
@@ -63,7 +66,7 @@ def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
     return max(-gap.min(), np.sum(np.abs(gap) * p) / p.sum()) / height.std()
 
 
-def ours(height: np.ndarray, pressure: float, speed: float, fft: str) -> SteadySliding:
+def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
     modulus = 1.0 if speed == 0.0 else RUBBER
     return steady_sliding(
         height,
@@ -83,6 +86,31 @@ def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: 
         result = ours(height, pressure, speed, fft)
         best = min(best, time.process_time() - start)
     return best, result
+
+
+def timed_on(device: str, n: int, pressure: float, speed: float) -> str:
+    """Return a line of the table of a device: seconds and its limit, products by transforms."""
+    import torch
+
+    wait = torch.cuda.synchronize if device == "cuda" else lambda: None
+    height = torch.asarray(self_affine(n), device=device)
+    field = torch.zeros((n, n), dtype=torch.float32, device=device)
+    best = {}
+    jobs = {
+        "solve": lambda: ours(height, pressure, speed, "auto"),
+        "transform": lambda: torch.fft.irfft2(torch.fft.rfft2(field), s=(n, n)),
+    }
+    for name, job in jobs.items():
+        for _ in range(2):
+            wait()
+            start = time.perf_counter()
+            result = job()
+            wait()
+            best[name] = min(best.get(name, math.inf), time.perf_counter() - start)
+            if name == "solve":
+                products, steps = result.operator_applications, result.iterations
+    limit = products * best["transform"]
+    return f"{n:6d} {pressure:5.2f} {speed:5.2f} {best['solve']:8.3f} {limit:8.3f} {products:8.0f} {steps:5d}"
 
 
 def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:
@@ -228,8 +256,18 @@ def main(arguments: Sequence[str] = ()) -> None:
     parser.add_argument("--peers", help="python of an environment with tamaas and aspher")
     parser.add_argument("--tamaas-up-to", type=int, default=1024, help="largest size for tamaas")
     parser.add_argument("--fft", choices=["auto", "mkl", "scipy"], default="auto")
+    parser.add_argument("--device", choices=["cpu", "cuda"], help="tensors there, wall seconds")
     parser.add_argument("--out", type=Path, help="JSON file for the numbers")
     options = parser.parse_args(arguments)
+    if options.device:
+        name = described_card() if on_card(options.device, 0) else "the processor"
+        print(f"wall seconds on {name}; limit: products times the transform's time")
+        print("  size     p speed    solve    limit products steps")
+        for n in options.sizes:
+            for pressure in options.pressures:
+                for speed in (0.0, *SPEEDS):
+                    print(timed_on(options.device, n, pressure, speed), flush=True)
+        return
     print(
         "CPU seconds, one thread; p in E* h'; sliding at 0.01, 0.1 and 1 m/s; x: tamaas over our "
         "slowest sliding, aspher over our elastic"

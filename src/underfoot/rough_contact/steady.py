@@ -154,8 +154,8 @@ def steady_sliding(
     wave speed).
 
     Raises:
-        InputError: Heights missing or not a map, pressure, spacing or modulus not positive, speed
-            not finite.
+        InputError: Heights missing or not a map, or more than fit into the memory where they lie,
+            pressure, spacing or modulus not positive, speed not finite.
 
     Source: frame of the rough surface and complex modulus, e.g. Carbone and Putignano (2013)
     J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.

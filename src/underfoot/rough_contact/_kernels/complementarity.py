@@ -158,9 +158,10 @@ def _on_grid(
             gap = _gap(operators, p, height, double)
         residual = part.take(gap)
         mean = float(xp.sum(residual)) / part.nodes
-        residual = xp.astype(-residual, xp.float32)
-        part.shift(residual, mean)
         gap = None  # before the next one is made: fields are what a large grid costs
+        residual = xp.astype(residual, xp.float32)
+        residual *= -1.0
+        part.shift(residual, mean)
         p += part.spread(
             residual_correction(operators, part, residual, response, reduction, workspace)
         )
@@ -189,6 +190,7 @@ def _on_grid(
         if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
             double = True
             gap = None
+            workspace.release()
             p = xp.astype(p, xp.float64)
             continue
         if lowest < 0.0:
