@@ -20,7 +20,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -90,27 +91,28 @@ def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: 
 
 def timed_on(device: str, n: int, pressure: float, speed: float) -> str:
     """Return a line of the table of a device: seconds and its limit, products by transforms."""
-    import torch
-
+    torch = import_module("torch")
     wait = torch.cuda.synchronize if device == "cuda" else lambda: None
     height = torch.asarray(self_affine(n), device=device)
     field = torch.zeros((n, n), dtype=torch.float32, device=device)
-    best = {}
-    jobs = {
-        "solve": lambda: ours(height, pressure, speed, "auto"),
-        "transform": lambda: torch.fft.irfft2(torch.fft.rfft2(field), s=(n, n)),
-    }
-    for name, job in jobs.items():
+
+    def best_of(job: Callable[[], Any]) -> tuple[float, Any]:
+        best, result = math.inf, None
         for _ in range(2):
             wait()
             start = time.perf_counter()
             result = job()
             wait()
-            best[name] = min(best.get(name, math.inf), time.perf_counter() - start)
-            if name == "solve":
-                products, steps = result.operator_applications, result.iterations
-    limit = products * best["transform"]
-    return f"{n:6d} {pressure:5.2f} {speed:5.2f} {best['solve']:8.3f} {limit:8.3f} {products:8.0f} {steps:5d}"
+            best = min(best, time.perf_counter() - start)
+        return best, result
+
+    solve, result = best_of(lambda: ours(height, pressure, speed, "auto"))
+    both, _ = best_of(lambda: torch.fft.irfft2(torch.fft.rfft2(field), s=(n, n)))
+    products = result.operator_applications
+    return (
+        f"{n:6d} {pressure:5.2f} {speed:5.2f} {solve:8.3f} {products * both:8.3f} {products:8.0f} "
+        f"{result.iterations:5d}"
+    )
 
 
 def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:

@@ -1,5 +1,6 @@
 """The graphics card of this machine, and the memory that is free where an array lies."""
 
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,7 @@ def card() -> str | None:
     """Return the name of the card that PyTorch computes on; None without one, or without it."""
     if find_spec("torch") is None:
         return None
-    import torch
-
+    torch = import_module("torch")
     return torch.cuda.get_device_name() if torch.cuda.is_available() else None
 
 
@@ -28,8 +28,7 @@ def described_card() -> str:
     name = card()
     if name is None:
         return "none; rough contact runs on the processor"
-    import torch
-
+    torch = import_module("torch")
     return f"{name}, {torch.cuda.get_device_properties(0).total_memory / 1e9:.0f} GB"
 
 
@@ -57,17 +56,14 @@ def on_card(device: str, points: int) -> bool:
 
 def to_card(array: Any) -> Any:
     """Return an array of NumPy as a tensor on the card."""
-    import torch
-
-    return torch.asarray(array, device="cuda")
+    return import_module("torch").asarray(array, device="cuda")
 
 
 def free_memory(array: Any) -> int | None:
     """Return the bytes free where ``array`` lies; None where the system doesn't tell."""
-    place = getattr(array, "device", "cpu")
+    place: Any = getattr(array, "device", "cpu")
     if getattr(place, "type", "") == "cuda":
-        import torch
-
+        torch = import_module("torch")
         kept = torch.cuda.memory_reserved(place) - torch.cuda.memory_allocated(place)
         return torch.cuda.mem_get_info(place)[0] + kept
     if hasattr(place, "mem_info"):  # CuPy

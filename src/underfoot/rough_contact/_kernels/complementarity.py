@@ -78,13 +78,14 @@ def solved_contact(
     before, workspace.steps = workspace.steps, _HARD_STEPS
     last = replace(search, reduction=min(search.reduction, 0.03))
     soft = Search(max(_MATTRESS_TOLERANCE, search.tolerance), 12, False, reduction=last.reduction)
-    steps = 0
+    steps, state = 0, None
     while softness > 0.1 * least:
         with operators.softened(softness):
             state = _on_grid(operators, height, pressure, mean_pressure, workspace, soft)
         steps += state.steps
         if state.converged:
             pressure = state.pressure
+        state = None  # its fields make room for the next
         softness *= _THINNER
     with operators.softened(0.0):
         state = _on_grid(operators, height, pressure, mean_pressure, workspace, last)
