@@ -202,6 +202,8 @@ def _on_grid(
             if its_error <= tolerance:
                 history[-1] = its_error
                 return ContactState(trial, its_gap, step, its_error, True, history)
+    gap = known = part = None
+    workspace.release()
     p, gap, error = _clipped(operators, p, height, load, double)
     return ContactState(p, gap, step, error, False, history)
 
