@@ -139,6 +139,12 @@ def drawn(page):
     page.evaluate("new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))")
 
 
+def unfold(page):
+    """Open all that is folded on a page, once there is something."""
+    page.wait_for_selector("details.section", state="attached")
+    page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true })")
+
+
 def begin(page, base):
     """Open the design page with the usual work shoe, drawn."""
     page.goto(base + "design")
