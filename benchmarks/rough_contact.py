@@ -13,14 +13,17 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import resource
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 os.environ["OMP_NUM_THREADS"] = "1"
 os.environ["MKL_NUM_THREADS"] = "1"
@@ -29,6 +32,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 
 from benchmarks._table import Row
+from underfoot.core.device import described_card, on_card
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, SteadySliding, steady_sliding
 
@@ -63,7 +67,7 @@ def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
     return max(-gap.min(), np.sum(np.abs(gap) * p) / p.sum()) / height.std()
 
 
-def ours(height: np.ndarray, pressure: float, speed: float, fft: str) -> SteadySliding:
+def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
     modulus = 1.0 if speed == 0.0 else RUBBER
     return steady_sliding(
         height,
@@ -83,6 +87,32 @@ def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: 
         result = ours(height, pressure, speed, fft)
         best = min(best, time.process_time() - start)
     return best, result
+
+
+def timed_on(device: str, n: int, pressure: float, speed: float) -> str:
+    """Return a line of the table of a device: seconds and its limit, products by transforms."""
+    torch = import_module("torch")
+    wait = torch.cuda.synchronize if device == "cuda" else lambda: None
+    height = torch.asarray(self_affine(n), device=device)
+    field = torch.zeros((n, n), dtype=torch.float32, device=device)
+
+    def best_of(job: Callable[[], Any]) -> tuple[float, Any]:
+        best, result = math.inf, None
+        for _ in range(2):
+            wait()
+            start = time.perf_counter()
+            result = job()
+            wait()
+            best = min(best, time.perf_counter() - start)
+        return best, result
+
+    solve, result = best_of(lambda: ours(height, pressure, speed, "auto"))
+    both, _ = best_of(lambda: torch.fft.irfft2(torch.fft.rfft2(field), s=(n, n)))
+    products = result.operator_applications
+    return (
+        f"{n:6d} {pressure:5.2f} {speed:5.2f} {solve:8.3f} {products * both:8.3f} {products:8.0f} "
+        f"{result.iterations:5d}"
+    )
 
 
 def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:
@@ -228,8 +258,18 @@ def main(arguments: Sequence[str] = ()) -> None:
     parser.add_argument("--peers", help="python of an environment with tamaas and aspher")
     parser.add_argument("--tamaas-up-to", type=int, default=1024, help="largest size for tamaas")
     parser.add_argument("--fft", choices=["auto", "mkl", "scipy"], default="auto")
+    parser.add_argument("--device", choices=["cpu", "cuda"], help="tensors there, wall seconds")
     parser.add_argument("--out", type=Path, help="JSON file for the numbers")
     options = parser.parse_args(arguments)
+    if options.device:
+        name = described_card() if on_card(options.device, 0) else "the processor"
+        print(f"wall seconds on {name}; limit: products times the transform's time")
+        print("  size     p speed    solve    limit products steps")
+        for n in options.sizes:
+            for pressure in options.pressures:
+                for speed in (0.0, *SPEEDS):
+                    print(timed_on(options.device, n, pressure, speed), flush=True)
+        return
     print(
         "CPU seconds, one thread; p in E* h'; sliding at 0.01, 0.1 and 1 m/s; x: tamaas over our "
         "slowest sliding, aspher over our elastic"

@@ -1,6 +1,7 @@
 """Rough contact on arrays of other libraries and devices: NumPy's numbers, cost and refusals."""
 
 import importlib
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -8,14 +9,22 @@ import array_api_strict
 import numpy as np
 import pytest
 
-from underfoot.core import InputError
+from underfoot.core import Cache, InputError, MissingExtraError
+from underfoot.core import device as devices
 from underfoot.core.fourier import ArrayTransform
 from underfoot.core.threads import namespace
 from underfoot.material import RelaxationSpectrum
-from underfoot.rough_contact import flow_factors, steady_sliding
-from underfoot.rough_contact._kernels import nested, operators
+from underfoot.rough_contact import (
+    ContactTable,
+    contact_table,
+    flow_factors,
+    sliding_input,
+    steady_sliding,
+)
+from underfoot.rough_contact._kernels import krylov, nested, operators
 from underfoot.rough_contact._kernels.krylov import Restriction
 from underfoot.studies.transient import transient_sliding
+from underfoot.surface import HeightMap
 
 MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
 CASES = [(0.02, 0.1), (0.1, 1.0), (0.3, 0.0), (0.1, 0.01)]
@@ -137,8 +146,8 @@ def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, sh
     field = generator.standard_normal((35, 24)).astype(np.float32)
     xp_mask, xp_field = on_device(inside, device), on_device(field, device)
     xp = namespace(xp_field)
-    part = Restriction(xp_mask, xp, xp.zeros_like(xp_field))
-    reference = Restriction(inside, np, np.zeros_like(field))
+    part = Restriction(xp_mask, xp)
+    reference = Restriction(inside, np)
     assert part.size == reference.size
     assert part.nodes == reference.nodes == np.count_nonzero(inside)
     vector = part.take(xp_field)
@@ -216,3 +225,81 @@ def test_heights_that_ask_for_a_gradient_or_hold_nothing_are_refused():
     asked = torch.asarray(waves()).requires_grad_()
     for height in (asked, asked.detach().to_sparse(), asked.detach().to("meta")):
         assert refused_input(lambda height=height: steady_sliding(height, **GIVEN)) == "height"
+
+
+def test_what_has_the_size_of_the_grid_is_made_where_the_heights_lie(monkeypatch):
+    height = on_device(waves(64), "strict device1")
+    crossed = {"brought": [], "read": 0}
+    bring, wait = array_api_strict.asarray, krylov.on_host
+
+    def brought(array, **options):
+        crossed["brought"].append(np.size(array) if isinstance(array, np.ndarray) else 0)
+        return bring(array, **options)
+
+    def read(array):
+        crossed["read"] += 1
+        return wait(array)
+
+    monkeypatch.setattr(array_api_strict, "asarray", brought)
+    monkeypatch.setattr(krylov, "on_host", read)
+    contact = steady_sliding(height, **GIVEN)
+    assert 0 < max(crossed["brought"]) <= 64  # rows and columns, never the grid
+    # one wait for two products of the inner solve, at most
+    assert 0 < crossed["read"] <= contact.operator_applications / 2
+
+
+def test_a_contact_that_does_not_fit_is_refused_before_it_starts(monkeypatch):
+    monkeypatch.setattr(
+        sliding_input, "free_memory", lambda _: 8 * sliding_input.ARRAYS * 32 * 32 - 1
+    )
+    assert refused_input(lambda: steady_sliding(waves(), **GIVEN)) == "height"
+    monkeypatch.setattr(sliding_input, "free_memory", lambda _: 8 * sliding_input.ARRAYS * 32 * 32)
+    assert steady_sliding(waves(), **GIVEN).status.usable
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("library", ["scipy", "auto"])
+@pytest.mark.parametrize(
+    ("pressure", "speed"), [*CASES, (1.0, 0.0), pytest.param(3.0, 1.0, id="by thinner mattresses")]
+)
+def test_a_contact_takes_ten_arrays_of_its_grid_at_most(monkeypatch, library, pressure, speed):
+    monkeypatch.syspath_prepend(Path(__file__).parents[2])
+    benchmark = importlib.import_module("benchmarks.rough_contact")
+    height = benchmark.self_affine(1024)
+    tracemalloc.start()
+    benchmark.ours(height, pressure, speed, library)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    most = sliding_input.ARRAYS if pressure > 1.0 else 10
+    assert peak < most * 8 * 1024**2
+
+
+def test_a_device_that_is_not_there_is_refused(monkeypatch):
+    floor = HeightMap(waves(), 1e-5, periodic=True)
+    given = ([floor], MATERIAL, [1e4, 2e4, 3e4, 4e4], [0.1])
+    monkeypatch.setattr(devices, "card", lambda: None)
+    monkeypatch.setattr(devices, "find_spec", lambda _: object())
+    for named in ("cuda", "gpu"):
+        call = lambda named=named: ContactTable.from_surfaces(*given, device=named)  # noqa: E731
+        assert refused_input(call) == "device"
+    monkeypatch.setattr(devices, "find_spec", lambda _: None)
+    with pytest.raises(MissingExtraError):
+        ContactTable.from_surfaces(*given, device="cuda")
+    assert not devices.on_card("auto", 2048**2)
+
+
+def test_a_table_on_the_card_names_it_and_is_kept_apart(monkeypatch, tmp_path):
+    """Another device of array_api_strict in the place of the card."""
+    floor, cache = HeightMap(waves(), 1e-5, periodic=True), Cache("card", tmp_path)
+    given = ([floor], MATERIAL, [1e4, 2e4, 3e4, 4e4], [0.1])
+    one = ContactTable.from_surfaces(*given, cache=cache, device="auto")
+    monkeypatch.setattr(devices, "card", lambda: "a card")
+    monkeypatch.setattr(contact_table, "card", lambda: "a card")
+    monkeypatch.setattr(contact_table, "to_card", lambda h: on_device(h, "strict device1"))
+    two = ContactTable.from_surfaces(*given, cache=cache, device="cuda")
+    assert any("4 contacts on a card" in note for note in two.notes)
+    assert not any("card" in note for note in one.notes)
+    assert one.key != two.key
+    np.testing.assert_allclose(
+        two.values["cof_hysteresis"], one.values["cof_hysteresis"], rtol=1e-6
+    )

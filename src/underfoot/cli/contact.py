@@ -63,6 +63,9 @@ def contact(
     cutoffs: Annotated[
         bool, typer.Option("--cutoffs", help="Show how it depends on the shortest wave.")
     ] = False,
+    device: Annotated[
+        str, typer.Option("--device", help="Where it is solved: auto, cpu, or cuda (a card).")
+    ] = "auto",
 ) -> None:
     """Press and slide rubber over a rough surface: real contact, hysteresis, gap, leakage.
 
@@ -91,7 +94,13 @@ def contact(
                 remedy="underfoot contact FLOOR --sole SOLE --table contact.npz ...",
             )
         wave = LONGEST_WAVE if longest is None else to_si(longest, "m", where="--longest")
-        given = {"shoe": sole, "speed": velocity, "poisson_ratio": poisson, "longest": wave}
+        given = {
+            "shoe": sole,
+            "speed": velocity,
+            "poisson_ratio": poisson,
+            "longest": wave,
+            "device": device,
+        }
         file = Path("contact.npz") if table is None else table
         if file.exists() and not shared.overwrite:
             remedy = "Add --overwrite to replace it"
@@ -120,6 +129,12 @@ def contact(
     shared.answer(
         "rough contact",
         lambda progress: rough_contact(
-            floor, rubber, pressure=load, speed=velocity, poisson_ratio=poisson, scales=cutoffs
+            floor,
+            rubber,
+            pressure=load,
+            speed=velocity,
+            poisson_ratio=poisson,
+            scales=cutoffs,
+            device=device,
         ),
     )

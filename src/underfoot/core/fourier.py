@@ -17,13 +17,17 @@ VARIABLE = "UNDERFOOT_FFT"
 
 
 class Transform(Protocol):
-    """Real FFT over the last two axes, the half spectrum over the last, into new arrays."""
+    """Real FFT over the last two axes, the half spectrum over the last.
 
-    def forward(self, field: AnyArray) -> AnyArray:
+    The result is a new array, or ``out`` (contiguous, of the result's kind) where the library can
+    write there: fresh memory of a large grid costs a fifth of its transform.
+    """
+
+    def forward(self, field: AnyArray, out: AnyArray = None) -> AnyArray:
         """Return the half spectrum of a real field."""
         ...
 
-    def backward(self, spectrum: AnyArray) -> AnyArray:
+    def backward(self, spectrum: AnyArray, out: AnyArray = None) -> AnyArray:
         """Return the real field of a half spectrum."""
         ...
 
@@ -35,10 +39,10 @@ class ArrayTransform:
         self.shape = shape
         self._fft, self._options = module, options
 
-    def forward(self, field: AnyArray) -> AnyArray:
+    def forward(self, field: AnyArray, out: AnyArray = None) -> AnyArray:
         return self._fft.rfftn(field, axes=(-2, -1), **self._options)
 
-    def backward(self, spectrum: AnyArray) -> AnyArray:
+    def backward(self, spectrum: AnyArray, out: AnyArray = None) -> AnyArray:
         return self._fft.irfftn(spectrum, s=self.shape[-2:], axes=(-2, -1), **self._options)
 
 

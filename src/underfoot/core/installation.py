@@ -11,6 +11,7 @@ from pathlib import Path
 
 from .cache import default_folder
 from .catalogue import Catalogue, catalogue_folders, offered_catalogues
+from .device import described_card
 from .fourier import fourier_library
 from .identity import package_version
 from .mkl import mkl_library
@@ -44,6 +45,7 @@ def installation() -> list[tuple[str, str]]:
         # measured on the work shoe in glycerol, grid of 1 mm, one thread
         ("sparse solver", back_end() + ("" if mkl_library() else _GAIN)),
         ("Fourier transform", fourier_library()),
+        ("graphics card", described_card()),
         *((name, os.environ.get(name, "not set")) for name in _THREADS),
         ("cache", _cache(default_folder())),
     ]

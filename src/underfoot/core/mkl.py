@@ -165,16 +165,16 @@ class MklTransform:
             for into, out in ((real, complex_), (complex_, real))
         ]
 
-    def forward(self, field: Any) -> Any:
+    def forward(self, field: Any, out: Any = None) -> Any:
         field = np.ascontiguousarray(field, dtype=self.dtype)
-        spectrum = np.empty(self._half, self._complex)
+        spectrum = np.empty(self._half, self._complex) if out is None else out
         compute = self._library.DftiComputeForward
         self._check(compute(self._handles[0], _address(field), _address(spectrum)))
         return spectrum
 
-    def backward(self, spectrum: Any) -> Any:
+    def backward(self, spectrum: Any, out: Any = None) -> Any:
         spectrum = np.ascontiguousarray(spectrum, dtype=self._complex)
-        field = np.empty(self.shape, self.dtype)
+        field = np.empty(self.shape, self.dtype) if out is None else out
         compute = self._library.DftiComputeBackward
         self._check(compute(self._handles[1], _address(spectrum), _address(field)))
         return field

@@ -42,6 +42,18 @@ def namespace(array: Any) -> Any:
     return array_namespace(array)
 
 
+def on_host(array: Any) -> np.ndarray:
+    """Return an array of any library and device as one of NumPy: one wait for the device."""
+    if isinstance(array, np.ndarray):
+        return array
+    from array_api_compat import is_array_api_strict_namespace, to_device
+
+    xp = namespace(array)
+    if is_array_api_strict_namespace(xp):
+        return np.asarray(array.to_device(xp.Device("CPU_DEVICE")))
+    return np.asarray(to_device(array, "cpu"))
+
+
 def converter(like: Any) -> Any:
     """Return the function that brings a NumPy array to the namespace and device of ``like``."""
     if isinstance(like, np.ndarray):

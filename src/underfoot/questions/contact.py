@@ -1,5 +1,6 @@
 """Rubber on one rough surface, dry, at rest or sliding: real contact, hysteresis, gap, leakage."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,8 +11,10 @@ import numpy as np
 from underfoot import material, surface
 from underfoot.core import Cache, DataError, InputError, Progress, display, silent, to_si
 from underfoot.core.checks import exactly_one
+from underfoot.core.device import card, on_card, to_card
 from underfoot.core.files import read_toml
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.threads import on_host
 from underfoot.rough_contact import ContactTable, SteadySliding, steady_sliding, table_over_scales
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
@@ -170,14 +173,16 @@ def rough_contact(
     speed: float = 0.0,
     poisson_ratio: float = 0.5,
     scales: bool = False,
+    device: str = "cpu",
 ) -> RoughContact:
     """Return the contact of a rubber on a surface at a mean pressure (Pa) and speed (m/s).
 
     ``rubber`` is as ``rubber_from`` returns it; ``scales`` also computes the contact for up to five
-    shortest waves, each half the one before.
+    shortest waves, each half the one before, on the processor; ``device`` is as in
+    ``ContactTable.from_surfaces``.
     """
     modulus, described, assumed = rubber
-    contact, flow = solved(floor, modulus, speed, pressure, poisson_ratio)
+    contact, flow = solved(floor, modulus, speed, pressure, poisson_ratio, device)
     dependence = None
     if scales:
         last, side = max(floor.resolution or 0.0, 4.0 * floor.spacing), min(floor.size)
@@ -201,6 +206,7 @@ def measured_table(
     shoe: Path | None = None,
     poisson_ratio: float = 0.5,
     longest: float = LONGEST_WAVE,
+    device: str = "cpu",
     progress: Progress = silent,
 ) -> ContactTable:
     """Return the contact table of a scanned floor and, where given, a scanned sole.
@@ -230,6 +236,7 @@ def measured_table(
         [speed],
         shoe=scans[1].density if shoe is not None else None,
         poisson_ratio=poisson_ratio,
+        device=device,
         cache=Cache("contact_table"),
         description=name,
         progress=progress,
@@ -237,10 +244,21 @@ def measured_table(
 
 
 def solved(
-    floor: HeightMap, rubber: Any, speed: float, pressure: float, poisson_ratio: float
+    floor: HeightMap,
+    rubber: Any,
+    speed: float,
+    pressure: float,
+    poisson_ratio: float,
+    device: str = "cpu",
 ) -> tuple[SteadySliding, FlowFactors]:
     """Return the contact and the flow factors of its gap."""
-    contact = steady_sliding(floor.heights, floor.spacing, rubber, speed, pressure, poisson_ratio)
+    accelerated, began = on_card(device, floor.heights.size), time.perf_counter()
+    heights = to_card(floor.heights) if accelerated else floor.heights
+    contact = steady_sliding(heights, floor.spacing, rubber, speed, pressure, poisson_ratio)
+    if accelerated:
+        cost = f"contact solved on {card()}, {time.perf_counter() - began:.1f} s"
+        maps = {"pressure": on_host(contact.pressure), "gap": on_host(contact.gap)}
+        contact = replace(contact, **maps, notes=(*contact.notes, cost))
     if not contact.status.usable:
         return contact, FlowFactors(np.nan, np.nan, np.nan, np.nan, np.nan)
     gap = np.where(contact.pressure > 0.0, 0.0, contact.gap)

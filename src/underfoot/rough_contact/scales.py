@@ -41,6 +41,7 @@ def table_over_scales(
     shoe: Density | None = None,
     poisson_ratio: float = 0.5,
     surfaces: int = SURFACES,
+    device: str = "cpu",
     cache: core.Cache | None = None,
     description: str = "",
     progress: core.Progress = core.silent,
@@ -51,7 +52,7 @@ def table_over_scales(
         floor, shoe: C(q) (m^4) of wave numbers (rad/m), <h^2> = 2 pi int q C dq; a shoe without one
             is smooth.
         waves: Longest and shortest, m.
-        modulus, pressure, speed, poisson_ratio: As in ``ContactTable.from_surfaces``.
+        modulus, pressure, speed, poisson_ratio, device: As in ``ContactTable.from_surfaces``.
         surfaces: Random ones of the longest waves; their spread is the uncertainty.
 
     Beside one grid of 1024 points over two ranges the contact area is within 15 %, the gap within
@@ -90,6 +91,7 @@ def table_over_scales(
             shoe_surfaces=shoes,
             finer=table,
             poisson_ratio=poisson_ratio,
+            device=device,
             cache=cache,
             description=description,
             progress=part(progress, done / count, (done + 1) / count),

@@ -12,6 +12,7 @@ from underfoot.core import Breach, InputError, Range, breaches, display
 from underfoot.core.arrays import AnyArray
 from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
+from underfoot.core.device import free_memory
 from underfoot.core.threads import namespace
 
 
@@ -33,6 +34,9 @@ _RANGES = {
 }
 FEWEST_NODES = 30
 """Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
+ARRAYS = 12
+"""Double arrays of its grid that a contact may take beside the heights: 10, and 12 where it is
+solved by way of thinner mattresses."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
 _SMALL = 128 * 128
 """Points below which a contact takes a few hundredths of a second on a grid of any size."""
@@ -85,7 +89,23 @@ def checked_contact_input(
     check_poisson_ratio(poisson_ratio)
     if layer_thickness is not None:
         _positive("layer_thickness", layer_thickness, "m")
+    _check_memory(h)
     return h, (dx, dy)
+
+
+def _check_memory(height: AnyArray) -> None:
+    """Refuse a grid that does not fit beside what is in memory where it lies."""
+    points, free = math.prod(height.shape), free_memory(height)
+    needed = 8 * ARRAYS * points
+    if free is not None and needed > free:
+        side = math.isqrt(free // (8 * ARRAYS))
+        raise InputError(
+            f"a contact of {points} points takes {needed / 1e9:.1f} GB, "
+            f"{free / 1e9:.1f} GB are free on {getattr(height, 'device', 'cpu')}",
+            where="height",
+            allowed=f"{needed} bytes free, {ARRAYS} double arrays of the grid",
+            remedy=f"Take a coarser grid (about {side} x {side} points fit)",
+        )
 
 
 def modulus_function(modulus: Modulus, frequencies: AnyArray) -> Callable[[AnyArray], AnyArray]:

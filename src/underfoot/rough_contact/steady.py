@@ -154,8 +154,8 @@ def steady_sliding(
     wave speed).
 
     Raises:
-        InputError: Heights missing or not a map, pressure, spacing or modulus not positive, speed
-            not finite.
+        InputError: Heights missing or not a map, or more than fit into the memory where they lie,
+            pressure, spacing or modulus not positive, speed not finite.
 
     Source: frame of the rough surface and complex modulus, e.g. Carbone and Putignano (2013)
     J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.
@@ -177,7 +177,7 @@ def steady_sliding(
     odd = asarray(periodic.odd_wavenumbers(shape, steps))
     body = Body(
         partial(periodic.sliding_moduli, table, length, speed > 0.0),
-        lambda q: periodic.unit_compliance(q, layer_thickness, poisson_ratio),
+        partial(periodic.unit_compliance, thickness=layer_thickness, poisson_ratio=poisson_ratio),
         steps,
         xp=xp,
         asarray=asarray,
@@ -187,7 +187,7 @@ def steady_sliding(
     with threads_limited(threads):
         exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
         slope, short = periodic.slope_numbers(
-            exact.forward(h), asarray(qx**2 + qy**2), shape, 0.5 * math.pi / max(steps)
+            exact.forward(h), asarray(qx) ** 2 + asarray(qy) ** 2, shape, 0.5 * math.pi / max(steps)
         )
         if slope == 0.0:
             return _flat(h, float(pressure), float(speed), xp)
@@ -211,7 +211,7 @@ def steady_sliding(
             lost = (
                 rms
                 / unit
-                * periodic.dissipation(transformed, operators.unit, operators.rows, odd, shape)
+                * periodic.dissipation(transformed, operators.unit(), operators.rows, odd, shape)
             )
     status = Status.CONVERGED if state.converged else Status.NOT_CONVERGED
     plain, corrected = periodic.contact_fractions(p > 0.0, steps, xp)

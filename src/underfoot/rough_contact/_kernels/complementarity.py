@@ -75,19 +75,21 @@ def solved_contact(
     if state.converged:
         return state
     least, softness = operators.softness_range()
-    workspace = Workspace(_HARD_STEPS, operators.xp, height)
+    before, workspace.steps = workspace.steps, _HARD_STEPS
     last = replace(search, reduction=min(search.reduction, 0.03))
     soft = Search(max(_MATTRESS_TOLERANCE, search.tolerance), 12, False, reduction=last.reduction)
-    steps = 0
+    steps, state = 0, None
     while softness > 0.1 * least:
         with operators.softened(softness):
             state = _on_grid(operators, height, pressure, mean_pressure, workspace, soft)
         steps += state.steps
         if state.converged:
             pressure = state.pressure
+        state = None  # its fields make room for the next
         softness *= _THINNER
     with operators.softened(0.0):
         state = _on_grid(operators, height, pressure, mean_pressure, workspace, last)
+    workspace.steps = before
     state.steps += steps
     return state
 
@@ -113,8 +115,6 @@ def _on_grid(
     xp = operators.xp
     points = height.shape[0] * height.shape[1]
     load = mean_pressure * points
-    single = xp.astype(height, xp.float32)
-    work = xp.zeros_like(single)
     double = False
     contact = pressure > 0.0
     p = pressure
@@ -128,7 +128,11 @@ def _on_grid(
     step = 0
     for step in range(1, search.max_steps + 1):
         if bool(xp.all(contact)):
-            closed = operators.exact_pressure(height) if exact else operators.pressure(single)
+            closed = (
+                operators.exact_pressure(height)
+                if exact
+                else operators.pressure(xp.astype(height, xp.float32))
+            )
             p = closed + mean_pressure
             contact, gap = p > 0.0, None
             if bool(xp.all(contact)):
@@ -137,7 +141,7 @@ def _on_grid(
             del closed
         if not bool(xp.any(contact)):
             contact = height == xp.max(height)
-        part = Restriction(contact, xp, work)
+        part = Restriction(contact, xp)
         if known is None or changed > _RENEW * part.nodes:
             known = operators.pressure(part.spread(part.constant()))
             known = xp.where(known > 0.0, known, xp.zeros_like(known))
@@ -152,16 +156,20 @@ def _on_grid(
             p += part.spread(response * (missing / float(xp.sum(response))))
             gap = None
         if gap is None:
-            gap = _gap(operators, p, height if double else single, double)
+            gap = _gap(operators, p, height, double)
         residual = part.take(gap)
         mean = float(xp.sum(residual)) / part.nodes
-        residual = xp.astype(-residual, xp.float32)
-        part.shift(residual, mean)
         gap = None  # before the next one is made: fields are what a large grid costs
+        residual = xp.astype(residual, xp.float32)
+        residual *= -1.0
+        part.shift(residual, mean)
         p += part.spread(
             residual_correction(operators, part, residual, response, reduction, workspace)
         )
-        gap = _gap(operators, p, height if double else single, double)
+        response = residual = None
+        if double:
+            workspace.release()
+        gap = _gap(operators, p, height, double)
         gap -= float(xp.sum(part.take(gap))) / part.nodes
         lowest = float(xp.min(p))
         carried = _absolute_product(xp, gap, p) / load
@@ -182,7 +190,8 @@ def _on_grid(
         changed = int(xp.count_nonzero(contact != before))
         if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
             double = True
-            gap = single = None
+            gap = None
+            workspace.release()
             p = xp.astype(p, xp.float64)
             continue
         if lowest < 0.0:
@@ -193,7 +202,9 @@ def _on_grid(
             if its_error <= tolerance:
                 history[-1] = its_error
                 return ContactState(trial, its_gap, step, its_error, True, history)
-    p, gap, error = _clipped(operators, p, height if double else single, load, double)
+    gap = known = part = None
+    workspace.release()
+    p, gap, error = _clipped(operators, p, height, load, double)
     return ContactState(p, gap, step, error, False, history)
 
 
@@ -217,6 +228,10 @@ def _absolute_product(xp: Any, gap: AnyArray, p: AnyArray) -> float:
 
 
 def _gap(operators: Operators, pressure: AnyArray, height: AnyArray, double: bool) -> AnyArray:
-    gap = (operators.exact_displacement if double else operators.displacement)(pressure)
-    gap -= height
+    if double:
+        gap = operators.exact_displacement(pressure)
+        gap -= height
+        return gap
+    gap = operators.displacement(pressure)
+    gap -= operators.xp.astype(height, operators.xp.float32)
     return gap

@@ -1,11 +1,13 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from underfoot.core.arrays import AnyArray
+from underfoot.core.threads import on_host
 
 from .operators import Operators
 
@@ -20,17 +22,18 @@ class Restriction:
     """Single-precision vectors on the nodes where ``inside`` is true.
 
     Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. NumPy puts
-    a gathered vector back by assignment into ``work``; the array API has none by index, so that
+    a gathered vector back by assignment into one buffer; the array API has none by index, so that
     other arrays take each point from the vector by its number there, a zero behind it elsewhere.
     """
 
-    def __init__(self, inside: AnyArray, xp: Any, work: AnyArray) -> None:
+    def __init__(self, inside: AnyArray, xp: Any) -> None:
         self.xp = xp
         flat = xp.reshape(inside, (-1,))
         self.points = flat.shape[0]
         self.nodes = int(xp.count_nonzero(flat))
         self.gathered = self.nodes < _GATHER_BELOW * self.points
         self._shape = inside.shape
+        self._buffer: AnyArray = None
         if not self.gathered:
             self._mask = xp.astype(flat, xp.float32)
             self.size = self.points
@@ -38,8 +41,7 @@ class Restriction:
         self.size = self.nodes
         self._index = xp.nonzero(flat)[0]
         if xp is np:
-            self._work = work
-            work[...] = 0.0
+            self._buffer = np.empty(inside.shape, np.float32)
         else:
             integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
             number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
@@ -52,14 +54,24 @@ class Restriction:
             return self.xp.take(flat, self._index, axis=0)
         return flat * self._mask
 
+    def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
+        """Return ``product`` of the field of a vector as a new vector."""
+        field = product(self.spread(vector), self._buffer)
+        if self.gathered:
+            return self.take(field)
+        flat = self.xp.reshape(field, (-1,))
+        flat *= self._mask
+        return flat
+
     def spread(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
         xp = self.xp
         if not self.gathered:
             return xp.reshape(vector, self._shape)
         if xp is np:
-            xp.reshape(self._work, (-1,))[self._index] = vector
-            return self._work
+            self._buffer[...] = 0.0
+            xp.reshape(self._buffer, (-1,))[self._index] = vector
+            return self._buffer
         zero = xp.zeros_like(vector[:1])
         return xp.reshape(xp.take(xp.concat((vector, zero)), self._number, axis=0), self._shape)
 
@@ -69,7 +81,7 @@ class Restriction:
             return self.xp.ones_like(self._index, dtype=self.xp.float32)
         return self._mask
 
-    def shift(self, vector: AnyArray, value: float) -> None:
+    def shift(self, vector: AnyArray, value: AnyArray) -> None:
         """Add ``value`` to the vector on its nodes, in place."""
         vector += value if self.gathered else self._mask * value
 
@@ -77,14 +89,15 @@ class Restriction:
 class Workspace:
     """Room for the search directions, allocated once and grown when a contact needs more.
 
-    ``steps`` of them at most; fewer, down to 3, where contact is so large that they and their
-    images would take more than ``arrays`` double arrays of the grid.
+    ``steps`` of their images at most; fewer, down to 3, where contact is so large that they would
+    take more than ``arrays`` double arrays of the grid. The directions have room beside them or
+    none: then a product finds their sum.
     """
 
     def __init__(
         self, steps: int, xp: Any, like: AnyArray = None, *, arrays: float = math.inf
     ) -> None:
-        self._steps, self._arrays = steps, arrays
+        self.steps, self._arrays = steps, arrays
         self._xp = xp
         device = {} if xp is np else {"device": like.device}
         self._kind: dict[str, Any] = {"dtype": xp.float32, **device}
@@ -93,16 +106,30 @@ class Workspace:
         self._length = 0
 
     def rows(self, size: int, points: int) -> tuple[AnyArray, AnyArray]:
-        """Return two (steps, size) arrays of undefined content for a grid of ``points``."""
-        steps = min(self._steps, max(3, int(min(self._arrays * points / size, 1e6))))
-        if steps * size > self._length:
-            self._images = self._directions = None
-            self._length = steps * size
-            self._images = self._xp.empty(self._length, **self._kind)
-            self._directions = self._xp.empty(self._length, **self._kind)
+        """Return (steps, size) of undefined content for images, and for directions or None.
+
+        ``points`` are those of the grid.
+        """
+        room = self._arrays * points
+        both = self.steps * size <= room
+        steps = min(self.steps, max(3, int(min(2.0 * room / size, 1e6))))
         shape, end = (steps, size), steps * size
+        if end > self._length or (both and self._directions is None):
+            self.release()
+            self._length = end
+            self._images = self._xp.empty(end, **self._kind)
+        if not both:
+            self._directions = None
+        elif self._directions is None:
+            self._directions = self._xp.empty(self._length, **self._kind)
         reshape = self._xp.reshape
-        return reshape(self._images[:end], shape), reshape(self._directions[:end], shape)
+        images = reshape(self._images[:end], shape)
+        return images, reshape(self._directions[:end], shape) if both else None
+
+    def release(self) -> None:
+        """Give the memory back until rows are asked for again."""
+        self._images = self._directions = None
+        self._length = 0
 
 
 def residual_correction(
@@ -118,7 +145,7 @@ def residual_correction(
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero sum
     with ``response`` (S 1 on the contact), images A z orthonormal. Stops when the residual's norm
     has fallen by ``reduction``, or after the workspace's steps. ``residual`` has zero mean and is
-    overwritten.
+    overwritten. The host waits for the device once a step.
     """
     xp = operators.xp
     images, directions = workspace.rows(part.size, part.points)
@@ -126,37 +153,44 @@ def residual_correction(
     triangle = np.zeros((steps, steps))
     weights = np.zeros(steps)
     r = residual
-    left = _norm(r)
+    left = float(r @ r) ** 0.5
     goal = reduction * left
-    total = float(xp.sum(response))
+    total = xp.sum(response)
     step = 0
     while left > goal and step < steps:
-        z = part.take(operators.pressure(part.spread(r)))
-        z -= response * (float(xp.sum(z)) / total)
-        w = part.take(operators.displacement(part.spread(z)))
-        part.shift(w, -float(xp.sum(w)) / part.nodes)
-        raw = _norm(w)
+        z = part.through(operators.pressure, r)
+        z -= response * (xp.sum(z) / total)
+        w = part.through(operators.displacement, z)
+        part.shift(w, -xp.sum(w) / part.nodes)
+        raw = w @ w
+        overlap = images[:step, :] @ w
         if step:
-            overlap = images[:step, :] @ w
             w -= overlap @ images[:step, :]
-            triangle[:step, step] = overlap if xp is np else [float(o) for o in overlap]
-        length = _norm(w)
-        if not length > _DEPENDENT * raw:
+        *before, raw, square, along = on_host(
+            xp.concat((overlap, xp.stack((raw, w @ w, w @ r))))
+        ).tolist()
+        if not square > _DEPENDENT**2 * raw:
             break
-        triangle[step, step] = length
-        weight = float(w @ r) / length
-        images[step, :] = w * (1.0 / length)
-        directions[step, :] = z
+        length = square**0.5
+        triangle[:step, step], triangle[step, step] = before, length
+        weight = along / length
+        w *= 1.0 / length
+        images[step, :] = w
+        if directions is not None:
+            directions[step, :] = z
         weights[step] = weight
-        w *= weight / length
+        w *= weight
         r -= w
         left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
     if step == 0:
         return xp.zeros_like(r)
-    y = np.linalg.solve(triangle[:step, :step], weights[:step]).astype(np.float32)
-    return operators.asarray(y) @ directions[:step, :]
-
-
-def _norm(vector: AnyArray) -> float:
-    return float(vector @ vector) ** 0.5
+    y = np.linalg.solve(triangle[:step, :step], weights[:step])
+    if directions is not None:
+        return operators.asarray(y.astype(np.float32)) @ directions[:step, :]
+    # the sum of y times the residuals of each step, by their images; S of it is that of y times z
+    r *= float(y.sum())
+    r += operators.asarray((weights[:step] * np.cumsum(y)).astype(np.float32)) @ images[:step, :]
+    z = part.through(operators.pressure, r)
+    z -= response * (xp.sum(z) / total)
+    return z

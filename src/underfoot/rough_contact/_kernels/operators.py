@@ -17,9 +17,10 @@ from .periodic import wavenumbers
 class Body:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
-    ``moduli`` returns E*(qx v) for a column of qx (real when elastic), ``unit`` the compliance for
-    E = 1. ``spacing`` is that of the fine grid. ``asarray`` brings a NumPy array to the namespace
-    ``xp`` and its device. ``library`` names the FFT (see ``transform``).
+    ``moduli`` returns E*(qx v) for a column of qx of NumPy (real when elastic), ``unit`` the
+    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid.
+    ``asarray`` brings a row or column of NumPy to the namespace ``xp`` and its device. ``library``
+    names the FFT (see ``transform``).
     """
 
     moduli: Callable[[AnyArray], AnyArray]
@@ -49,24 +50,24 @@ class Operators:
         self.shape = shape
         self.xp = body.xp
         self.count = 0
+        xp, self.asarray = body.xp, body.asarray
         spacing = (body.spacing[0] * coarsening[0], body.spacing[1] * coarsening[1])
         qx, qy = wavenumbers(shape, spacing)
         rows = body.moduli(qx)
-        unit = body.unit(np.hypot(qx, qy))
-        unit *= body.scale
-        unit[0, 0] = 1.0
-        single = np.complex64 if np.iscomplexobj(rows) else np.float32
-        stiffness = rows.astype(single) / unit.astype(np.float32)
-        compliance = 1.0 / stiffness
-        stiffness[0, 0] = compliance[0, 0] = unit[0, 0] = 0.0
-        self.asarray = asarray = body.asarray
-        self.compliance, self.stiffness = asarray(compliance), asarray(stiffness)
-        self.unit, self.rows = asarray(unit), asarray(rows)
-        self._inverse_rows = asarray(1.0 / rows)
         self._body = body
+        self._waves = self.asarray(qx), self.asarray(qy)
+        self.rows, self._inverse_rows = self.asarray(rows), self.asarray(1.0 / rows)
         self._lossy = np.iscomplexobj(rows)
-        self.fast = self._transform(self.xp.float32)
+        single = xp.complex64 if self._lossy else xp.float32
+        unit = self.unit()
+        unit[0, 0] = 1.0
+        self.stiffness = xp.astype(self.rows, single) / xp.astype(unit, xp.float32)
+        del unit
+        self.compliance = 1.0 / self.stiffness
+        self.stiffness[0, 0] = self.compliance[0, 0] = 0.0
+        self.fast = self._transform(xp.float32)
         self._exact = exact
+        self._spectrum: AnyArray = None
 
     @contextmanager
     def softened(self, softness: float) -> Iterator[None]:
@@ -76,16 +77,15 @@ class Operators:
         compliance in phase: less close to the inverse, but symmetric, so that the minimum-residual
         iteration can't stagnate (the operator is positive in that inner product).
         """
-        kept = self.compliance, self.stiffness
-        softened = self.compliance + softness
-        in_phase = self.xp.real(softened) if self._lossy else softened
-        in_phase[0, 0] = 1.0
-        self.compliance, self.stiffness = softened, 1.0 / in_phase
-        self.compliance[0, 0] = self.stiffness[0, 0] = 0.0
+        kept = self.compliance
+        self.compliance = kept + softness
+        self.compliance[0, 0] = 0.0
+        in_phase = self.xp.real(self.compliance) if self._lossy else self.compliance
+        self.stiffness = _inverse(in_phase)
         try:
             yield
         finally:
-            self.compliance, self.stiffness = kept
+            self.compliance, self.stiffness = kept, _inverse(kept)
 
     def softness_range(self) -> tuple[float, float]:
         """Return the least and the largest compliance of a wave."""
@@ -94,29 +94,41 @@ class Operators:
         size[0, 0] = largest
         return float(self.xp.min(size)), largest
 
-    def displacement(self, pressure: AnyArray) -> AnyArray:
-        """Return A p in single precision."""
-        return self._product(self.compliance, pressure)
+    def unit(self) -> AnyArray:
+        """Return the compliance for E = 1 in double precision, made anew: it is rarely used."""
+        q = self.xp.hypot(*self._waves)
+        q[0, 0] = 1.0
+        unit = self._body.unit(q)
+        unit *= self._body.scale
+        unit[0, 0] = 0.0
+        return unit
 
-    def pressure(self, displacement: AnyArray) -> AnyArray:
-        """Return S u in single precision."""
-        return self._product(self.stiffness, displacement)
+    def displacement(self, pressure: AnyArray, out: AnyArray = None) -> AnyArray:
+        """Return A p in single precision; it may lie in ``out``, that of the pressure too."""
+        return self._product(self.compliance, pressure, out)
+
+    def pressure(self, displacement: AnyArray, out: AnyArray = None) -> AnyArray:
+        """Return S u in single precision; it may lie in ``out``, that of the displacement too."""
+        return self._product(self.stiffness, displacement, out)
 
     def exact_displacement(self, pressure: AnyArray) -> AnyArray:
         """Return A p in double precision."""
         self.count += 1
+        self._spectrum = None
         spectrum = self.exact.forward(pressure)
-        spectrum *= self.unit
+        spectrum *= self.unit()
         spectrum *= self._inverse_rows
         return self.exact.backward(spectrum)
 
     def exact_pressure(self, displacement: AnyArray) -> AnyArray:
         """Return S u in double precision."""
         self.count += 1
+        self._spectrum = None
         spectrum = self.exact.forward(displacement)
         spectrum *= self.rows
-        safe = self.xp.where(self.unit > 0.0, self.unit, self.xp.ones_like(self.unit))
-        spectrum /= safe
+        unit = self.unit()
+        unit[0, 0] = 1.0
+        spectrum /= unit
         spectrum[0, 0] = 0.0
         return self.exact.backward(spectrum)
 
@@ -127,12 +139,22 @@ class Operators:
             self._exact = self._transform(self.xp.float64)
         return self._exact
 
-    def _product(self, symbol: AnyArray, field: AnyArray) -> AnyArray:
+    def _product(self, symbol: AnyArray, field: AnyArray, out: AnyArray) -> AnyArray:
         self.count += 1
-        spectrum = self.fast.forward(field)
+        spectrum = self.fast.forward(field, self._spectrum)
+        if self.xp is np:
+            self._spectrum = spectrum
         spectrum *= symbol
-        return self.fast.backward(spectrum)
+        return self.fast.backward(spectrum, out)
 
     def _transform(self, dtype: Any) -> Transform:
         body = self._body
         return transform(self.shape, dtype, xp=body.xp, threads=body.threads, library=body.library)
+
+
+def _inverse(symbol: AnyArray) -> AnyArray:
+    """Return 1 / symbol, 0 for the mean as in ``symbol``."""
+    symbol[0, 0] = 1.0
+    inverse = 1.0 / symbol
+    symbol[0, 0] = inverse[0, 0] = 0.0
+    return inverse

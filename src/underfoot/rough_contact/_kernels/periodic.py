@@ -97,20 +97,20 @@ def sliding_moduli(table: AnyArray, length: float, forward: bool, qx: AnyArray) 
 
 
 def unit_compliance(q: AnyArray, thickness: float | None, poisson_ratio: float) -> AnyArray:
-    """Return the compliance symbol c(q) of a body with Young's modulus 1 (m), 0 at q = 0.
+    """Return the compliance symbol c(q), q > 0, of a body with Young's modulus 1 (m).
 
     Half-space 2 (1-nu^2) / q; layer of ``thickness`` on a rigid base (Bentall and Johnson 1968):
     2 (1-nu^2)/q [(3-4nu) sinh 2k - 2k] / [(3-4nu) cosh 2k + 2k^2 + 5 - 12nu + 8nu^2], k = q T.
     """
-    safe = np.where(q > 0.0, q, 1.0)
-    half_space = 2.0 * (1.0 - poisson_ratio**2) / safe
-    if thickness is None:
-        return np.where(q > 0.0, half_space, 0.0)
-    k = np.minimum(safe * thickness, 30.0)  # beyond, the half-space to 1e-24
-    a = 3.0 - 4.0 * poisson_ratio
-    top = a * np.sinh(2.0 * k) - 2.0 * k
-    bottom = a * np.cosh(2.0 * k) + 2.0 * k**2 + 5.0 - 12.0 * poisson_ratio + 8.0 * poisson_ratio**2
-    return np.where(q > 0.0, half_space * top / bottom, 0.0)
+    xp = namespace(q)
+    compliance = 2.0 * (1.0 - poisson_ratio**2) / q
+    if thickness is not None:
+        k = xp.clip(q * thickness, None, 30.0)  # beyond, the half-space to 1e-24
+        a = 3.0 - 4.0 * poisson_ratio
+        compliance *= a * xp.sinh(2.0 * k) - 2.0 * k
+        constant = 5.0 - 12.0 * poisson_ratio + 8.0 * poisson_ratio**2
+        compliance /= a * xp.cosh(2.0 * k) + 2.0 * k**2 + constant
+    return compliance
 
 
 class ShiftedMap:
