@@ -15,11 +15,21 @@ from conftest import cpu_seconds
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
 MINUTES = {"one": 1, "two": 2, "three": 3, "four": 4}
+LONG_TUTORIALS = {"designer", "ergonomist"}
+"""Minutes each; `make test-studies` runs them. The quick tests run the same commands."""
 LONG_PAGES = {"lug_edges", "block", "coupled_contact"}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(
+            page, id=page.stem,
+            marks=pytest.mark.study if page.stem in LONG_TUTORIALS else pytest.mark.slow,
+        )
+        for page in TUTORIALS
+    ],
+)  # fmt: skip
 def test_a_tutorial_prints_what_it_says_in_the_time_it_says(page, tmp_path):
     told = re.search(r"take\s+at most (\w+) minutes? of one processor", page.read_text())
     assert told
