@@ -28,7 +28,7 @@ def small(name, folder, spacing, **smaller):
     return Study(read_plan(text, STUDIES), folder)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_which_measurement_is_worth_making(tmp_path):
     result = small("which_measurement", tmp_path, "2.5 mm", budget=32).run(workers=2)
     found = effects(result, result.plan.goals[0])

@@ -15,7 +15,7 @@ from conftest import cpu_seconds
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
 MINUTES = {"one": 1, "two": 2, "three": 3, "four": 4}
-LONG_TUTORIALS = {"designer", "ergonomist"}
+LONG_TUTORIALS = {"designer", "ergonomist", "laboratory"}
 """Minutes each; `make test-studies` runs them. The quick tests run the same commands."""
 LONG_PAGES = {"lug_edges", "block", "coupled_contact"}
 
@@ -51,8 +51,14 @@ def test_a_page_of_physics_computes_its_numbers_and_figures(page, tmp_path):
     assert numbers_compared(page, tmp_path) >= 3
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["trials_analysis", "design_studies", "risk"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("trials_analysis", marks=pytest.mark.slow),
+        pytest.param("design_studies", marks=pytest.mark.slow),
+        pytest.param("risk", marks=pytest.mark.study),
+    ],
+)
 def test_a_guide_prints_what_it_says(name, tmp_path):
     assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
 

@@ -77,7 +77,7 @@ def slips(rng):
         (equal_at_the_margin, 3, 0.05),
         (curves, 4, 0.05),
         (area, 5, 0.05),
-        (slips, 6, 0.05),
+        pytest.param(slips, 6, 0.05, marks=pytest.mark.study),
     ],
 )
 def test_type_one_error(one, seed, exact):
