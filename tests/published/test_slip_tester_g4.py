@@ -87,9 +87,7 @@ def test_an_untreaded_shoe_reads_next_to_nothing_in_detergent():
 
 
 @pytest.mark.parametrize("fluid", ["glycerol", "detergent"])
-@pytest.mark.parametrize(
-    "shoe", [one for one in EVERY if not one.values[0].endswith("untreaded")]
-)
+@pytest.mark.parametrize("shoe", [one for one in EVERY if not one.values[0].endswith("untreaded")])
 def test_treaded_shoes_read_next_to_nothing(shoe, fluid):
     """A pocket of 10 mm is wider than a lug of 5 mm: it always lies over a channel, which holds no
     pressure. A fifth of the printed bound: the sensor must not begin to see the film on the lugs.
