@@ -139,7 +139,7 @@ def of_the_film(name):
         computed = 1 / (1 + math.exp(-odds))
         grid = 0.1 * (name != "fluid_load")
         scale = math.exp(rng.normal(0, grid)) if grid else 1.0
-        true = {one: 2.0 * whole * share for one in GRID_NAMES[1:]} | {"fluid_load": whole * share}
+        true = dict.fromkeys(GRID_NAMES[1:], 2.0 * whole * share) | {"fluid_load": whole * share}
         values = {
             one: SourcedValue(number * computed / share * scale, uncertainty=None)
             for one, number in true.items()
