@@ -129,7 +129,6 @@ def test_five_pages_and_the_report_have_no_english_word_in_german(app, english):
         page.get_by_role("button", name="Mit einem Arbeitsschuh beginnen").click()
         page.wait_for_url("**/design?variant=*")
         drawn(page)
-        coarsened(page, app)
         assert page.evaluate("document.documentElement.lang") == "de"
         for tab in page.query_selector_all(".q-tab"):
             tab.click()

@@ -140,7 +140,7 @@ def test_the_studies_page_changes_the_file_runs_stops_and_goes_on(project, tmp_p
         assert 2 <= stopped < 30
         page.wait_for_function("!document.querySelector('.task')")
         page.get_by_role("button", name="Go on").click()
-        limit = time.monotonic() + 300
+        limit = time.monotonic() + 600
         while len(list(ended(project))) < 30:
             assert time.monotonic() < limit
             time.sleep(0.5)

@@ -133,11 +133,11 @@ def chance_of_a_slip(rng, confidence):
 
 def of_the_film(name):
     def told(rng, confidence):
-        """The odds of the film's share err by a factor known to 41 %; 10 % of grid beside."""
+        """The odds of the film's share err by a factor known to 41 %; the grid's error beside."""
         sd, whole, share = 0.34, 500.0, 0.4
         odds = math.log(share / (1 - share)) + rng.normal(0, sd)
         computed = 1 / (1 + math.exp(-odds))
-        grid = 0.1 * (name != "fluid_load")
+        grid = {"fluid_load_sensor": 0.1, "peak_fluid_pressure": 0.3}.get(name, 0.0)
         scale = math.exp(rng.normal(0, grid)) if grid else 1.0
         true = dict.fromkeys(GRID_NAMES[1:], 2.0 * whole * share) | {"fluid_load": whole * share}
         values = {
