@@ -381,6 +381,21 @@ def test_the_scene_of_wear_holds_what_each_state_has_lost():
     assert pane["histories"]["lost"]["labels"][0].startswith("new")
 
 
+def test_the_last_state_of_wear_is_the_sole_without_tread():
+    series, _ = worn_series()
+    bare = heel_surface(
+        Heel(length=0.06, width=0.06, rear_radius=0.028, outsole_thickness=0.02), spacing=1e-3
+    )
+    without = {"untreaded": series.points[0].outcome, "soles": (*series.soles, bare)}
+    pane = wear_scene(dataclasses.replace(series, **without))["panes"][0]
+    labels = pane["histories"]["left"]["labels"]
+    assert len(labels) == len(pane["states"]) == 4
+    assert labels[-1].startswith("no tread at all")
+    shape = (pane["nx"], pane["ny"])
+    left = unpacked(pane["histories"]["left"]["frames"][-1], shape)
+    assert np.nanmax(left) == 0.0
+
+
 @pytest.mark.browser
 def test_a_slider_wears_the_sole_down(tmp_path):
     path = tmp_path / "wear.html"

@@ -1,6 +1,7 @@
 """A case whose outsole is a file: read, checked, run, kept apart by its checksum; and the CLI."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -173,13 +174,29 @@ def test_run_of_a_file_beats_the_same_sole_without_tread(folder):
     assert any("determined from the tread" in line for line in treaded.assumptions)
 
 
+def test_what_comes_next_never_meets_a_sole_of_the_same_name(folder):
+    sole, told = folder / "my_sole.stl", []
+    for name in ("my_sole", "first", "supplier/second"):
+        (folder / "files" / name).mkdir(parents=True)
+        copy = Path(shutil.copy(sole, folder / "files" / name)).relative_to(folder)
+        done = called("outsole", "inspect", copy, "--out", name, folder=folder)
+        assert done.returncode == 0, done.stderr
+        told.append(done.stdout.splitlines()[-1])
+    assert told == [
+        "Next: underfoot run my_sole/my_sole.toml",
+        "Next: underfoot run first/my_sole.toml --out out/first",
+        "Next: underfoot run supplier/second/my_sole.toml --out out/supplier/second",
+    ]
+
+
 def test_inspect_prints_and_writes_a_case_that_checks(folder):
     out = folder / "out"
     done = called("outsole", "inspect", "my_sole.stl", "--out", out, folder=folder)
     assert done.returncode == 0, done.stderr
     assert "Largest untreaded patch" in done.stdout
-    # a run goes to the folder of its case's name: another sole's does not meet it
-    assert done.stdout.splitlines()[-1] == f"Next: underfoot run {out / 'my_sole.toml'}"
+    # the run of a sole of the same name from another folder does not meet it
+    told = f"Next: underfoot run {out / 'my_sole.toml'} --out {out / 'run'}"
+    assert done.stdout.splitlines()[-1] == told
     assert "Determined, assumed and repaired" in done.stdout
     names = {path.name for path in out.iterdir()}
     assert {"outsole.png", "measures.csv", "heights.csv.gz", "my_sole.toml"} <= names

@@ -78,6 +78,8 @@ def seen(page, *, fold=True):
     page.wait_for_timeout(1500)
     for each in page.query_selector_all(".q-expansion-item .q-item") if fold else ():
         each.click()
+    if fold:
+        page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true })")
     page.wait_for_timeout(500)
     return page.evaluate(TEXTS)
 

@@ -184,6 +184,9 @@ def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
             )
             assert verdict["bottom"] < height
             assert sole["bottom"] < height
+            assert page.locator(".number-place .big").is_visible()
+            # number, interval and what to mind
+            assert page.evaluate(places, ".number-place")["bottom"] < height
             assert verdict["left"] == pytest.approx(table["left"], abs=1)
             assert verdict["left"] == pytest.approx(head["left"], abs=1)
             page.evaluate("scrollTo(0, 0)")
@@ -193,10 +196,18 @@ def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
             page.set_viewport_size({"width": width, "height": height})
             page.goto(report.as_uri())
             drawn(page)
-            for each in (".verdict", "canvas"):
+            for each in (".verdict", ".why", "canvas"):
                 assert page.evaluate(places, each)["bottom"] < height
+            folded = page.locator("details.section")
+            assert folded.count() > 3
+            assert page.locator("details[open]").count() == 0
+            table = page.locator("details.section table").first
+            assert not table.is_visible()
+            page.emulate_media(media="print")
+            assert table.is_visible()
+            page.emulate_media(media="screen")
             lefts = {
-                round(page.evaluate(places, each)["left"]) for each in ("h1", ".wide:not([hidden])")
+                round(page.evaluate(places, each)["left"]) for each in ("h1", "details.section")
             }
             assert len(lefts) == 1
 

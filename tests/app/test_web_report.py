@@ -5,7 +5,7 @@ import re
 import shutil
 
 import pytest
-from web_app import drawn, page_of, project_of, served
+from web_app import Cost, drawn, page_of, project_of, served
 
 pytest.importorskip("nicegui")
 
@@ -50,6 +50,43 @@ def test_the_report_of_a_project_says_what_each_number_is_of(tmp_path, project):
         assert row.is_visible()
         assert not page.get_by_text("Other projects").is_visible()
         assert page.locator("table").bounding_box()["width"] <= 1366
+        assert page.complaints == []
+
+
+def test_lists_show_the_sole_of_each_variant(tmp_path, project):
+    """500 variants: the table and the pictures in sight are there in seconds."""
+    project.change("other", {"shoe.tread.pattern": "hexagons"})
+    text = project.text("other")
+    for number in range(498):
+        project.path(f"sole {number}").write_text(text.replace('"other"', f'"sole {number}"'))
+    project.path("broken").write_text("[shoe\n")
+    shown = (
+        "(name) => { const one = [...document.querySelectorAll('.sole-picture')]"
+        ".find((each) => each.alt === name); return one?.complete && one.naturalWidth }"
+    )
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base)
+        page.wait_for_function("document.querySelectorAll('.sole-picture').length === 8")
+        with Cost() as cost:
+            page.goto(app.base + "project")
+            page.wait_for_function(f"({shown})('Tread of heel') > 50")
+        print(f"500 variants: {cost}")
+        assert cost.least < 20
+        places = [page.get_by_role("img", name=f"Tread of {name}") for name in ("heel", "other")]
+        sources = [place.get_attribute("src") for place in places]
+        fetched = "(address) => fetch(address).then((answer) => answer.text())"
+        first, second = (page.evaluate(fetched, each) for each in sources)
+        assert first.startswith("<svg")
+        assert first != second
+        assert page.evaluate(fetched, sources[0]) == first
+        project.change("heel", {"shoe.wear.depth": "1 mm"})
+        changed = page.get_by_role("img", name="Tread of heel")
+        page.wait_for_function(
+            "(before) => [...document.querySelectorAll('.sole-picture')]"
+            ".some((one) => one.alt === 'Tread of heel' && !one.src.endsWith(before))",
+            arg=sources[0],
+        )
+        assert changed.count() == 1
         assert page.complaints == []
 
 

@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 from test_web_truth import computed
-from web_app import Cost, begin, drawn, page_of, project_of, served
+from web_app import Cost, begin, drawn, page_of, project_of, served, unfold
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 from underfoot.case import Case
@@ -142,7 +142,7 @@ def test_sipes_are_added(app, page):
 
 def test_the_lug_that_floats_is_found(app, page):
     page.get_by_role("button", name="Compute friction").click()
-    page.wait_for_selector("tr[data-lug]")
+    unfold(page)
     drawn(page)
     with Task(page, "find the lug that floats") as task:
         task.click(page.locator("tr[data-lug='0']"))
@@ -228,7 +228,7 @@ def test_the_advised_groove_is_cut_by_its_row_and_taken_out_again(tmp_path):
     project.change("A", LARGE_LUGS)
     with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
         computed(page, app, "A")
-        page.wait_for_selector("tr[data-lug]")
+        unfold(page)
         before, plain = project.summary("A"), edges(page)
         with Task(page, "cut the advised groove") as task:
             task.click(page.get_by_role("button", name="Cut this groove").first)
@@ -236,7 +236,7 @@ def test_the_advised_groove_is_cut_by_its_row_and_taken_out_again(tmp_path):
             page.wait_for_selector(".verdict-place:not(.stale) .verdict")
             drawn(page)
         assert project.summary("A").cof > before.cof
-        page.wait_for_selector("tr[data-lug]")
+        unfold(page)
         assert edges(page) > plain
         page.goto(app.base + "design?variant=A")
         drawn(page)

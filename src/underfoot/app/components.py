@@ -42,6 +42,21 @@ def title(heading: str, level: int = 1) -> ui.element:
     return made
 
 
+def sole_picture(session: Session, name: str) -> ui.element:
+    """Return the small picture of the sole of a variant, fetched when it comes into view."""
+    made = ui.element("img").classes("sole-picture").props('loading="lazy"')
+    for key, words in session.picture(name).items():
+        made.props(f'{key}="{escape(words)}"')
+    return made
+
+
+def folded(heading: str) -> ui.element:
+    """Return a part of a page that is shown when its heading is clicked, and on paper."""
+    with ui.element("details").classes("section") as made, ui.element("summary"):
+        ui.label(heading)
+    return made
+
+
 SCALE_END = 0.8
 """COF at the end of the scale."""
 

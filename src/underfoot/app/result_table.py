@@ -15,6 +15,7 @@ from .session import Session, address
 WORK = "underfoot.app.work_table"
 NUMBERS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
 OLD = """:class="props.row.state === 'earlier' && 'stale'\""""
+SOLE = '<img class="sole-picture" loading="lazy" v-bind="props.row.picture">'
 INPUTS = 6
 """Inputs that differ which are shown; files have all."""
 
@@ -36,6 +37,7 @@ class ResultTable:
     ) -> None:
         self.session, self.text, self.title, self.entries = session, session.text, title, entries
         self.lettered = lettered
+        self.kind = "result" if lettered else "variant"
         self.rows: list[dict[str, Any]] = []
         self._inputs: list[str] = []
         with ui.element("div").classes("row no-print"):
@@ -55,6 +57,7 @@ class ResultTable:
                 **row,
                 "letter": letter,
                 "link": address("/answer", variant=row["name"]),
+                "picture": self.session.picture(row["name"], self.kind),
                 "is": self._state(row, states),
                 "judged": self.text(f"answer.{row['verdict']}") if row["verdict"] else "",
             }
@@ -92,7 +95,7 @@ class ResultTable:
         made = ui.table(columns=columns, rows=self.rows, row_key="name").props("flat dense")
         made.classes("result-table")
         link = '<a :href="props.row.link" translate="no">{{ props.row.name }}</a>'
-        made.add_slot("body-cell-name", f"<q-td>{link}</q-td>")
+        made.add_slot("body-cell-name", f'<q-td><div class="named">{link}{SOLE}</div></q-td>')
         for name in (*inputs, *NUMBERS):  # sorted by the number, shown with unit and interval
             old = "" if name in inputs else OLD
             cell = f"<q-td {old}>{{{{ props.row['{name}_text'] }}}}</q-td>"

@@ -28,7 +28,7 @@ from .jobs import Jobs
 from .pages import PAGES
 from .project import Project
 from .projects import Servers, remember
-from .session import Exchange, Page, problem_parts
+from .session import PICTURES, Exchange, Page, problem_parts
 from .uploads import MOST_BYTES, received
 
 PORT = 8642
@@ -110,6 +110,15 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
             return Response(status_code=410)
         text, media = exchange.content[key]
         return Response(text, media_type=media, headers={"cache-control": "no-store"})
+
+    @application.get(PICTURES + "{kind}/{name}")
+    async def picture(kind: str, name: str) -> Response:
+        case = (
+            project.path(name) if kind == "variant" else project.result_folder(name) / "case.toml"
+        )
+        svg = await jobs.live.ask("underfoot.app.work_table:picture", str(case))
+        headers = {"cache-control": "no-cache"}
+        return Response(svg, media_type="image/svg+xml", headers=headers)
 
     @application.post("/api/ask/{key}")
     async def ask(key: str, request: Request) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from inspect import isawaitable
 from typing import Any
-from urllib.parse import urlencode
+from urllib.parse import quote, urlencode
 
 from nicegui import ui
 
@@ -21,6 +21,8 @@ from .projects import Servers
 from .text import Text
 
 Handler = Callable[[dict[str, Any]], Awaitable[Any]]
+PICTURES = "/api/picture/"
+"""Where the small pictures of soles are."""
 LOOK = 1.0
 """s between two looks at what other pages and programs did."""
 MOST_KEPT = 64
@@ -151,6 +153,18 @@ class Session:
     def keep(self, text: str, media: str = "text/html; charset=utf-8") -> str:
         """Keep a text for a script of the page and return the address to fetch it from."""
         return self.exchange.keep(text, media)
+
+    def picture(self, name: str, kind: str = "variant") -> dict[str, str]:
+        """Return source and words of the small picture of the sole of a variant or a "result".
+
+        The source is another one when the case has changed.
+        """
+        case = self.project.path(name)
+        if kind == "result":
+            case = self.project.result_folder(name) / "case.toml"
+        changed = case.stat().st_mtime_ns if case.exists() else 0
+        source = f"{PICTURES}{kind}/{quote(name)}?{changed}"
+        return {"src": source, "alt": self.text("sole.picture", name=name)}
 
     def answers(self, handler: Handler) -> str:
         """Return an address whose questions ``handler`` answers while the page is open.

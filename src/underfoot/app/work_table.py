@@ -15,6 +15,7 @@ from underfoot.core import Progress, SourcedValue
 from underfoot.core.errors import UnderfootError, error_text
 from underfoot.core.presentation import value_text
 from underfoot.questions.comparison import differences, interval_95, with_short_names
+from underfoot.report.thumbnail import thumbnail
 from underfoot.trials.pages.report import csv_text, write_spreadsheet
 from underfoot.trials.study.tables import Table
 
@@ -87,6 +88,14 @@ def written(entries: Entries, title: str, kind: str, *, progress: Progress) -> s
     else:
         write_spreadsheet([table], NOTES, file)
     return str(file)
+
+
+def picture(case: str, *, progress: Progress) -> str:
+    """Return the small picture (SVG) of a case's sole; an empty one where there is no sole."""
+    try:
+        return thumbnail(Case.load(case))
+    except UnderfootError:  # what is wrong with it stands beside the picture
+        return '<svg xmlns="http://www.w3.org/2000/svg" width="1" height="1"/>'
 
 
 def _row(name: str, inputs: _Inputs, outcome: _Outcome | None, paths: list[str]) -> dict[str, Any]:

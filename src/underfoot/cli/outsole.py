@@ -92,7 +92,12 @@ def inspect(
         further=lambda inspection, folder: {case: write_text(case_text(inspection, folder))},
     )
     if out is not None and not json:
-        print(f"Next: underfoot run {quote(str(out / case))}")
+        # each inspection has a folder of its own, and so has the run of its case: soles in two
+        # folders may have one name
+        inside = not out.is_absolute() and ".." not in out.parts
+        results = Path("out") / out if inside else out / "run"
+        into = "" if results == Path("out") / file.stem else f" --out {quote(str(results))}"
+        print(f"Next: underfoot run {quote(str(out / case))}{into}")
 
 
 outsole_app.command()(guarded(inspect))

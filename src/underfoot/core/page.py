@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .html import environment
@@ -30,8 +30,9 @@ class Picture:
 class Section:
     """A part of a page under a title: ready HTML, pictures, a table or a list.
 
-    ``folded`` hides all of it behind its title until it is asked for; ``stage`` sets the first part
-    of a page beside its headline.
+    ``folded`` hides all of it behind its title until it is asked for. A page shows its first
+    section and folds the others; ``stage`` sets that beside the headline, and ``first`` keeps
+    another one in sight below the headline.
     """
 
     title: str
@@ -43,6 +44,7 @@ class Section:
     text: str = ""
     folded: bool = False
     stage: bool = False
+    first: bool = False
 
 
 def page(
@@ -52,7 +54,15 @@ def page(
     script: str = "",
     verdict: tuple[str, str] = ("", ""),
 ) -> str:
-    """Return the page of an object: verdict, headline and cautions, then ``sections``."""
+    """Return the page of an object: verdict, headline and cautions, then ``sections``.
+
+    What answers stands on one screen; all that follows is folded, and unfolded on paper.
+    """
+    stage, *rest = sections if sections and sections[0].stage else (None, *sections)
+    said = [section for section in rest if section.first]
+    open_one = 0 if stage or said else 1
+    rest = [section for section in rest if not section.first]
+    folded = [replace(section, folded=bool(section.title)) for section in rest[open_one:]]
     return (
         environment()
         .get_template("page.html")
@@ -62,7 +72,9 @@ def page(
             cautions=shown.cautions(),
             script=script,
             verdict=verdict,
-            **_content(sections),
+            stage=stage,
+            said=said,
+            **_content([*rest[:open_one], *folded]),
         )
     )
 

@@ -99,9 +99,9 @@ class WearSeries(Presentable):
     ``limit`` is the fluid load (N) that counts as worn out; ``crossings`` has, for the load under
     the sole ("fluid_load") and as the floor sensors read it ("fluid_load_sensor"), the wear at
     which it is exceeded. ``untreaded`` is the last state without any tread; None where the sole
-    comes from a file. ``soles`` are the bottoms of the states in their own frame, ``maps`` the
-    pressures (Pa) on their cells by name, those of the case's own position of the tread.
-    ``walker`` turns the volume lost into a distance.
+    comes from a file. ``soles`` are the bottoms of the states in their own frame, the last that of
+    ``untreaded``, ``maps`` the pressures (Pa) on their cells by name, those of the case's own
+    position of the tread. ``walker`` turns the volume lost into a distance.
     """
 
     kind: ClassVar[str] = "wear"
@@ -302,7 +302,7 @@ class WearSeries(Presentable):
 
     def fields(self) -> Fields:
         """Return soles and pressures of all states on (state, x, y) in their own frame, SI."""
-        axes, first = ("state", "x", "y"), self.soles[0]
+        axes, first, count = ("state", "x", "y"), self.soles[0], len(self.points)
         shapes = {
             "height": ("m", "height of the sole over its plane"),
             "land": ("1", "can touch the floor"),
@@ -311,13 +311,13 @@ class WearSeries(Presentable):
         variables: dict[str, tuple[Any, ...]] = {
             name: (
                 axes,
-                np.stack([getattr(sole, name) for sole in self.soles]),
+                np.stack([getattr(sole, name) for sole in self.soles[:count]]),
                 {"units": unit, "long_name": title},
             )
             for name, (unit, title) in shapes.items()
         }
         for name in self.maps[0] if self.maps else ():
-            values = np.stack([each[name] for each in self.maps]).astype(np.float32)
+            values = np.stack([each[name] for each in self.maps[:count]]).astype(np.float32)
             variables[name] = (axes, values, {"units": "Pa", "long_name": MAPS[name]})
         lost = {"units": "m", "long_name": "thickness lost at the most worn place"}
         return labelled(
@@ -447,7 +447,8 @@ def wear_series(
         varied = tuple((each.path, low, high) for each, low, high in pairs)
         points.append(WearPoint(_measures(worn), middle, varied))
     between = measures_between(case, cases, mode, deepest)
-    soles = tuple(map(bottom_surface, cases))
+    soles = tuple(map(bottom_surface, [*cases, *bare]))
+    shown = [*(point.outcome for point in points), *results[len(plan) :]]
     angle = case.motion.shoe_angle
     return WearSeries(
         name=case.name,
@@ -464,8 +465,7 @@ def wear_series(
         walker=Walker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
         soles=soles,
         maps=tuple(
-            maps_on_sole(sole, point.outcome, angle)
-            for sole, point in zip(soles, points, strict=True)
+            maps_on_sole(sole, outcome, angle) for sole, outcome in zip(soles, shown, strict=True)
         ),
     )
 

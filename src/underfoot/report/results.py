@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -84,9 +85,9 @@ def _result_sections(
     parts += [
         *remark_sections(result),
         Section("Models", made, table=models),
-        Section("Sources", items=provenance.citations, folded=True),
-        Section("Corrections to printed values", items=provenance.errata, folded=True),
-        Section("Complete case (TOML)", text=result.case_text, folded=True),
+        Section("Sources", items=provenance.citations),
+        Section("Corrections to printed values", items=provenance.errata),
+        Section("Complete case (TOML)", text=result.case_text),
     ]
     filled = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text]
     return filled, viewer_script()
@@ -136,8 +137,8 @@ def _comparison_sections(
         note, titles = grid_note(datasets), {q.name: q.title for q in quantities(datasets)}
         scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
         parts = [
-            ranking[0],
-            Section("Under the soles", html=_viewer(results)),
+            Section("Under the soles", html=_viewer(results), stage=True),
+            replace(ranking[0], first=True),
             *ranking[1:],
             Section("Maps and differences", scale),
             *(

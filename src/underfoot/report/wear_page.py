@@ -42,7 +42,7 @@ def _wear_sections(series: WearSeries, pictures: dict[str, bytes]) -> tuple[Sequ
     parts = [*drawn, *table_sections(series), *remark_sections(series)]
     if not series.soles:
         return parts, ""
-    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)))
+    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)), stage=True)
     return [sole, *parts], viewer_script()
 
 
@@ -68,7 +68,7 @@ def wear_scene(series: WearSeries) -> dict[str, Any]:
         frames = np.stack([each[pressure.name][thinned] for each in series.maps]) / pressure.factor
         coloured[pressure] = np.where(frames > NONE, frames, np.nan)
     surfaces = [surface_mesh(each.x, each.y, each.height, each.land) for each in series.soles]
-    labels = [_state(series, number) for number in range(len(series.points))]
+    labels = [_state(series, number) for number in range(len(series.soles))]
     shown = pane(
         series.name,
         shape,
@@ -89,8 +89,11 @@ def _wear_files(series: WearSeries) -> dict[str, Writer]:
 
 def _state(series: WearSeries, number: int) -> str:
     """Return what a state is called on the slider."""
-    point = series.points[number]
-    cof = point.outcome.number("cof")
+    bare = number == len(series.points)
+    outcome = series.untreaded if bare else series.points[number].outcome
+    cof = math.nan if outcome is None else outcome.number("cof")
     friction = "no result" if math.isnan(cof) else f"COF {cof:.3f}"
-    lost = f"{point.measures.removed_depth * 1e3:.2g} mm lost" if number else "new"
-    return f"{lost}, {friction}"
+    if bare:
+        return f"no tread at all, {friction}"
+    lost = series.points[number].measures.removed_depth
+    return f"{lost * 1e3:.3g} mm lost, {friction}" if number else f"new, {friction}"

@@ -14,7 +14,7 @@ from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
 from underfoot.core.presentation import is_wide, percent, probability_text
 
-from ..components import SoleView, scale, sentences, table, task_line, title
+from ..components import SoleView, folded, scale, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
@@ -142,7 +142,8 @@ class _Answer:
             if not current:
                 ui.label(self.text("answer.changed")).classes("caution")
             self.verdict = ui.element("div").classes("verdict-place").props('aria-live="polite"')
-            self.summary = ui.element("div").props('aria-live="polite"')
+            self.summary = ui.element("div").classes("number-place").props('aria-live="polite"')
+            self.reasons = ui.element("div")
             beside = self.session.query.get("beside", "")
             if beside in self.session.project.variants():
                 label = self.text("answer.beside", name=beside)
@@ -154,7 +155,7 @@ class _Answer:
                 if self.case.value("shoe.tread.depth") or self.case.shoe.outsole is not None:
                     wear.build(self.session, self.name)
         if not current:  # what was computed is of other inputs than the file's
-            for part in (self.verdict, self.summary, self.view, self.tables):
+            for part in (self.verdict, self.summary, self.reasons, self.view, self.tables):
                 part.classes("stale")
         with self.place:
             ui.timer(0, partial(self._answer, current), once=True)
@@ -192,14 +193,15 @@ class _Answer:
                 if answer["interval"]:
                     low, high = (f"{end:.3f}" for end in answer["interval"])
                     ui.label(self.text("answer.interval", low=low, high=high))
-                self.beside = ui.element("div")
-                self._beside(answer)
-                ui.label(answer["limit"]).classes("soft")
             cautions = list(answer["cautions"])
             if not (self.folder / "report.html").exists():
                 cautions.insert(0, self.text("answer.no_report"))
             for caution in cautions:
                 ui.label(caution).classes("caution")
+        with self.reasons, ui.element("div").classes("answer-card"):
+            self.beside = ui.element("div")
+            self._beside(answer)
+            ui.label(answer["limit"]).classes("soft")
 
     def _beside(self, answer: dict[str, Any]) -> None:
         """Show the COF on a scale with what walkers need and a shoe that the person knows."""
@@ -229,12 +231,15 @@ class _Answer:
                 ui.link(self.text("answer.how_sure"), pair)
 
     def _tables(self, answer: dict[str, Any], current: bool) -> None:
-        sentences(answer["headline"])
+        with folded(self.text("answer.in_words")):
+            sentences(answer["headline"])
         cut = (self.text("answer.cut"), self._cut) if current and self.case.shoe.tread else None
         for shown in answer["tables"]:
-            table(shown, cut, answer["advised"] if shown["shows"] == "lug" else ())
+            with folded(shown["title"]):
+                untitled = {**shown, "title": ""}
+                table(untitled, cut, answer["advised"] if shown["shows"] == "lug" else ())
         for heading, lines in answer["remarks"].items():
-            with ui.expansion(heading).classes("plain"):
+            with folded(heading):
                 sentences(lines, "soft")
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")

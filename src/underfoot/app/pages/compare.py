@@ -12,13 +12,17 @@ from underfoot.core import InputError
 from ..components import SoleView, sentences, table, task_line, title
 from ..jobs import DONE, Task
 from ..result_table import ResultTable
-from ..session import Session
+from ..session import PICTURES, Session
 from .answer import begin_run
 
 ROUTE = "/compare"
 WORK, EQUAL = "underfoot.app.work_studies", "underfoot.app.work_sole:equal_land"
 MOST = 12
 SEPARATED = "underfoot.app.work:separated"
+OPTION = f"""<q-item v-bind="props.itemProps"><q-item-section side>
+<img class="sole-picture" :src="'{PICTURES}result/' + encodeURIComponent(props.opt.label)"
+:alt="'ALT' + props.opt.label"></q-item-section>
+<q-item-section translate="no">{{{{ props.opt.label }}}}</q-item-section></q-item>"""
 
 
 def build(session: Session) -> None:
@@ -40,6 +44,9 @@ class _Compare:
             self.choice = ui.select(names, multiple=True, value=asked or names[:2])
             self.choice.props(f'dense outlined use-chips label="{self.text("compare.choose")}"')
             self.choice.props(f"max-values={MOST} translate=no").classes("compare-choice")
+            self.choice.add_slot(
+                "option", OPTION.replace("ALT", self.text("sole.picture", name=""))
+            )
             self.choice.on_value_change(self.show)
             for key, icon, action in (
                 ("glb", "view_in_ar", self._glb),

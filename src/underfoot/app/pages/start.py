@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from ..components import title
+from ..components import sole_picture, title
 from ..session import Session, address
 
 MOST_RECENT = 8
@@ -68,6 +68,7 @@ def _recent(session: Session) -> None:
             summary = project.summary(name)
             with ui.element("div").classes("recent-row"):
                 ui.link(name, address("/design", variant=name)).props('translate="no"')
+                sole_picture(session, name)
                 if summary is None or summary.cof is None:
                     ui.label(text("start.not_computed")).classes("soft")
                     continue
