@@ -6,6 +6,10 @@ READY := $(VENV)/.ready
 # Quick tests: two workers, each takes over from the other when its own are done. Slow ones: a file
 # stays with one worker, since its tests share long runs; three, since those of pages often wait.
 PYTEST := $(BIN)/pytest --dist
+# A page may fail beside two others for want of a processor: what failed, printed in full, is run
+# once more alone; what fails again fails.
+SLOW := "slow and not study"
+AGAIN := --last-failed --last-failed-no-failures none
 # The tests start hundreds of processes, which begin a quarter sooner from bytecode.
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
@@ -44,7 +48,7 @@ neighbours:  ## what other programs do with the rows of docs/reference/other_pro
 	out/neighbours/bin/python benchmarks/neighbours/rows.py docs/reference/other_programs.md $(WRITE)
 
 test-slow: $(READY)  ## the slow tests
-	$(PYTEST) loadfile -n 3 -m slow
+	$(PYTEST) loadfile -n 3 -m $(SLOW) || $(BIN)/pytest $(AGAIN) -m $(SLOW)
 
 test-studies: $(READY)  ## tests of a minute and more: the corpus, treads that none can tell apart
 	$(PYTEST) loadfile -n 2 -m study

@@ -177,8 +177,13 @@ def test_cancel_ends_the_changes() -> None:
         risk_assessment(Case.from_text(TEXT), progress=stop)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("shoe", ["work_shoe_full_tread", "work_shoe_untreaded"])
+@pytest.mark.parametrize(
+    "shoe",
+    [
+        pytest.param("work_shoe_full_tread", marks=pytest.mark.slow),
+        pytest.param("work_shoe_untreaded", marks=pytest.mark.study),
+    ],
+)
 def test_changes_are_those_of_whole_runs(shoe) -> None:
     case = Case.load(f"examples/{shoe}_glycerol.toml")
     if "untreaded" in shoe:  # whose film needs cells along the sliding: dear at every angle

@@ -1,7 +1,8 @@
 """Pages that answer one question agree: how often a person slips here, and by which friction.
 
-Twenty cases go through ``run``, ``risk``, ``slip``, ``choose`` and ``test`` on the coarse grid. The
-walkers of ``slip`` are left out: their share is told as that of another model.
+Twenty cases go through ``run``, ``risk``, ``slip``, ``choose`` and ``test`` on the coarse grid,
+five of them, with each place, on every change. The walkers of ``slip`` are left out: their share is
+told as that of another model.
 """
 
 from __future__ import annotations
@@ -31,7 +32,13 @@ PLACES = (
     ("none", "vinyl_g4", {"slope": "6 deg"}),
 )
 PEOPLE = ({}, {"rcof_mean": 0.26, "rcof_sd": 0.05})
-CASES = [(sole, *place, people) for sole in SOLES for place in PLACES for people in PEOPLE]
+CASES = [
+    pytest.param(
+        SOLES[sole], *place, PEOPLE[people],
+        marks=pytest.mark.slow if (sole, people) == (at % 2, at // 2 % 2) else pytest.mark.study,
+    )
+    for sole in (0, 1) for at, place in enumerate(PLACES) for people in (0, 1)
+]  # fmt: skip
 CHANCE, COF = 0.04, 0.03
 """Difference of two pages by their numbers of draws and by a continued contact: of a probability,
 and of ln COF; fixed before the first run."""
@@ -54,7 +61,6 @@ def _own_cache(tmp_path_factory, monkeypatch):
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path_factory.getbasetemp() / "one_question"))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("sole", "fluid", "floor", "slope", "people"), CASES)
 def test_pages_agree_on_how_often_a_person_slips(sole, fluid, floor, slope, people, monkeypatch):
     case = made(sole, fluid, floor, slope, people)

@@ -28,7 +28,7 @@ def small(name, folder, spacing, **smaller):
     return Study(read_plan(text, STUDIES), folder)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_which_measurement_is_worth_making(tmp_path):
     result = small("which_measurement", tmp_path, "2.5 mm", budget=32).run(workers=2)
     found = effects(result, result.plan.goals[0])
@@ -47,7 +47,7 @@ def test_grooves_across_and_along(tmp_path):
     assert lands == pytest.approx([0.6] * 4, abs=0.06)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_clog_for_oil_and_detergent_over_its_wear(tmp_path):
     result = small("kitchen_clog", tmp_path, "1.1 mm", budget=16).run(workers=2)
     assert len(result.designs) == 4
@@ -61,7 +61,7 @@ def test_a_clog_for_oil_and_detergent_over_its_wear(tmp_path):
     assert (order[:-1, 1] >= order[1:, 1]).all()
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_own_readings_narrow_the_parameters(tmp_path):
     found = posterior(small("own_readings", tmp_path, "2 mm", budget=48), workers=2)
     assert found.usable

@@ -97,7 +97,11 @@ def answered(question, folder, threads):
 
 @pytest.mark.parametrize(
     "question",
-    ["run", *(pytest.param(name, marks=pytest.mark.slow) for name in QUESTIONS if name != "run")],
+    [
+        "run",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("risk", "study", "worker")),
+        *(pytest.param(name, marks=pytest.mark.study) for name in ("slip", "validate")),
+    ],
 )
 def test_number_of_threads_changes_neither_numbers_nor_cpu(question, tmp_path):
     one, cpu = answered(question, tmp_path / "1", 1)

@@ -1,7 +1,7 @@
 """Every page by keyboard alone: each control is reached, focus is seen, nothing traps."""
 
 import pytest
-from web_app import drawn, page_of, served
+from web_app import coarsened, drawn, page_of, served
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
@@ -90,8 +90,7 @@ def test_the_first_answer_and_every_page_without_a_mouse(tmp_path):
             page.keyboard.press("ArrowRight")
             page.keyboard.press("Enter")
             page.wait_for_timeout(600)
-        page.reload()
-        drawn(page)
+        coarsened(page, app)
         slider = page.locator("input[name='shoe.tread.lug_width']")
         before = slider.input_value()
         slider.focus()

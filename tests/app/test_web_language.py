@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from web_app import drawn, page_of, served
+from web_app import coarsened, drawn, page_of, served
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 
@@ -208,6 +208,7 @@ def test_inches_and_pounds_on_every_page(app):
         page.get_by_role("button", name="Begin with a work shoe").click()
         page.wait_for_url("**/design?variant=*")
         drawn(page)
+        coarsened(page, app)
         assert page.locator("output[for^=slider]").first.inner_text() == "0.197 in"
         slider = page.locator("input[name='shoe.tread.lug_width']")
         slider.focus()

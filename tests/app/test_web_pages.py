@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from web_app import PATHS, Cost, begin, drawn, page_of, served
+from web_app import PATHS, Cost, begin, coarsened, drawn, page_of, served
 
 from underfoot.case import Case
 from underfoot.shoe.files import FileSettings, outsole_from_file
@@ -113,7 +113,7 @@ def test_the_sole_follows_the_sliders_and_undo_brings_it_back(app):
 def test_the_answer_then_previews_then_the_full_run(app):
     """Field switch below 300 ms, slider below 0.5 s, in software rendering."""
     with page_of(app.link) as page:
-        begin(page, app.base)
+        begin(page, app.base, coarse=app)
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_selector(".big")
         drawn(page)
@@ -171,7 +171,7 @@ def test_the_answer_then_previews_then_the_full_run(app):
 
 def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
     with page_of(app.link) as page:
-        begin(page, app.base)
+        begin(page, app.base, coarse=app)
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_selector(".verdict")
         drawn(page)
@@ -214,7 +214,7 @@ def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
 
 def test_a_shoe_that_one_knows_stands_beside_the_answer(app):
     with page_of(app.link) as page:
-        begin(page, app.base)
+        begin(page, app.base, coarse=app)
         page.get_by_role("button", name="Compute friction").click()
         page.get_by_role("button", name="Make this variant").first.click(timeout=480_000)
         page.wait_for_selector(".scale", timeout=240_000)
@@ -238,6 +238,7 @@ def test_from_the_first_page_to_a_compared_pair_in_under_ten_clicks(app):
             place.click(timeout=480_000)
             if number == 1:
                 page.wait_for_url("**/design?variant=*")
+                coarsened(page, app)
         page.wait_for_url("**/compare?**")
         drawn(page)
         assert page.locator(".stage").count() == 2
@@ -378,7 +379,7 @@ def test_without_webgl_words_and_numbers_stay(app):
 
 def test_kill_of_the_server_loses_nothing_that_finished(app, tmp_path):
     with page_of(app.link) as page:
-        begin(page, app.base)
+        begin(page, app.base, coarse=app)
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_selector(".big")
         first = next((app.folder / "results").glob("*/result.json")).read_text()

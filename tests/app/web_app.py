@@ -139,6 +139,10 @@ def drawn(page):
     page.evaluate("new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))")
 
 
+<<<<<<< HEAD
+def begin(page, base, *, coarse=None):
+    """Open the design page with the usual work shoe, drawn; ``coarse``: see ``coarsened``."""
+=======
 def unfold(page):
     """Open all that is folded on a page, once there is something."""
     page.wait_for_selector("details.section", state="attached")
@@ -147,9 +151,23 @@ def unfold(page):
 
 def begin(page, base):
     """Open the design page with the usual work shoe, drawn."""
+>>>>>>> main
     page.goto(base + "design")
     page.get_by_role("button", name="Begin with a work shoe").click()
     page.wait_for_url("**/design?variant=*")
+    drawn(page)
+    if coarse is not None:
+        coarsened(page, coarse)
+
+
+def coarsened(page, app):
+    """Put every variant of an app on a grid that runs in a second, and draw the page anew."""
+    from underfoot.app.project import Project
+
+    project = Project(app.folder)
+    for name in project.variants():
+        project.change(name, COARSE)
+    page.reload()
     drawn(page)
 
 

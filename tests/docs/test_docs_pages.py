@@ -15,11 +15,21 @@ from conftest import cpu_seconds
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 PHYSICS = [p for p in sorted((ROOT / "docs/physics").glob("*.md")) if p.stem != "index"]
 MINUTES = {"one": 1, "two": 2, "three": 3, "four": 4}
+LONG_TUTORIALS = {"designer", "ergonomist", "laboratory"}
+"""Minutes each; `make test-studies` runs them. The quick tests run the same commands."""
 LONG_PAGES = {"lug_edges", "block", "coupled_contact"}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(
+            page, id=page.stem,
+            marks=pytest.mark.study if page.stem in LONG_TUTORIALS else pytest.mark.slow,
+        )
+        for page in TUTORIALS
+    ],
+)  # fmt: skip
 def test_a_tutorial_prints_what_it_says_in_the_time_it_says(page, tmp_path):
     told = re.search(r"take\s+at most (\w+) minutes? of one processor", page.read_text())
     assert told
@@ -41,8 +51,14 @@ def test_a_page_of_physics_computes_its_numbers_and_figures(page, tmp_path):
     assert numbers_compared(page, tmp_path) >= 3
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["trials_analysis", "design_studies", "risk"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("trials_analysis", marks=pytest.mark.slow),
+        pytest.param("design_studies", marks=pytest.mark.slow),
+        pytest.param("risk", marks=pytest.mark.study),
+    ],
+)
 def test_a_guide_prints_what_it_says(name, tmp_path):
     assert numbers_compared(ROOT / "docs" / "guide" / f"{name}.md", tmp_path) >= 1
 

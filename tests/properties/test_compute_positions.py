@@ -647,7 +647,7 @@ def test_a_sole_whose_bars_float_converges_at_every_place(tmp_path):
     assert max(rejected) < 8
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_a_tread_drawn_at_other_places_in_a_file_has_nearly_the_same_mean(tmp_path):
     """As drawn COF differs by 23 % and film load by a factor of four (docs, coupled contact)."""
     from underfoot.shoe import Facet, Heel

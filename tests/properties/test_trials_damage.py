@@ -29,7 +29,7 @@ FILES = (
     "simulated/slip.c3d",
     "simulated/walk.csv",
 )
-VARIANTS = 150
+VARIANTS = 75
 TOLERANCE = 0.015
 
 

@@ -8,7 +8,7 @@ import pytest
 from underfoot.studies.lug_states import states_scores
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_two_states_foresee_the_treads_of_other_sources_better_than_one():
     scores = {one.stress: one for one in states_scores((0.0, 0.05, 0.2, 1.0))}
     one, two = scores[0.0], scores[0.2]

@@ -22,7 +22,10 @@ SHOES = [
 READINGS = Catalogue.load().entry("published", "slip_tester_g4")
 SMALL = READINGS.sourced("fluid_load_all_others_below", "N").value
 
-pytestmark = pytest.mark.slow
+EVERY = [  # a tread that is half worn is run by `make test-studies`
+    pytest.param(shoe, marks=pytest.mark.study if "half" in shoe else pytest.mark.slow)
+    for shoe in SHOES
+]
 
 
 @cache
@@ -35,7 +38,7 @@ def result(shoe: str, fluid: str) -> Result:
 
 
 @pytest.mark.parametrize("fluid", ["glycerol", "detergent"])
-@pytest.mark.parametrize("shoe", SHOES)
+@pytest.mark.parametrize("shoe", EVERY)
 def test_every_condition_converges_and_carries_the_load(shoe, fluid):
     found = result(shoe, fluid)
     assert found.status.usable
@@ -51,32 +54,32 @@ TWO_READINGS = 0.30
 """Two standard deviations of a reading of the tester (15 %, assumed: none is printed)."""
 
 
+@pytest.mark.slow
 def test_the_untreaded_work_shoe_s_load_in_glycerol_is_within_the_reading_error():
     printed = READINGS.sourced("fluid_load_work_shoe_untreaded_glycerol", "N").value
     read = result("work_shoe_untreaded", "glycerol").value("fluid_load_sensor")
     assert read == pytest.approx(printed, rel=TWO_READINGS)
 
 
-@pytest.mark.parametrize(
-    ("printed", "read"),
-    [
-        ("fluid_load_athletic_shoe_untreaded_glycerol", "fluid_load_sensor"),
-        ("peak_pressure_athletic_shoe_untreaded_glycerol", "peak_fluid_pressure_sensor"),
-    ],
-)
-def test_the_pocket_of_touch_down_gave_the_athletic_shoe_s_reading(printed, read):
+@pytest.mark.slow
+def test_the_pocket_of_touch_down_gave_the_athletic_shoe_s_reading():
     """Half a degree above the flush angle it is met at 0.12 s, but not by steady sliding."""
     case = Case.load(EXAMPLES / "athletic_shoe_untreaded_glycerol.toml")
     tipped = case.replace({"motion.shoe_angle": "10.5 deg", "numerics.tread_positions": 1})
     steady, early = (
         run(tipped.replace({"motion.duration": end}), quick=True) for end in (None, "0.12 s")
     )
-    reading = READINGS.sourced(printed, {"fluid_load_sensor": "N"}.get(read, "Pa")).value
-    assert steady.value(read) < 1.02 * reading
-    assert reading < early.value(read)
+    for printed, read, unit in (
+        ("fluid_load", "fluid_load_sensor", "N"),
+        ("peak_pressure", "peak_fluid_pressure_sensor", "Pa"),
+    ):
+        reading = READINGS.sourced(f"{printed}_athletic_shoe_untreaded_glycerol", unit).value
+        assert steady.value(read) < 1.02 * reading
+        assert reading < early.value(read)
     assert "later_cof" in early.scalars
 
 
+@pytest.mark.slow
 def test_an_untreaded_shoe_reads_next_to_nothing_in_detergent():
     """The athletic one. The work shoe does not: 12 to 15 N, a miss that the docs tell."""
     assert result("athletic_shoe_untreaded", "detergent").value("fluid_load_sensor") < SMALL
@@ -84,9 +87,7 @@ def test_an_untreaded_shoe_reads_next_to_nothing_in_detergent():
 
 
 @pytest.mark.parametrize("fluid", ["glycerol", "detergent"])
-@pytest.mark.parametrize(
-    "shoe", [shoe for shoe in SHOES if "tread_" not in shoe and "un" not in shoe]
-)
+@pytest.mark.parametrize("shoe", [one for one in EVERY if not one.values[0].endswith("untreaded")])
 def test_treaded_shoes_read_next_to_nothing(shoe, fluid):
     """A pocket of 10 mm is wider than a lug of 5 mm: it always lies over a channel, which holds no
     pressure. A fifth of the printed bound: the sensor must not begin to see the film on the lugs.
@@ -94,6 +95,7 @@ def test_treaded_shoes_read_next_to_nothing(shoe, fluid):
     assert result(shoe, fluid).value("fluid_load_sensor") < SMALL / 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["work", "athletic"])
 def test_viscosity_matters_only_without_tread(kind):
     shoe = f"{kind}_shoe_untreaded"
@@ -103,6 +105,7 @@ def test_viscosity_matters_only_without_tread(kind):
     assert thick > 5 * thin
 
 
+@pytest.mark.slow
 def test_the_peak_lies_between_the_printed_place_and_the_front_end_of_the_facet():
     """G.4.3: about 20 mm anterior of the back of the heel. The film under the ground facet rises to
     the facet's front end, which is assumed at 45 mm; the heel is the same on both sides.

@@ -198,7 +198,7 @@ def test_options_of_other_studies_are_refused():
     assert "--explicit" in done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_quick_study_by_command(tmp_path, monkeypatch):
     """One coarse grid: values of every condition, and no verdict that a grid enters."""
     of_the_study = g4.Condition.case.func

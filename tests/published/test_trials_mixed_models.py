@@ -116,7 +116,7 @@ def test_p_is_the_same_in_another_unit(factor):
     assert [test.p for test in one] == pytest.approx([test.p for test in other], rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_one_in_twenty_is_found_where_there_is_nothing():
     """Of 600 studies each: within four standard errors.
 

@@ -196,7 +196,7 @@ def test_memory_is_that_of_sixteen_fields(monkeypatch):
     """Of arrays: pages that a transform library or the system keeps beside them are not ours."""
     monkeypatch.syspath_prepend(Path(__file__).parents[2])
     benchmark = importlib.import_module("benchmarks.rough_contact")
-    height = benchmark.self_affine(2048)
+    height = benchmark.self_affine(1024)
     for pressure, speed in ((0.3, 0.0), (1.0, 1.0)):
         tracemalloc.start()
         benchmark.ours(height, pressure, speed, "auto")

@@ -122,6 +122,11 @@ def sole_map(
     )
 
 
+def drawn_map(case: Case, spacing: float) -> SoleMap:
+    """Return the tilted sole on square cells of ``spacing`` (m), to be drawn: no film is solved."""
+    return sole_map(case.replace("numerics.cells_along", 1), spacing)
+
+
 def _with_cells(case: Case, sole: SoleMap, fine: Callable[[int], SoleMap]) -> SoleMap:
     """Return the sole with the cells along the sliding that the case asks for."""
     columns = cells_along(case, sole)

@@ -48,10 +48,10 @@ class DesignedSole:
         Raises:
             InputError, DataError: The sole of the case can't be made: its file is not there.
         """
-        from underfoot.compute.sole import sole_map
+        from underfoot.compute.sole import drawn_map
 
         side = spacing(dataset)
-        return cls(dataset, sole_map(case, side / math.ceil(side / FINEST)))
+        return cls(dataset, drawn_map(case, side / math.ceil(side / FINEST)))
 
     @cached_property
     def drawn(self) -> DrawnSole:

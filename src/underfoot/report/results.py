@@ -12,8 +12,8 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.compute.result import Result
-from underfoot.compute.sole import sole_map, sole_shape
-from underfoot.core import UnderfootError, content_hash, silent
+from underfoot.compute.sole import drawn_map, sole_shape
+from underfoot.core import UnderfootError, content_hash
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.html import embedded, new_figure
 from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
@@ -179,7 +179,7 @@ def designed_surface(case: Case, spacing: float = DESIGNED) -> SurfaceMesh:
     shape = case.shoe.outsole or sole_shape(case)
     key = content_hash(shape, case.shoe.wear, case.motion.shoe_angle, spacing)
     if key not in _surfaces:
-        sole = sole_map(case, spacing, silent)
+        sole = drawn_map(case, spacing)
         sole = sole.whole or sole
         height = np.where(sole.inside, sole.clearance, np.nan)
         while len(_surfaces) >= SURFACES_KEPT:
@@ -190,7 +190,7 @@ def designed_surface(case: Case, spacing: float = DESIGNED) -> SurfaceMesh:
 
 def sole_fields(case: Case, spacing: float | None = None) -> Fields:
     """Return the height of a case's sole above the floor, on the coarse grid or one of its own."""
-    return map_fields(sole_map(case, spacing or case.numerics.quick_grid_spacing, silent))
+    return map_fields(drawn_map(case, spacing or case.numerics.quick_grid_spacing))
 
 
 def map_fields(sole: SoleMap) -> Fields:
