@@ -2,10 +2,12 @@
 
 import hashlib
 import io
+import json
 import struct
 import zipfile
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -518,3 +520,42 @@ def test_an_array_of_numpy_needs_spacing_and_unit(tmp_path, shape):
     path.write_bytes(path.read_bytes()[:90])
     with pytest.raises(DataError, match="damaged"):
         read_surface(path, spacing=4e-6, height_unit="um")
+
+
+def dump(path, fields, size):
+    """As tamaas 2.9.0 writes a model: NumpyDumper (attributes as JSON text) and H5Dumper."""
+    attributes = {"model_type": "model_type.basic_2d", "program": "Tamaas 2.9.0"}
+    if path.suffix == ".npz":
+        text = json.dumps(attributes | {"system_size": size})
+        np.savez(path, attrs=np.asarray(text), **fields)
+        return
+    with h5py.File(path, "w") as file:
+        file.attrs.update(attributes | {"system_size": np.array(size)})
+        for name, values in fields.items():
+            file[name] = values
+
+
+@pytest.mark.parametrize("ending", ["npz", "h5"])
+def test_the_surface_of_a_model_that_tamaas_dumped(tmp_path, ending):
+    rng = np.random.default_rng(3)
+    fields = {name: rng.standard_normal((32, 16)) for name in ("gap", "surface", "traction")}
+    path = tmp_path / f"model.{ending}"
+    dump(path, fields, [1.0, 2.0])
+    found = read_surface(path, length_unit="mm", height_unit="um")
+    np.testing.assert_allclose(found.heights, 1e-6 * fields["surface"])
+    assert found.spacings == pytest.approx((1e-3 / 32, 2e-3 / 16))
+    with pytest.raises(DataError, match="without a unit"):
+        read_surface(path, length_unit="mm")
+    with pytest.raises(DataError, match="size without a unit"):
+        read_surface(path, height_unit="mm")
+    assert "--length-unit" in called("surface", str(path), "--height-unit", "mm").stderr
+    del fields["surface"]
+    dump(path, fields, [1.0, 2.0])
+    with pytest.raises(DataError, match="gap, traction"):
+        read_surface(path, length_unit="mm", height_unit="um")
+    dump(path, {"gap": fields["gap"]}, [1.0, 2.0])
+    assert read_surface(path, length_unit="m", height_unit="m").heights.shape == (32, 16)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(DataError, match="damaged"):
+        read_surface(path, length_unit="m", height_unit="m")
