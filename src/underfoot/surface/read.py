@@ -4,7 +4,7 @@ import json
 import re
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,8 @@ _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
 ARRAY = b"\x93NUMPY"
 HDF5 = b"\x89HDF\r\n\x1a\n"
+_AXIS = re.compile(r"(?<![a-z/])([xyz])(?![a-z])")
+_NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?(?![\w.])")
 _HEIGHTS = ("surface", "heights", "topography")
 SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
@@ -209,7 +211,7 @@ def read_profile(
     Raises:
         DataError: Unreadable, units missing, positions uneven, heights missing.
     """
-    data = read_numbers(path)
+    data = _as_named(read_numbers(path), "xz")
     columns = data.rows.shape[1]
     if columns > 2:
         raise DataError(
@@ -262,7 +264,7 @@ def read_map(
     Raises:
         DataError: Unreadable, units missing, no full grid, heights missing.
     """
-    data = read_numbers(path)
+    data = _as_named(read_numbers(path), "xyz")
     units, size = data.units(), _gwyddion_size(data)
     if data.rows.shape[1] == 3 and size is None:
         _refuse_one_for_all(units, 3, length_unit, height_unit, data)
@@ -277,6 +279,13 @@ def read_map(
         )
     else:
         heights = data.rows.T  # a line of the file runs along x
+        axes = None if size is not None else _axes(data)
+        if axes is not None:
+            heights, notes_of = axes[0], ("the first row and column are positions: left out",)
+            data = replace(data, notes=(*data.notes, *notes_of))
+            if spacing is None:
+                to_length = _factor(length_unit, units[:1], data, "length unit")
+                spacing, spacing_y = spacings_of([to_length * step for step in axes[1]])
         if spacing is None and size is not None:
             sides = [side / n for side, n in zip(size[:2], heights.shape, strict=True)]
             spacing, spacing_y = spacings_of(sides)
@@ -305,6 +314,50 @@ def _gwyddion_size(data: TextNumbers) -> tuple[float, float, str] | None:
             width, height = (_length(side, data.where) for side in (first, second))
             return width, height, unit
     return None
+
+
+def _as_named(data: TextNumbers, order: str) -> TextNumbers:
+    """Return columns that the heading calls x, y and z, each once, in this order."""
+    line = data.header[-1] if data.header else ""
+    names = _AXIS.findall(line.casefold())
+    if "".join(names) == order or sorted(names) != sorted(order):
+        return data
+    if data.rows.shape[1] != len(order):
+        return data
+    place = [names.index(name) for name in order]
+    parts = _AXIS.split(line.casefold())[2::2]
+    header = "; ".join(f"{name} {parts[k]}" for name, k in zip(order, place, strict=True))
+    return replace(
+        data,
+        rows=data.rows[:, place],
+        decimals=tuple(data.decimals[k] for k in place),
+        header=(*data.header[:-1], header),
+    )
+
+
+def _axes(data: TextNumbers) -> tuple[np.ndarray, tuple[float, float]] | None:
+    """Return heights (nx, ny) and steps along x and y of a matrix that begins with its positions.
+
+    Those of y are the first column; those of x the first row, or the last line above. None of a
+    matrix of heights alone.
+    """
+    rows = data.rows
+    above = [float(cell) for cell in _NUMBER.findall(data.header[-1])] if data.header else []
+    if len(above) == rows.shape[1] - 1:
+        x, y, heights = np.array(above), rows[:, 0], rows[:, 1:]
+    else:
+        x, y, heights = rows[0, 1:], rows[1:, 0], rows[1:, 1:]
+    if min(heights.shape) < 4 or not (_is_even(x) and _is_even(y)):
+        return None
+    if _is_even(heights[0]) or _is_even(heights[:, 0]):
+        return None  # a plane
+    return heights.T, (abs(float(np.diff(x).mean())), abs(float(np.diff(y).mean())))
+
+
+def _is_even(values: np.ndarray) -> bool:
+    steps = np.diff(values)
+    mean = float(steps.mean())
+    return mean != 0.0 and bool((np.abs(steps - mean) < 1e-3 * abs(mean)).all())
 
 
 def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, tuple[float, float | None]]:
