@@ -112,9 +112,7 @@ def definitions(
 
 def export(
     file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
-    out: Annotated[
-        Path, optional("File to be written: .c3d, .trc (markers), .mot or .sto (forces).")
-    ],
+    out: Annotated[Path, optional("File to write: .c3d, .trc (markers), .mot or .sto (forces).")],
     companion: Annotated[
         Path | None, optional("Second file of the same recording.", "--with")
     ] = None,
