@@ -1,12 +1,13 @@
 """The corpus of published measurements: what is read, and what is refused."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.studies.sources import KINDS, NUMBERS, corpus, read_source, sampled_numbers
+from underfoot.studies.sources import KINDS, NUMBERS, Span, corpus, read_source, sampled_numbers
 
 GOOD = """
 reference = "Someone 2020"
@@ -73,6 +74,9 @@ def test_a_value_and_an_open_range_are_read_in_si(tmp_path):
     drawn = sampled_numbers(condition, np.linspace(0, 1, 5)[:, None] * np.ones(len(NUMBERS)))
     assert drawn["sole_ra"][[0, 2, 4]] == pytest.approx([2e-6, 4e-6, 8e-6])
     assert np.ptp(drawn["speed"]) == 0
+    longer = replace(condition, numbers={**condition.numbers, "length": Span(6e-3, 6e-3)})
+    again = sampled_numbers(longer, np.full((2, len(NUMBERS)), 0.5))
+    assert again["length"].tolist() == [6e-3, 6e-3]
 
 
 def test_a_fit_over_speed_becomes_readings_at_its_speeds():

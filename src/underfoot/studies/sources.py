@@ -345,11 +345,12 @@ def sampled_numbers(
     """Return the numbers of a condition at ``shares`` (draws, numbers), open ones over their range.
 
     The columns belong to the names of ``NUMBERS`` in their order; values in SI, shape (draws,).
-    ``unknown`` are the ranges of numbers that a condition does not name.
+    A number of another name has one value. ``unknown`` are the ranges of numbers that a condition
+    does not name.
     """
     numbers = {**(unknown or {}), **condition.numbers}
+    columns = dict(zip(NUMBERS, shares.T, strict=True))
     return {
-        key: span.at(shares[:, column]) if span.is_open else np.full(shares.shape[0], span.low)
-        for column, key in enumerate(NUMBERS)
-        if (span := numbers.get(key)) is not None
+        key: span.at(columns[key]) if span.is_open else np.full(shares.shape[0], span.low)
+        for key, span in numbers.items()
     }
