@@ -591,6 +591,52 @@ for _name, _kelvin, _measured in (("oleic acid", 298.15, "27.6"), ("squalane", 2
         )(lambda n=_name, k=_kelvin: _viscosity(n, k))  # fmt: skip
 
 
+def _tension(material, stretch: float) -> str:
+    """Nominal stress; the transverse one is taken off as pressure: the volume is kept."""
+    f = np.diag([stretch, stretch**-0.5, stretch**-0.5]).reshape(3, 3, 1, 1)
+    p = np.asarray(material.jacobian(f)).reshape(3, 3)
+    return f"{p[0, 0] - p[1, 1] * stretch**-1.5:.3f} MPa"
+
+
+@row("a rubber or a fluid", "hypermat", "Yeoh's rubber 0.5, -0.01, 0.2 MPa at twice its length",
+     "10.010 MPa (by hand; its Biderman agrees)", "no such rubber",
+     "Use Biderman with C01 = 0")  # fmt: skip
+def _() -> str:
+    from hypermat import Yeoh
+
+    return _tension(Yeoh(C10=0.5, C20=-0.01, C30=0.2, K=2000), 2.0)
+
+
+@row("a rubber or a fluid", "hypermat", "Isihara's rubber 0.4, 0.02, 0.2 MPa at twice its length",
+     "2.030 MPa (by hand; its Biderman agrees)", "no such rubber",
+     "Use Biderman with C30 = 0")  # fmt: skip
+def _() -> str:
+    from hypermat import Isihara
+
+    return _tension(Isihara(C10=0.4, C20=0.02, C01=0.2, K=2000), 2.0)
+
+
+@row("a rubber or a fluid", "pyvisq", "Spring 2 and springpot (1, 0.5) in series: G at t = 1",
+     "0.511 (closed form; its FracMaxwell agrees)", "series of exponentials",
+     "Use FracMaxwell with an exponent of 0")  # fmt: skip
+def _() -> str:
+    from pyvisq.models.elements import SpringParams, SpringpotParams
+    from pyvisq.models.maxwell import FracSpringMaxwell, FracSpringMaxwellParams
+
+    pot, spring = SpringpotParams(e=0.5, ce=1.0), SpringParams(k=2.0)
+    return f"{FracSpringMaxwell(FracSpringMaxwellParams(springpot=pot, spring=spring)).G(1.0):.3f}"
+
+
+@row("a rubber or a fluid", "pyvisq", "A power law solid, 10 at once, 1 at rest: creep at once",
+     "0.1 (G J is 1 at once)", "of the same series as the modulus",
+     "Compute the creep from G")  # fmt: skip
+def _() -> str:
+    from pyvisq.models.powerlaw import Powerlaw, PowerlawParams
+
+    body = Powerlaw(PowerlawParams(modulus_0=10.0, modulus_inf=1.0, tau=1.0, e=0.5))
+    return f"{body.J(0.0):g}, and {body.J(1e6):g} after 1e6 times"
+
+
 # A study
 
 

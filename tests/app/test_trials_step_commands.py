@@ -70,6 +70,17 @@ def test_export_of_text_files_keeps_the_numbers(tmp_path):
     assert strikes == pytest.approx([stance.contact for stance in steps], abs=1e-4)
 
 
+def test_the_ending_says_the_format_of_an_export(tmp_path):
+    """Whatever ended in .sto or .csv was C3D."""
+    assert _run("export", WALK, "--out", tmp_path / "a.csv").exit_code == 2
+    assert not (tmp_path / "a.csv").exists()
+    for name in ("a.sto", "a.mot"):
+        assert _run("export", WALK, "--out", tmp_path / name).exit_code == 0
+    assert (tmp_path / "a.sto").read_text() == (tmp_path / "a.mot").read_text()
+    (one, *_), (other, *_) = (read_trial(f).plates for f in (tmp_path / "a.sto", WALK))
+    assert np.abs(one.force).max() == pytest.approx(np.abs(other.force).max(), rel=1e-3)
+
+
 def test_definitions_of_a_folder(tmp_path):
     shutil.copy(WALK, tmp_path)
     (tmp_path / "bad.c3d").write_bytes(b"x")

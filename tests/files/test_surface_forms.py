@@ -2,10 +2,12 @@
 
 import hashlib
 import io
+import json
 import struct
 import zipfile
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -518,3 +520,89 @@ def test_an_array_of_numpy_needs_spacing_and_unit(tmp_path, shape):
     path.write_bytes(path.read_bytes()[:90])
     with pytest.raises(DataError, match="damaged"):
         read_surface(path, spacing=4e-6, height_unit="um")
+
+
+def dump(path, fields, size):
+    """As tamaas 2.9.0 writes a model: NumpyDumper (attributes as JSON text) and H5Dumper."""
+    attributes = {"model_type": "model_type.basic_2d", "program": "Tamaas 2.9.0"}
+    if path.suffix == ".npz":
+        text = json.dumps(attributes | {"system_size": size})
+        np.savez(path, attrs=np.asarray(text), **fields)
+        return
+    with h5py.File(path, "w") as file:
+        file.attrs.update(attributes | {"system_size": np.array(size)})
+        for name, values in fields.items():
+            file[name] = values
+
+
+@pytest.mark.parametrize("ending", ["npz", "h5"])
+def test_the_surface_of_a_model_that_tamaas_dumped(tmp_path, ending):
+    rng = np.random.default_rng(3)
+    fields = {name: rng.standard_normal((32, 16)) for name in ("gap", "surface", "traction")}
+    path = tmp_path / f"model.{ending}"
+    dump(path, fields, [1.0, 2.0])
+    found = read_surface(path, length_unit="mm", height_unit="um")
+    np.testing.assert_allclose(found.heights, 1e-6 * fields["surface"])
+    assert found.spacings == pytest.approx((1e-3 / 32, 2e-3 / 16))
+    with pytest.raises(DataError, match="without a unit"):
+        read_surface(path, length_unit="mm")
+    with pytest.raises(DataError, match="size without a unit"):
+        read_surface(path, height_unit="mm")
+    assert "--length-unit" in called("surface", str(path), "--height-unit", "mm").stderr
+    del fields["surface"]
+    dump(path, fields, [1.0, 2.0])
+    with pytest.raises(DataError, match="gap, traction"):
+        read_surface(path, length_unit="mm", height_unit="um")
+    dump(path, {"gap": fields["gap"]}, [1.0, 2.0])
+    assert read_surface(path, length_unit="m", height_unit="m").heights.shape == (32, 16)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(DataError, match="damaged"):
+        read_surface(path, length_unit="m", height_unit="m")
+
+
+def forms_of_a_matrix(z):
+    """Lines of a 40 by 30 map (um, cells of 5 by 4 um) with its positions, by the head."""
+    x = [f"{5 * i}" for i in range(40)]
+    lines = [",".join([f"{4 * j}", *(f"{v:.6f}" for v in z[:, j])]) for j in range(30)]
+    heads = {"corner 0": "0", "empty corner": "", "names": "y/x"}
+    return {name: "\n".join([",".join([head, *x]), *lines, ""]) for name, head in heads.items()}
+
+
+@pytest.mark.parametrize("head", ["corner 0", "empty corner", "names"])
+def test_positions_beside_a_matrix_are_no_heights(tmp_path, head):
+    z = np.random.default_rng(4).standard_normal((40, 30))
+    path = tmp_path / "map.csv"
+    path.write_text(forms_of_a_matrix(z)[head])
+    found = read_surface(path, length_unit="um", height_unit="um")
+    np.testing.assert_allclose(found.heights, 1e-6 * z, atol=1e-12)
+    assert found.spacings == pytest.approx((5e-6, 4e-6))
+    assert "positions" in " ".join(found.processing)
+
+
+def test_a_plane_has_no_positions_beside_it(tmp_path):
+    np.savetxt(tmp_path / "a.csv", np.add.outer(np.arange(9), np.arange(12)), delimiter=",")
+    found = read_surface(tmp_path / "a.csv", spacing=1e-6, height_unit="um")
+    assert found.heights.shape == (12, 9)
+
+
+@pytest.mark.parametrize("order", ["xyz", "yxz", "zxy", "zyx"])
+def test_the_heading_says_which_column_is_which(tmp_path, order):
+    z = np.random.default_rng(4).standard_normal((6, 5))
+    cells = [{"x": 5 * i, "y": 4 * j, "z": 1e3 * z[i, j]} for i in range(6) for j in range(5)]
+    units = {"x": "um", "y": "um", "z": "nm"}
+    path = tmp_path / "map.csv"
+    rows = [",".join(f"{name} [{units[name]}]" for name in order)]
+    path.write_text("\n".join(rows + [",".join(f"{c[n]:.9g}" for n in order) for c in cells]))
+    found = read_surface(path)
+    np.testing.assert_allclose(found.heights, 1e-6 * z, atol=1e-13)
+    assert found.spacings == pytest.approx((5e-6, 4e-6))
+
+
+def test_a_profile_may_have_its_heights_first(tmp_path):
+    z = np.random.default_rng(4).standard_normal(40)
+    rows = "\n".join(f"{v:.6f}\t{0.005 * i:g}" for i, v in enumerate(z))
+    (tmp_path / "a.txt").write_text(f"z [um]\tx [mm]\n{rows}\n")
+    found = read_surface(tmp_path / "a.txt")
+    np.testing.assert_allclose(found.heights, 1e-6 * z, atol=1e-12)
+    assert found.spacing == pytest.approx(5e-6)

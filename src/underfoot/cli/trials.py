@@ -12,6 +12,7 @@ from .guard import guarded, say
 from .options import AsJson, Overwrite, PlateFrame, RampAngle, optional
 from .trials_analyse import analyse, persons
 from .trials_bundle import bundle
+from .trials_curves import curves
 from .trials_plan import plan
 from .trials_steps import definitions, edit, export
 
@@ -93,5 +94,16 @@ def simulate(
     )
 
 
-for command in (describe, simulate, analyse, bundle, definitions, edit, export, persons, plan):
+for command in (
+    describe,
+    simulate,
+    analyse,
+    bundle,
+    curves,
+    definitions,
+    edit,
+    export,
+    persons,
+    plan,
+):
     trials_app.command()(guarded(command))

@@ -112,7 +112,7 @@ def definitions(
 
 def export(
     file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
-    out: Annotated[Path, optional("File to be written: .c3d, .trc (markers) or .mot (forces).")],
+    out: Annotated[Path, optional("File to write: .c3d, .trc (markers), .mot or .sto (forces).")],
     companion: Annotated[
         Path | None, optional("Second file of the same recording.", "--with")
     ] = None,
@@ -128,12 +128,16 @@ def export(
 
     if out.exists():
         raise InputError(f"{out} is there already", where="--out", remedy="Choose another name")
+    kind = out.suffix.casefold()
+    if kind not in (".c3d", ".trc", ".mot", ".sto"):
+        raise InputError(f'"{out.suffix}" is no format of an export', where="--out",
+                         allowed=".c3d, .trc, .mot, .sto")  # fmt: skip
     read = read_profile(profile) if profile else Profile()
     trial = read_trial(file, read)
     if companion is not None:
         trial = joined(trial, read_trial(companion, read))
-    if out.suffix.casefold() in (".trc", ".mot"):
-        made = trc_text(trial) if out.suffix.casefold() == ".trc" else mot_text(trial)
+    if kind != ".c3d":
+        made = trc_text(trial) if kind == ".trc" else mot_text(trial)
         out.write_text(made, encoding="utf-8")
         say(f"{out} is written, y up")
         return

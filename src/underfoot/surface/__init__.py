@@ -20,6 +20,7 @@ from .prepare import squared as squared
 from .read import InstrumentResult as InstrumentResult
 from .read import read_array as read_array
 from .read import read_dektak as read_dektak
+from .read import read_dump as read_dump
 from .read import read_map as read_map
 from .read import read_profile as read_profile
 from .read import read_surface as read_surface

@@ -1,7 +1,11 @@
 """Profiles and maps from text, Dektak files and the formats of instruments."""
 
+import json
 import re
-from dataclasses import dataclass
+import zipfile
+import zlib
+from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +17,7 @@ from underfoot.core.units import metres
 
 from .heights import HeightMap, Profile, profile_from_positions
 from .instruments import (
+    UNIT_OPTIONS,
     complete,
     is_instrument,
     is_text,
@@ -26,6 +31,10 @@ _FORMS = (NumberForm(), NumberForm(",", True), NumberForm(".", True))
 _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
 ARRAY = b"\x93NUMPY"
+HDF5 = b"\x89HDF\r\n\x1a\n"
+_AXIS = re.compile(r"(?<![a-z/])([xyz])(?![a-z])")
+_NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?(?![\w.])")
+_HEIGHTS = ("surface", "heights", "topography")
 SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
     r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|[cm]m|m|inch(?:es)?|mils?|[uµμ]in"
@@ -211,7 +220,7 @@ def read_profile(
     Raises:
         DataError: Unreadable, units missing, positions uneven, heights missing.
     """
-    data = read_numbers(path)
+    data = _as_named(read_numbers(path), "xz")
     columns = data.rows.shape[1]
     if columns > 2:
         raise DataError(
@@ -271,7 +280,7 @@ def read_map(
     Raises:
         DataError: Unreadable, units missing, no full grid, heights missing.
     """
-    data = read_numbers(path)
+    data = _as_named(read_numbers(path), "xyz")
     units, size = data.units(), _gwyddion_size(data)
     if data.rows.shape[1] == 3 and size is None:
         _refuse_one_for_all(units, 3, length_unit, height_unit, data)
@@ -286,6 +295,13 @@ def read_map(
         )
     else:
         heights = data.rows.T  # a line of the file runs along x
+        axes = None if size is not None else _axes(data)
+        if axes is not None:
+            heights, notes_of = axes[0], ("the first row and column are positions: left out",)
+            data = replace(data, notes=(*data.notes, *notes_of))
+            if spacing is None:
+                to_length = _factor(length_unit, units[:1], data, "length unit")
+                spacing, spacing_y = spacings_of([to_length * step for step in axes[1]])
         if spacing is None and size is not None:
             sides = [side / n for side, n in zip(size[:2], heights.shape, strict=True)]
             spacing, spacing_y = spacings_of(sides)
@@ -314,6 +330,50 @@ def _gwyddion_size(data: TextNumbers) -> tuple[float, float, str] | None:
             width, height = (_length(side, data.where) for side in (first, second))
             return width, height, unit
     return None
+
+
+def _as_named(data: TextNumbers, order: str) -> TextNumbers:
+    """Return columns that the heading calls x, y and z, each once, in this order."""
+    line = data.header[-1] if data.header else ""
+    names = _AXIS.findall(line.casefold())
+    if "".join(names) == order or sorted(names) != sorted(order):
+        return data
+    if data.rows.shape[1] != len(order):
+        return data
+    place = [names.index(name) for name in order]
+    parts = _AXIS.split(line.casefold())[2::2]
+    header = "; ".join(f"{name} {parts[k]}" for name, k in zip(order, place, strict=True))
+    return replace(
+        data,
+        rows=data.rows[:, place],
+        decimals=tuple(data.decimals[k] for k in place),
+        header=(*data.header[:-1], header),
+    )
+
+
+def _axes(data: TextNumbers) -> tuple[np.ndarray, tuple[float, float]] | None:
+    """Return heights (nx, ny) and steps along x and y of a matrix that begins with its positions.
+
+    Those of y are the first column; those of x the first row, or the last line above. None of a
+    matrix of heights alone.
+    """
+    rows = data.rows
+    above = [float(cell) for cell in _NUMBER.findall(data.header[-1])] if data.header else []
+    if len(above) == rows.shape[1] - 1:
+        x, y, heights = np.array(above), rows[:, 0], rows[:, 1:]
+    else:
+        x, y, heights = rows[0, 1:], rows[1:, 0], rows[1:, 1:]
+    if min(heights.shape) < 4 or not (_is_even(x) and _is_even(y)):
+        return None
+    if _is_even(heights[0]) or _is_even(heights[:, 0]):
+        return None  # a plane
+    return heights.T, (abs(float(np.diff(x).mean())), abs(float(np.diff(y).mean())))
+
+
+def _is_even(values: np.ndarray) -> bool:
+    steps = np.diff(values)
+    mean = float(steps.mean())
+    return mean != 0.0 and bool((np.abs(steps - mean) < 1e-3 * abs(mean)).all())
 
 
 def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, tuple[float, float | None]]:
@@ -495,30 +555,132 @@ def read_array(
         raise DataError(
             "damaged, or no array of numbers", where=str(path), remedy="Save it again with np.save"
         ) from error
+    return _of_array(heights, spacing, None, height_unit, fill_missing, str(path), "NumPy")
+
+
+def _of_array(
+    heights: np.ndarray,
+    spacing: float | None,
+    spacing_y: float | None,
+    height_unit: str | None,
+    fill_missing: bool,
+    where: str,
+    program: str,
+) -> Profile | HeightMap:
     if heights.ndim not in (1, 2) or heights.dtype.kind not in "fiu":
         raise DataError(
             f"an array of shape {heights.shape} and kind {heights.dtype}",
-            where=str(path),
+            where=where,
             allowed="real heights, (n,) or (nx, ny)",
         )
     if spacing is None:
-        raise DataError("an array of heights and no spacing", where=str(path), remedy=SPACING)
+        raise DataError("an array of heights and no spacing", where=where, remedy=SPACING)
     if height_unit is None:
         raise DataError(
-            "an array of heights without a unit", where=str(path), remedy="Give it: --height-unit m"
+            "an array of heights without a unit", where=where, remedy="Give it: --height-unit m"
         )
-    factor = length_factor(height_unit, str(path))
-    found, notes = complete(heights.astype(float) * factor, fill_missing, str(path))
-    kind = Profile if found.ndim == 1 else HeightMap
-    return kind(found, spacing, source=str(path), processing=("read as an array of NumPy", *notes))
+    factor = length_factor(height_unit, where)
+    found, notes = complete(heights.astype(float) * factor, fill_missing, where)
+    processing = (f"read as an array of {program}", *notes)
+    if found.ndim == 1:
+        return Profile(found, spacing, source=where, processing=processing)
+    return HeightMap(found, spacing, spacing_y=spacing_y, source=where, processing=processing)
+
+
+def read_dump(
+    path: Path | str,
+    *,
+    spacing: float | None = None,
+    height_unit: str | None = None,
+    length_unit: str | None = None,
+    fill_missing: bool = False,
+) -> Profile | HeightMap:
+    """Return the heights among the fields that tamaas dumped (``NumpyDumper``, ``H5Dumper``) or
+    NumPy saved together (``.npz``).
+
+    The field is the one called ``surface``, ``heights`` or ``topography``, or the only one. A dump
+    says its size but no unit: ``length_unit`` makes it metres; without a size ``spacing`` (m).
+
+    Raises:
+        DataError: Damaged; several fields of which none is called so; size, unit or heights
+            missing.
+    """
+    path = text.existing(path)
+    where = str(path)
+    fields, said = _dumped(path)
+    fields = {name: field for name, field in fields.items() if field.ndim in (1, 2)}
+    named = [name for name in fields if name.casefold() in _HEIGHTS] or list(fields)
+    if len(named) != 1:
+        raise DataError(
+            f"fields of a model: {', '.join(fields) or 'none of one or two axes'}",
+            where=where,
+            allowed=f"one called {', '.join(_HEIGHTS)}, or one alone",
+            remedy='Dump the heights as well: model["surface"] = surface',
+        )
+    heights = fields[named[0]]
+    spacing_y = None
+    if spacing is None and said is not None and len(said) == heights.ndim:
+        if length_unit is None:
+            raise DataError("a size without a unit of length", where=where, remedy=UNIT_OPTIONS)
+        factor = length_factor(length_unit, where)
+        sides = [factor * side / n for side, n in zip(said, heights.shape, strict=True)]
+        spacing, spacing_y = spacings_of(sides) if len(sides) == 2 else (sides[0], None)
+    return _of_array(
+        heights, spacing, spacing_y, height_unit, fill_missing, where, f'fields: "{named[0]}"'
+    )
+
+
+def _dumped(path: Path) -> tuple[dict[str, np.ndarray], list[float] | None]:
+    """Return the fields of a dump and the size of its model, where it says one."""
+    try:
+        if _is_tamaas(path):
+            import h5py
+
+            with h5py.File(path, "r") as file:
+                fields = {name: np.asarray(one) for name, one in file.items()
+                          if isinstance(one, h5py.Dataset)}  # fmt: skip
+                size = file.attrs.get("system_size")
+        else:
+            with np.load(BytesIO(path.read_bytes()), allow_pickle=False) as file:
+                fields = {name: file[name] for name in file.files if file[name].dtype.kind in "fiu"}
+                attributes = str(file["attrs"]) if "attrs" in file.files else "{}"
+            size = json.loads(attributes).get("system_size")
+        return fields, None if size is None else [float(side) for side in size]
+    except (ValueError, EOFError, OSError, KeyError, zipfile.BadZipFile, zlib.error) as error:
+        raise DataError(
+            "damaged, or no fields of numbers", where=str(path), remedy="Dump it again"
+        ) from error
+
+
+def _is_tamaas(path: Path) -> bool:
+    """Whether HDF5 is of tamaas by its own word, or damaged; other HDF5 is an instrument's."""
+    with path.open("rb") as stream:
+        if stream.read(len(HDF5)) != HDF5:
+            return False
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            return str(file.attrs.get("program", "")).startswith("Tamaas")
+    except OSError:
+        return True
+
+
+def _is_npz(path: Path) -> bool:
+    if not zipfile.is_zipfile(path):
+        return path.suffix.casefold() == ".npz"
+    with zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+    return bool(names) and all(name.endswith(".npy") for name in names)
 
 
 def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     """Return a profile or map from any file that can be read.
 
-    What a file is, its content says and not its name: Dektak CSV; arrays of NumPy; GSF, X3P and SDF
-    (``instruments``); text with one or two columns (``read_profile``), three columns or a matrix
-    (``read_map``); every other file goes to ``read_instrument``. ``settings`` are passed on.
+    What a file is, its content says and not its name: Dektak CSV; arrays of NumPy, fields of tamaas
+    (``read_dump``); GSF, X3P and SDF (``instruments``); text with one or two columns
+    (``read_profile``), three columns or a matrix (``read_map``); every other file goes to
+    ``read_instrument``. ``settings`` are passed on.
     """
     path = text.existing(path)
     if is_dektak(path):
@@ -526,6 +688,8 @@ def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     with path.open("rb") as stream:
         if stream.read(len(ARRAY)) == ARRAY:
             return read_array(path, **settings)
+    if _is_npz(path) or _is_tamaas(path):
+        return read_dump(path, **settings)
     if is_text(path) and not is_instrument(path):
         try:
             columns = read_numbers(path).rows.shape[1]

@@ -120,6 +120,11 @@ def _group(group: Any) -> dict[str, Any]:
     return content
 
 
+def matlab_arrays(data: bytes, where: str) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield the arrays of numbers of a .mat file with their names."""
+    return _arrays(_content(data, where))
+
+
 def _arrays(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, np.ndarray]]:
     for name, value in content.items():
         if isinstance(value, Mapping):
