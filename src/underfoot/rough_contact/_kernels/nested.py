@@ -15,8 +15,8 @@ _COARSEST = 4096
 _COARSE_TOLERANCE = 0.1
 _STEPS = 12
 """Search directions kept by the inner solver."""
-_ROOM, _SMALL = 2.0, 2e6
-"""Most double arrays of the grid for them, a fifth of a solve; more on small grids (16 MB)."""
+_ROOM, _SMALL = 2.0, 8e6
+"""Most double arrays of the grid for them, a fifth of a solve; more on small grids (64 MB)."""
 _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 """Share of the residual that an inner solve leaves; insensitive between 0.1 and 0.3."""
 
