@@ -185,6 +185,19 @@ def test_resting_plane_is_that_of_three_points_under_the_centre():
     assert np.allclose(turned @ turned.T, np.eye(3), atol=1e-12)
 
 
+@pytest.mark.parametrize("bevel", [25e-3, 43e-3, 55e-3])
+def test_a_heel_that_was_drawn_level_is_not_laid_on_its_bevel(bevel):
+    x, y = np.meshgrid(np.arange(150) * 0.5e-3, np.arange(120) * 0.5e-3, indexing="ij")
+    height = np.maximum(bevel - x, 0.0) * math.tan(math.radians(10))
+    height[(y % 9e-3 < 3.5e-3) & (x > 2e-3)] += 3.5e-3
+    a, b, c = resting_plane(height, 0.5e-3)
+    assert (a, b, c) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    # tilted as a whole it is laid level again where its bevel does not carry it
+    tilt = 0.03 * x
+    a, *_ = resting_plane(height + tilt, 0.5e-3)
+    assert (a == pytest.approx(0.03, abs=1e-3)) == (bevel < 30e-3)
+
+
 def test_single_spike_does_not_carry_the_sole():
     rng = np.random.default_rng(0)
     height = rng.normal(0, 10e-6, (300, 160))

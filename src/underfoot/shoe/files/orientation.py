@@ -384,12 +384,18 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
     return best, Choice(1, "Assumed: the ground side is the one that stands flattest.", True)
 
 
+LEVEL = math.radians(0.05)
+"""A tilt (rad) below it is that of noise and roundings."""
+_DRAWN_LEVEL = 0.2
+
+
 def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     """Return (a, b, c) of the plane z = a x + b y + c that the sole rests on under its own centre.
 
     The lower convex hull of the low points (5 % of the heights in blocks of 3 mm); of its faces the
-    one over the centroid of the plan form: a sole pressed there stands on that face's corners. x
-    and y count from the first cell, m.
+    one over the centroid of the plan form: a sole pressed there stands on that face's corners. A
+    sole that lies level on a fifth of its plan form was drawn so and stays so, however long its
+    bevel is. x and y count from the first cell, m.
 
     Parameters:
         height: (nx, ny) m, z up, nan outside.
@@ -413,6 +419,12 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     # every lower face lies below the points: over the centre the highest of them is the hull
     a, b, c = (-lower[:, n] / lower[:, 2] for n in (0, 1, 3))
     best = int(np.argmax(a * centre[0] + b * centre[1] + c))
+    corners = points[hull.simplices[hull.equations[:, 2] < -1e-9], :2]
+    (x1, y1), (x2, y2) = (corners[:, n].T - corners[:, 0].T for n in (1, 2))
+    plan = np.abs(x1 * y2 - x2 * y1)
+    level = np.hypot(a, b) < LEVEL
+    if plan[level].sum() > _DRAWN_LEVEL * plan.sum():
+        best = int(np.argmax(np.where(level, plan, 0.0)))
     return float(a[best]), float(b[best]), float(c[best])
 
 

@@ -33,7 +33,6 @@ from .view import Soundness, View, extents, soundness, view, without_copies
 
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
-_LEVEL = math.radians(0.05)  # a tilt below it is that of noise and roundings
 _MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
 _OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
 _SHEET = 0.05e-3
@@ -259,7 +258,7 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
         height, _ = cleaned(seen.lowest, spacing)
         plane = orientation.resting_plane(height, spacing)
         turned, angle = orientation.levelled(axes, plane)
-        if angle < _LEVEL:
+        if angle < orientation.LEVEL:
             break
         if angle > _MOST_TURN:
             remarks.append(
