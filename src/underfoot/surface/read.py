@@ -667,10 +667,12 @@ def _is_tamaas(path: Path) -> bool:
 
 
 def _is_npz(path: Path) -> bool:
-    if not zipfile.is_zipfile(path):
+    """Whether an archive holds arrays alone; one that is damaged is what its name says."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except zipfile.BadZipFile:
         return path.suffix.casefold() == ".npz"
-    with zipfile.ZipFile(path) as archive:
-        names = archive.namelist()
     return bool(names) and all(name.endswith(".npy") for name in names)
 
 
