@@ -139,19 +139,14 @@ def drawn(page):
     page.evaluate("new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))")
 
 
-<<<<<<< HEAD
-def begin(page, base, *, coarse=None):
-    """Open the design page with the usual work shoe, drawn; ``coarse``: see ``coarsened``."""
-=======
 def unfold(page):
     """Open all that is folded on a page, once there is something."""
     page.wait_for_selector("details.section", state="attached")
     page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true })")
 
 
-def begin(page, base):
-    """Open the design page with the usual work shoe, drawn."""
->>>>>>> main
+def begin(page, base, *, coarse=None):
+    """Open the design page with the usual work shoe, drawn; ``coarse``: see ``coarsened``."""
     page.goto(base + "design")
     page.get_by_role("button", name="Begin with a work shoe").click()
     page.wait_for_url("**/design?variant=*")
