@@ -113,9 +113,11 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
 
     @application.get(PICTURES + "{kind}/{name}")
     async def picture(kind: str, name: str) -> Response:
-        case = (
-            project.path(name) if kind == "variant" else project.result_folder(name) / "case.toml"
-        )
+        try:
+            variant, folder = project.path(name), project.result_folder(name)
+        except InputError:
+            return Response(status_code=404)
+        case = variant if kind == "variant" else folder / "case.toml"
         svg = await jobs.live.ask("underfoot.app.work_table:picture", str(case))
         headers = {"cache-control": "no-cache"}
         return Response(svg, media_type="image/svg+xml", headers=headers)
