@@ -160,6 +160,8 @@ def test_the_page_shows_front_failures_cost_and_commands_and_keeps_what_was_chos
         live.write_live_page(sweep)
     page = sweep.store.folder / live.PAGE
     with opened(page, width=width, height=768, touch=touch) as session:
+        assert session.value("document.querySelector('.study circle').checkVisibility()")
+        session.value("document.querySelectorAll('details').forEach((d) => { d.open = true })")
         words = session.value("document.body.innerText")
         for part in ("3600 of 4000 cases ended", "2 workers at work", "Processor", "lugs overlap"):
             assert part in words

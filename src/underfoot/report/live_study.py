@@ -269,7 +269,9 @@ def live_study(study: Study) -> LiveStudy:
 def live_sections(live: LiveStudy) -> list[Section]:
     """Return the designs, the best of them, and why some have no numbers."""
     html = explorer(live, live.shown) if live.shown else ""
-    parts = [Section("Designs", live.drawn_text() if html else "None ended yet.", html=html)]
+    parts = [
+        Section("Designs", live.drawn_text() if html else "None ended yet.", html=html, first=True)
+    ]
     table = live.table()
     if table.rows:
         parts.append(Section(table.title, table=table))
@@ -293,7 +295,7 @@ def live_page(study: Study) -> str:
         folder=str(folder.absolute()), working=live.working, method=live.plan.method
     )
     sections = live_sections(live)
-    so_far = Section("So far", html=head, table=live.cost_table())
+    so_far = Section("So far", html=head, table=live.cost_table(), first=True)
     parts = [so_far, *sections, Section("Stop, widen", html=steps)]
     script = template("live_study.js").render() + template("design_study.js").render()
     return page(live, parts, script=script)
