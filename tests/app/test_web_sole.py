@@ -164,7 +164,7 @@ def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
         drawn(page)
         with Task(page, "compare at equal land") as task:
             task.click(page.get_by_role("button", name="At equal land"))
-            page.get_by_role("cell", name="B, land of A", exact=True).wait_for()
+            page.get_by_role("link", name="B, land of A", exact=True).wait_for()
             drawn(page)
         page.locator(".pane-name", has_text="B, land of A").wait_for()
         assert page.locator(".pane-name").all_inner_texts() == ["A A", "B B, land of A"]
@@ -173,10 +173,10 @@ def test_two_treads_are_compared_at_equal_land_and_back(tmp_path):
         assert abs(_land_share(a) - _land_share(b)) <= LAND_EQUAL
         assert b.replace("shoe.tread.channel_width", "4 mm").shoe == project.case("B").shoe
         page.locator("[data-step=undo]").click()
-        page.get_by_role("cell", name="B", exact=True).first.wait_for()
+        page.get_by_role("link", name="B", exact=True).first.wait_for()
         assert set(project.variants()) == {"A", "B"}
         page.get_by_role("button", name="At equal land").click()
-        page.get_by_role("cell", name="B, land of A 2", exact=True).wait_for()
+        page.get_by_role("link", name="B, land of A 2", exact=True).wait_for()
         page.goto(app.base + "design?variant=B, land of A 2")
         drawn(page)
         page.locator("[data-step=undo]").click()
