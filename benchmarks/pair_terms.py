@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,8 +21,10 @@ from underfoot.studies.pair_law import (
     PairConstants,
     PairLaw,
     corpus_score,
+    fitted,
     laboratory_left_out,
     law_named,
+    middle,
 )
 from underfoot.studies.sources import Condition, Span, corpus
 
@@ -57,6 +59,11 @@ def _gap(extra: Array, numbers: Numbers) -> Array:
 
 def _slow_pad(extra: Array, numbers: Numbers) -> Array:
     return extra * np.log(numbers["length"] / LUG)
+
+
+def _pad(extra: Array, numbers: Numbers) -> Array:
+    """Return ln of drag on a pad that drains as Reynolds says, whatever ``extra``."""
+    return _slow_pad(np.ones_like(extra), numbers)
 
 
 def _sole_share(extra: Array, numbers: Numbers) -> Array:
@@ -132,7 +139,7 @@ TERMS = {
         "the same, and a pad drains along its length",
         "ln film / Rq",
         FILM,
-        drag=lambda extra, numbers: _slow_pad(np.ones_like(extra), numbers),
+        drag=_pad,
         load=_floating,
         shear=_sheared,
     ),
@@ -148,7 +155,7 @@ TERMS = {
         "length of exponent 1 and sheared valleys",
         "ln depth / Rq",
         FILM,
-        drag=lambda extra, numbers: _slow_pad(np.ones_like(extra), numbers),
+        drag=_pad,
         shear=_sheared,
     ),
 }
@@ -166,8 +173,28 @@ def conditions() -> list[Condition]:
     return [with_length(each) for source in corpus() for each in source.conditions]
 
 
+def learned(term: PairLaw, rows: Sequence[Condition]) -> str:
+    """Return what a law learns of its last parameter and of the film, with and without the report.
+
+    ln of both, their sd, and by how much ln COF of the report's readings is too high in the mean.
+    """
+    report = [row for row in rows if row.laboratory == REPORT]
+    told = []
+    for name, left in (("of all", ""), ("of everybody else", REPORT)):
+        training = [row for row in rows if row.laboratory != left]
+        posterior = fitted(term, training, steps=STEPS, left=left)
+        numbers = [
+            f"{term.parameters[at]} {posterior.theta[:, at].mean():.2f} "
+            f"± {posterior.theta[:, at].std():.2f}"
+            for at in (-1, 0)
+        ]
+        high = np.nanmean(posterior.expected(report) - middle(report))
+        told.append(f"  {name}: {', '.join(numbers)}; the report's {high:+.2f}")
+    return "\n".join(told)
+
+
 def main() -> None:
-    """Print the score of each term."""
+    """Print the score of each term, and what it learns."""
     rows = conditions()
     laboratories = sorted({row.laboratory for row in rows})
     print("term | density, everybody else; all | R2, everybody else; all | rank | inside 50, 95 %")
@@ -185,6 +212,7 @@ def main() -> None:
             f"{time.process_time() - begun:.0f} s",
             flush=True,
         )
+        print(learned(TERMS[name], rows), flush=True)
 
 
 if __name__ == "__main__":

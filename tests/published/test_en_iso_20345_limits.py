@@ -17,7 +17,7 @@ LIMITS = {
 def test_limits_of_safety_shoes(shoe, floor, fluid, request):
     if (shoe, floor) == ("slip_resistant_shoe_treaded", "steel_en_iso_13287"):
         reason = "COF 0.179 of a slip-resistant shoe is 38 % above the least that may be sold"
-        request.applymarker(pytest.mark.xfail(reason=reason))
+        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
     case = Case(shoe=shoe, floor=floor, contaminant=fluid, motion="en_iso_13287")
     cof = run(case, quick=True).scalars["cof"]
     low, high = cof.interval

@@ -296,7 +296,9 @@ def test_a_table_on_the_card_names_it_and_is_kept_apart(monkeypatch, tmp_path):
     one = ContactTable.from_surfaces(*given, cache=cache, device="auto")
     monkeypatch.setattr(devices, "card", lambda: "a card")
     monkeypatch.setattr(contact_table, "card", lambda: "a card")
-    monkeypatch.setattr(contact_table, "to_card", lambda h: on_device(h, "strict device1"))
+    monkeypatch.setattr(
+        "underfoot.rough_contact.steady.to_card", lambda h: on_device(h, "strict device1")
+    )
     two = ContactTable.from_surfaces(*given, cache=cache, device="cuda")
     assert any("4 contacts on a card" in note for note in two.notes)
     assert not any("card" in note for note in one.notes)

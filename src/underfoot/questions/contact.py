@@ -11,11 +11,16 @@ import numpy as np
 from underfoot import material, surface
 from underfoot.core import Cache, DataError, InputError, Progress, display, silent, to_si
 from underfoot.core.checks import exactly_one
-from underfoot.core.device import card, on_card, to_card
+from underfoot.core.device import card, on_card
 from underfoot.core.files import read_toml
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.threads import on_host
-from underfoot.rough_contact import ContactTable, SteadySliding, steady_sliding, table_over_scales
+from underfoot.rough_contact import (
+    ContactTable,
+    SteadySliding,
+    sliding_on_card,
+    steady_sliding,
+    table_over_scales,
+)
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
 from underfoot.surface import HeightMap, Profile, levelled, read_scan
@@ -253,12 +258,11 @@ def solved(
 ) -> tuple[SteadySliding, FlowFactors]:
     """Return the contact and the flow factors of its gap."""
     accelerated, began = on_card(device, floor.heights.size), time.perf_counter()
-    heights = to_card(floor.heights) if accelerated else floor.heights
-    contact = steady_sliding(heights, floor.spacing, rubber, speed, pressure, poisson_ratio)
+    solve = sliding_on_card if accelerated else steady_sliding
+    contact = solve(floor.heights, floor.spacing, rubber, speed, pressure, poisson_ratio)
     if accelerated:
         cost = f"contact solved on {card()}, {time.perf_counter() - began:.1f} s"
-        maps = {"pressure": on_host(contact.pressure), "gap": on_host(contact.gap)}
-        contact = replace(contact, **maps, notes=(*contact.notes, cost))
+        contact = replace(contact, notes=(*contact.notes, cost))
     if not contact.status.usable:
         return contact, FlowFactors(np.nan, np.nan, np.nan, np.nan, np.nan)
     gap = np.where(contact.pressure > 0.0, 0.0, contact.gap)

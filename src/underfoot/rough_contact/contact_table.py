@@ -15,10 +15,9 @@ from numpy.typing import ArrayLike
 
 from underfoot import core
 from underfoot.core.arrays import Array
-from underfoot.core.device import card, on_card, to_card
+from underfoot.core.device import card, on_card
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.threads import on_host
 from underfoot.surface import HeightMap
 
 from ._kernels.monotone import interpolated_grid
@@ -26,7 +25,7 @@ from .composite import RESTING, composite_surface
 from .flow_factor import flow_factors
 from .pressure_gap_law import TabulatedLaw
 from .sliding_input import Modulus, modulus_function, slow_transform
-from .steady import SteadySliding, steady_sliding
+from .steady import SteadySliding, sliding_on_card, steady_sliding
 
 QUANTITIES = {
     "real_contact_fraction": "1",
@@ -445,9 +444,8 @@ def _column(part: _Part) -> dict[str, np.ndarray]:
 
     def contact_of(heights: np.ndarray, pressure: float) -> SteadySliding:
         given = (part.spacing, part.modulus, part.speed, pressure, part.poisson_ratio)
-        where = to_card(heights) if part.on_card else heights
-        found = steady_sliding(where, *given, layer_thickness=part.layer_thickness)
-        return replace(found, pressure=on_host(found.pressure), gap=on_host(found.gap))
+        solve = sliding_on_card if part.on_card else steady_sliding
+        return solve(heights, *given, layer_thickness=part.layer_thickness)
 
     for p in part.pressure.tolist():
         contact = friction = contact_of(part.heights, p)

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, Progress, Status, display, silent
+from underfoot.core.arrays import Array
+from underfoot.core.device import to_card
 from underfoot.core.fourier import transform
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.status import worst
-from underfoot.core.threads import converter, namespace, threads_limited
+from underfoot.core.threads import converter, namespace, on_host, threads_limited
 
 from ._kernels import periodic
 from ._kernels.complementarity import ContactState
@@ -256,6 +258,16 @@ def steady_sliding(
         negligible_loss=negligible,
         slow_transform=slow,
     )
+
+
+def sliding_on_card(height: Array, *given: Any, **settings: Any) -> SteadySliding:
+    """Return ``steady_sliding`` of heights (nx, ny) of NumPy on the graphics card, maps of NumPy.
+
+    Raises:
+        InputError: As ``steady_sliding``.
+    """
+    found = steady_sliding(to_card(height), *given, **settings)
+    return replace(found, pressure=on_host(found.pressure), gap=on_host(found.gap))
 
 
 def _physical(

@@ -1,5 +1,6 @@
 """Heights and profiles: read, level, filter, roughness numbers, spectrum, generate."""
 
+from .arrays import read_array as read_array
 from .filter import long_waves as long_waves
 from .filter import short_waves as short_waves
 from .generate import checkerboard as checkerboard
@@ -18,9 +19,7 @@ from .prepare import levelled as levelled
 from .prepare import periodised as periodised
 from .prepare import squared as squared
 from .read import InstrumentResult as InstrumentResult
-from .read import read_array as read_array
 from .read import read_dektak as read_dektak
-from .read import read_dump as read_dump
 from .read import read_map as read_map
 from .read import read_profile as read_profile
 from .read import read_surface as read_surface

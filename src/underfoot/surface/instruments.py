@@ -2,6 +2,7 @@
 
 import re
 import warnings
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ LARGEST = 1.0
 """Side (m) that no scan of a floor or sole has: its unit is not that of the file."""
 MOST_UNPACKED = 64e6
 """Bytes that any archive may unpack to; a larger one to 200 times its size."""
+UNREADABLE = (zipfile.BadZipFile, NotImplementedError, ValueError)
+"""What zipfile raises of an archive that is damaged or packed in a way it does not know."""
 _OTHER_THINGS = {
     b"%PDF": "a PDF document",
     b"\x89PNG": "a picture (PNG)",
@@ -219,8 +222,6 @@ def _sdf(path: Path, fill_missing: bool) -> Profile | HeightMap:
 
 def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap | None:
     """Return the profile or map of an X3P file; None of another archive."""
-    import zipfile
-
     import x3pio
 
     try:
@@ -228,7 +229,7 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
             if not any(name.casefold() == "main.xml" for name in archive.namelist()):
                 return None
             unpacked = sum(part.file_size for part in archive.infolist())
-    except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+    except UNREADABLE as error:
         raise DataError("a damaged archive", where=str(path), remedy="Copy it again") from error
     if unpacked > max(MOST_UNPACKED, 200 * path.stat().st_size):
         raise DataError(

@@ -1,11 +1,7 @@
 """Profiles and maps from text, Dektak files and the formats of instruments."""
 
-import json
 import re
-import zipfile
-import zlib
 from dataclasses import dataclass, replace
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +11,9 @@ from underfoot.core import DataError, InputError, UnderfootError, text
 from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms, one_unit
 from underfoot.core.units import metres
 
+from .arrays import SPACING, is_array, read_array
 from .heights import HeightMap, Profile, profile_from_positions
 from .instruments import (
-    UNIT_OPTIONS,
     complete,
     is_instrument,
     is_text,
@@ -30,12 +26,8 @@ _QUANTITY = re.compile(r"([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-zµμ]
 _FORMS = (NumberForm(), NumberForm(",", True), NumberForm(".", True))
 _NAMES = {".csv", ".txt", ".xyz", ".asc", ".dat", ".prf", ".tsv"}
 """Files of text that no instrument's format has."""
-ARRAY = b"\x93NUMPY"
-HDF5 = b"\x89HDF\r\n\x1a\n"
 _AXIS = re.compile(r"(?<![a-z/])([xyz])(?![a-z])")
 _NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?(?![\w.])")
-_HEIGHTS = ("surface", "heights", "topography")
-SPACING = 'Give it: --spacing "4 um", spacing in a case or (in metres) in Python'
 _LENGTH = re.compile(
     r"(?<![A-Za-zµμ])(nm|um|µm|μm|micrometers?|micrometres?|microns?|[cm]m|m|inch(?:es)?|mils?|[uµμ]in"
     r"|Å|angstroms?|(?<=[\[(])in(?=[\])]))(?![A-Za-z])",
@@ -531,167 +523,19 @@ def _length(text: str, where: str) -> float:
     return float(match.group(1).replace(",", ".")) * length_factor(match.group(2), where)
 
 
-def read_array(
-    path: Path | str,
-    *,
-    spacing: float | None = None,
-    height_unit: str | None = None,
-    length_unit: str | None = None,
-    fill_missing: bool = False,
-) -> Profile | HeightMap:
-    """Return heights that NumPy saved (``.npy``), as tamaas and other programs hand them on.
-
-    (n,) is a profile, (nx, ny) a map with x along axis 0. ``spacing`` (m) and ``height_unit`` are
-    needed: the file says neither; ``length_unit`` says nothing beside ``spacing``.
-
-    Raises:
-        DataError: Not an array of numbers of one or two axes; spacing or unit missing; heights
-            missing without ``fill_missing``.
-    """
-    path = text.existing(path)
-    try:
-        heights = np.load(path, allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
-        raise DataError(
-            "damaged, or no array of numbers", where=str(path), remedy="Save it again with np.save"
-        ) from error
-    return _of_array(heights, spacing, None, height_unit, fill_missing, str(path), "NumPy")
-
-
-def _of_array(
-    heights: np.ndarray,
-    spacing: float | None,
-    spacing_y: float | None,
-    height_unit: str | None,
-    fill_missing: bool,
-    where: str,
-    program: str,
-) -> Profile | HeightMap:
-    if heights.ndim not in (1, 2) or heights.dtype.kind not in "fiu":
-        raise DataError(
-            f"an array of shape {heights.shape} and kind {heights.dtype}",
-            where=where,
-            allowed="real heights, (n,) or (nx, ny)",
-        )
-    if spacing is None:
-        raise DataError("an array of heights and no spacing", where=where, remedy=SPACING)
-    if height_unit is None:
-        raise DataError(
-            "an array of heights without a unit", where=where, remedy="Give it: --height-unit m"
-        )
-    factor = length_factor(height_unit, where)
-    found, notes = complete(heights.astype(float) * factor, fill_missing, where)
-    processing = (f"read as an array of {program}", *notes)
-    if found.ndim == 1:
-        return Profile(found, spacing, source=where, processing=processing)
-    return HeightMap(found, spacing, spacing_y=spacing_y, source=where, processing=processing)
-
-
-def read_dump(
-    path: Path | str,
-    *,
-    spacing: float | None = None,
-    height_unit: str | None = None,
-    length_unit: str | None = None,
-    fill_missing: bool = False,
-) -> Profile | HeightMap:
-    """Return the heights among the fields that tamaas dumped (``NumpyDumper``, ``H5Dumper``) or
-    NumPy saved together (``.npz``).
-
-    The field is the one called ``surface``, ``heights`` or ``topography``, or the only one. A dump
-    says its size but no unit: ``length_unit`` makes it metres; without a size ``spacing`` (m).
-
-    Raises:
-        DataError: Damaged; several fields of which none is called so; size, unit or heights
-            missing.
-    """
-    path = text.existing(path)
-    where = str(path)
-    fields, said = _dumped(path)
-    fields = {name: field for name, field in fields.items() if field.ndim in (1, 2)}
-    named = [name for name in fields if name.casefold() in _HEIGHTS] or list(fields)
-    if len(named) != 1:
-        raise DataError(
-            f"fields of a model: {', '.join(fields) or 'none of one or two axes'}",
-            where=where,
-            allowed=f"one called {', '.join(_HEIGHTS)}, or one alone",
-            remedy='Dump the heights as well: model["surface"] = surface',
-        )
-    heights = fields[named[0]]
-    spacing_y = None
-    if spacing is None and said is not None and len(said) == heights.ndim:
-        if length_unit is None:
-            raise DataError("a size without a unit of length", where=where, remedy=UNIT_OPTIONS)
-        factor = length_factor(length_unit, where)
-        sides = [factor * side / n for side, n in zip(said, heights.shape, strict=True)]
-        spacing, spacing_y = spacings_of(sides) if len(sides) == 2 else (sides[0], None)
-    return _of_array(
-        heights, spacing, spacing_y, height_unit, fill_missing, where, f'fields: "{named[0]}"'
-    )
-
-
-def _dumped(path: Path) -> tuple[dict[str, np.ndarray], list[float] | None]:
-    """Return the fields of a dump and the size of its model, where it says one."""
-    try:
-        if _is_tamaas(path):
-            import h5py
-
-            with h5py.File(path, "r") as file:
-                fields = {name: np.asarray(one) for name, one in file.items()
-                          if isinstance(one, h5py.Dataset)}  # fmt: skip
-                size = file.attrs.get("system_size")
-        else:
-            with np.load(BytesIO(path.read_bytes()), allow_pickle=False) as file:
-                fields = {name: file[name] for name in file.files if file[name].dtype.kind in "fiu"}
-                attributes = str(file["attrs"]) if "attrs" in file.files else "{}"
-            size = json.loads(attributes).get("system_size")
-        return fields, None if size is None else [float(side) for side in size]
-    except (ValueError, EOFError, OSError, KeyError, zipfile.BadZipFile, zlib.error) as error:
-        raise DataError(
-            "damaged, or no fields of numbers", where=str(path), remedy="Dump it again"
-        ) from error
-
-
-def _is_tamaas(path: Path) -> bool:
-    """Whether HDF5 is of tamaas by its own word, or damaged; other HDF5 is an instrument's."""
-    with path.open("rb") as stream:
-        if stream.read(len(HDF5)) != HDF5:
-            return False
-    import h5py
-
-    try:
-        with h5py.File(path, "r") as file:
-            return str(file.attrs.get("program", "")).startswith("Tamaas")
-    except OSError:
-        return True
-
-
-def _is_npz(path: Path) -> bool:
-    """Whether an archive holds arrays alone; one that is damaged is what its name says."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
-    except zipfile.BadZipFile:
-        return path.suffix.casefold() == ".npz"
-    return bool(names) and all(name.endswith(".npy") for name in names)
-
-
 def read_surface(path: Path | str, **settings: Any) -> Profile | HeightMap:
     """Return a profile or map from any file that can be read.
 
     What a file is, its content says and not its name: Dektak CSV; arrays of NumPy, fields of tamaas
-    (``read_dump``); GSF, X3P and SDF (``instruments``); text with one or two columns
+    (``read_array``); GSF, X3P and SDF (``instruments``); text with one or two columns
     (``read_profile``), three columns or a matrix (``read_map``); every other file goes to
     ``read_instrument``. ``settings`` are passed on.
     """
     path = text.existing(path)
     if is_dektak(path):
         return read_dektak(path)[0]
-    with path.open("rb") as stream:
-        if stream.read(len(ARRAY)) == ARRAY:
-            return read_array(path, **settings)
-    if _is_npz(path) or _is_tamaas(path):
-        return read_dump(path, **settings)
+    if is_array(path):
+        return read_array(path, **settings)
     if is_text(path) and not is_instrument(path):
         try:
             columns = read_numbers(path).rows.shape[1]

@@ -201,6 +201,8 @@ class _Package:
             )
         try:
             return self.archive.read(entry)
+        # zipfile raises NotImplementedError of a packing that it does not know, RuntimeError of a
+        # password
         except (zipfile.BadZipFile, OSError, EOFError, NotImplementedError, RuntimeError) as error:
             raise self._error(f"its part {name} cannot be unpacked ({error})") from error
         except Exception as error:  # zlib and lzma have errors of their own
