@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.compute.histories import MARCH
+from underfoot.core import display
 from underfoot.core.fields import Fields
 from underfoot.core.html import environment
 from underfoot.core.presentation import quantity_text
@@ -92,7 +93,7 @@ def viewer_scene(
                 {q.name: sole.placed(fields[q.name][number]) for q in shown},
                 designed[number],
                 histories={
-                    name: history([f"{shown_time(t)}" for t in times], sole.placed(frames))
+                    name: history([display(t, "s") for t in times], sole.placed(frames))
                     for name, each in past
                     if each is not None
                     for times, frames in (each,)
@@ -186,11 +187,6 @@ def pane(
 def history(labels: Sequence[str], frames: NDArray[np.float64]) -> dict[str, Any]:
     """Return the frames (n, nx, ny) of a field and what each instant is called."""
     return {"labels": list(labels), "frames": [packed(frame) for frame in frames]}
-
-
-def shown_time(seconds: float) -> str:
-    """Return a time on the slider."""
-    return f"{seconds * 1e3:.3g} ms"
 
 
 def _lugs(dataset: Fields) -> list[list[float]]:
