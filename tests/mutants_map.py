@@ -8,6 +8,7 @@ changes.
 import hashlib
 import json
 import time
+import warnings
 from pathlib import Path
 
 import coverage
@@ -69,7 +70,9 @@ class Recorder:
 
     def write(self, file: str) -> None:
         self.tracer.stop()
-        data = self.tracer.get_data()
+        with warnings.catch_warnings():  # of a file of tests that runs no line
+            warnings.simplefilter("ignore")
+            data = self.tracer.get_data()
         names = list(self.tests)
         lines: dict[str, dict[int, list[int]]] = {}
         for number, name in enumerate(names):
