@@ -7,15 +7,17 @@
 A fault turns a sign, a comparison or a choice round, moves a number or an index, or swaps two
 arguments. Which quick tests run which lines is recorded first (``mutants_map.py``), where it isn't
 known yet. A fault meets the tests that run its line, in a copy of the repository, in a fork of a
-process that holds the libraries: first those of its room (they import its module, or are called
-``test_<room>_``), then the others, each test once before one comes again with other parameters,
-the quickest first, ``--seconds`` of each at most, until the first that fails. A line that runs when its module
-is imported meets the tests that run anything of that file; one that no test runs in this process
-(compiled, or in a process of its own) meets those of its room. What survives is printed with its place: mend the tests, or
-say why it may live. A test that fails without a fault kills nothing. Not part of ``make test``.
+process that holds the libraries, until the first that fails: first those of its room (they import
+its module, or are called ``test_<room>_``), then the others; each test once before one comes again
+with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
+meets the tests that run anything of its file; one that no test runs in this process (compiled, or
+in a process of its own) meets those of its room. What survives is printed with its place: mend the
+tests, or say why it may live. A test that fails without a fault kills nothing; a fault that its
+room's test killed counts as dead while that test and the source stand. Not part of ``make test``.
 """
 
 import ast
+import json
 import os
 import random
 import resource
@@ -37,7 +39,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from mutants_map import known_map
+
+from mutants_map import digest, known_map
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
@@ -45,7 +48,7 @@ NAMED = Path(__file__).with_suffix(".toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 LEAST_TIME = 60  # s of CPU, below which no fault is called endless
-MOST_TESTS = 400  # that one fault meets
+MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
 # what a fork finds imported
 LIBRARIES = (
     "numpy scipy.linalg scipy.optimize scipy.sparse.linalg scipy.stats scipy.special "
@@ -328,8 +331,11 @@ def in_turn(tests: Iterable[Test], seconds: float) -> list[Test]:
     for one in sorted(tests, key=lambda test: test.seconds):
         forms[one.name.partition("[")[0]].append(one)
     ranked = [(rank, one.seconds, one) for form in forms.values() for rank, one in enumerate(form)]
-    chosen, total = list[Test](), 0.0
+    chosen, files, total = list[Test](), set[str](), 0.0
     for _, _, one in sorted(ranked):
+        if one.file not in files and len(files) == MOST_FILES:
+            continue
+        files.add(one.file)
         total += one.seconds
         if total > seconds or len(chosen) == MOST_TESTS:
             break
@@ -402,7 +408,8 @@ def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, 
         files = list(dict.fromkeys(one.file for one in tests))
         code = pytest.main(
             ["-x", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", "-m", QUICK,
-             "-W", "ignore::pytest.PytestAssertRewriteWarning", "--basetemp", str(folder / "made"), *files],
+             "-W", "ignore::pytest.PytestAssertRewriteWarning",
+             "--basetemp", str(folder / "made"), *files],
             plugins=[Chosen(names, at)],
         )  # fmt: skip
         os._exit(int(code))
@@ -442,6 +449,32 @@ def record() -> None:
          "-m", QUICK, *files],
         cwd=REPOSITORY, env={**os.environ, "PYTHONPATH": str(REPOSITORY / "tests")}, check=False,
     )  # fmt: skip
+
+
+class Deaths:
+    """What killed faults before; a death counts while its test and the source stand."""
+
+    PATH = REPOSITORY / "out" / "mutants" / "deaths.json"
+
+    def __init__(self) -> None:
+        self._known = json.loads(self.PATH.read_text("utf-8")) if self.PATH.exists() else {}
+
+    @staticmethod
+    def _key(mutant: Mutant) -> str:
+        return f"{digest(REPOSITORY / SOURCE / mutant.file)} {mutant.start} {mutant.end} {mutant}"
+
+    def killer(self, mutant: Mutant) -> str | None:
+        """Return the test of its room that killed a fault, None where none is known."""
+        killer, of = self._known.get(self._key(mutant), (None, ""))
+        same = killer and digest(REPOSITORY / killer.partition("::")[0]) == of
+        return killer if same else None
+
+    def add(self, mutant: Mutant, killer: str) -> None:
+        """Write a death down."""
+        of = digest(REPOSITORY / killer.partition("::")[0])
+        self._known[self._key(mutant)] = killer, of
+        self.PATH.parent.mkdir(parents=True, exist_ok=True)
+        self.PATH.write_text(json.dumps(self._known), encoding="utf-8")
 
 
 class Answer(NamedTuple):
@@ -489,34 +522,42 @@ def main() -> None:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:
         import_module(library)
-    answers: list[Answer] = []
+    answers, deaths = list[Answer](), Deaths()
     runs: dict[int, Run] = {}
     made = Path(tempfile.mkdtemp())
     try:
         copies = [copied(made / str(number)) for number in range(given.jobs)]
 
-        def take() -> Answer | None:
+        def take() -> None:
             run, killer = ended(runs)
+            assert (mutant := run.mutant)
+            own = run.names[0].partition("::")[0] in tests_of(mutant.file)
+            if killer is None and own and (others := elsewhere.pop(mutant)):
+                number, run = start(run.folder, mutant, others)
+                runs[number] = run
+                return
             copies.append(run.folder)
-            if run.mutant is None:
-                return None
-            own = (killer or run.names[0]).partition("::")[0] in tests_of(run.mutant.file)
-            answer = Answer(run.mutant, killer, own, len(run.names))
-            print(answer, flush=True)
-            answers.append(answer)
-            return answer
+            answers.append(Answer(mutant, killer, own, len(run.names)))
+            print(answers[-1], flush=True)
+            if killer and own:
+                deaths.add(mutant, killer)
 
+        elsewhere = dict[Mutant, list[Test]]()
         for mutant in chosen:
+            if killer := deaths.killer(mutant):
+                answers.append(Answer(mutant, killer, True, 0))
+                continue
             meeting, files = lines.meeting(mutant), tests_of(mutant.file)
             own = in_turn((one for one in meeting if one.file in files), given.seconds)
             others = in_turn((one for one in meeting if one.file not in files), given.seconds)
+            elsewhere[mutant] = others
             if not (own or others):
                 answers.append(Answer(mutant, None, False, 0))
                 print(answers[-1], flush=True)
                 continue
-            if not copies:
+            while not copies:
                 take()
-            number, run = start(copies.pop(), mutant, own + others)
+            number, run = start(copies.pop(), mutant, own or others)
             runs[number] = run
         while runs:
             take()
