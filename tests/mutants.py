@@ -472,6 +472,7 @@ class Deaths:
     def add(self, mutant: Mutant, killer: str) -> None:
         """Write a death down."""
         of = digest(REPOSITORY / killer.partition("::")[0])
+        self.__init__()  # another process may have written
         self._known[self._key(mutant)] = killer, of
         self.PATH.parent.mkdir(parents=True, exist_ok=True)
         self.PATH.write_text(json.dumps(self._known), encoding="utf-8")
