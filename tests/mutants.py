@@ -531,7 +531,8 @@ def main() -> None:
 
         def take() -> None:
             run, killer = ended(runs)
-            assert (mutant := run.mutant)
+            assert run.mutant is not None
+            mutant = run.mutant
             own = run.names[0].partition("::")[0] in tests_of(mutant.file)
             if killer is None and own and (others := elsewhere.pop(mutant)):
                 number, run = start(run.folder, mutant, others)
