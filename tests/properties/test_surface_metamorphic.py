@@ -16,6 +16,7 @@ from underfoot.surface import (
     profile_from_positions,
     profile_roughness,
     profile_spectrum,
+    self_affine,
     spectral_moments,
     write_surface,
 )
@@ -247,3 +248,27 @@ def test_a_scan_turned_round_has_the_same_numbers(tmp_path):
             if value.value is not None:
                 assert other.values[name].value == pytest.approx(value.value, rel=0.03), name
         assert other.hurst.value == pytest.approx(first.hurst.value, rel=0.02)
+
+
+def test_a_correlation_knows_no_level():
+    line = Profile(wavy(600, 5), 2e-6, periodic=True)
+    raised = replace(line, heights=line.heights + 1e-4)
+    np.testing.assert_allclose(autocorrelation(raised)[1], autocorrelation(line)[1], atol=1e-6)
+
+
+def test_a_scan_finds_the_power_law_that_its_surface_was_made_of(tmp_path):
+    for hurst in (0.5, 0.8):
+        made = self_affine(256, 4e-6, 2e-6, hurst, 1024e-6, 8e-6, 3)
+        path = tmp_path / f"{hurst}.sdf"
+        write_surface(replace(made, periodic=False), path)
+        assert read_scan(path, cutoff=0.25e-3).hurst.value == pytest.approx(hurst, abs=0.15)
+
+
+def test_only_oblong_cells_are_said_to_show_more_along_one_side(tmp_path):
+    notes = {}
+    for name, across in (("square", None), ("oblong", 6e-6)):
+        made = self_affine(128, 4e-6, 2e-6, 0.8, 512e-6, 32e-6, 4)
+        path = tmp_path / f"{name}.sdf"
+        write_surface(replace(made, periodic=False, spacing_y=across), path)
+        notes[name] = len(read_scan(path, cutoff=0.08e-3).notes)
+    assert notes["oblong"] > notes["square"]
