@@ -442,7 +442,6 @@ DEFAULTS = {
     "by the default law without": lambda: usual("friction") == "pair",
     "default law, Eq. 26": lambda: usual("friction") == "pair",
     "each step against its own value by the default": definition_of_rcof,
-        default("interface.roughness_beyond_cutoff")) == 2,
     "where the default population comes from": assumed_rcof,
     "on which the default curve was fitted": lambda: usual("risk") == "report_g6",
 }  # fmt: skip
