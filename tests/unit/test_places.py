@@ -477,6 +477,7 @@ def test_what_helps_most_is_the_first_row_and_nothing_idle_is_one(choice):
     assert not re.search(r"\d,\d{3},\d{3}", words)  # no slips in millions
 
 
+@pytest.mark.slow
 def test_a_floor_that_is_as_rough_is_not_offered_another():
     floors = [
         {"name": "kitchen", "from": "quarry_tile"},
