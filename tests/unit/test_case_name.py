@@ -11,7 +11,7 @@ NAME = Case.load(EXAMPLE).name
 
 
 @pytest.mark.parametrize(
-    "settings, told",
+    ("settings", "told"),
     [
         ({"contaminant": "canola_oil"}, ", contaminant canola oil"),
         ({"contaminant": {"from": "canola_oil"}}, ", contaminant canola oil"),
