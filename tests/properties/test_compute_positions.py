@@ -420,14 +420,15 @@ def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_
     monkeypatch.setattr(  # the angles alone
         "underfoot.compute.read.with_numerical_error", lambda sampled, *_, **__: sampled
     )
-    alone = run(worn_shoe_case.replace("numerics.tread_positions", 1), quick=True)
-    found = run(worn_shoe_case, quick=True)
+    measured = worn_shoe_case.replace("shoe.heel.profile.angle", "10 deg")
+    alone = run(measured.replace("numerics.tread_positions", 1), quick=True)
+    found = run(measured, quick=True)
     angles = [ANGLE_BAND * part / math.sqrt(2) for part in (1, -1)]
     turned = [
         run(
-            worn_shoe_case.replace(
+            measured.replace(
                 {
-                    "motion.shoe_angle": worn_shoe_case.motion.shoe_angle + turn,
+                    "motion.shoe_angle": measured.motion.shoe_angle + turn,
                     "numerics.tread_positions": 1,
                 }
             ),
@@ -452,6 +453,43 @@ def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_
     assert any("shoe_angle: ±1 deg" in line for line in found.assumptions)
     assert found.fields["position_cof"].values == pytest.approx(cof, rel=0.02)
     assert "position_shift_x" not in found.fields
+    assert "heel_bevel" not in found.labels
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tread", ["none", "bars"])
+def test_a_bevel_that_nobody_measured_is_drawn_and_its_film_reaches_the_dangerous_side(
+    worn_shoe_case, bars, tread
+):
+    case = worn_shoe_case if tread == "none" else bars
+    path = "shoe.heel.profile.angle"
+    angle = f"{math.degrees(case.value(path) or 0.1):g} deg"
+
+    def with_angle(**more):
+        return run(case.replace(path, {"value": angle, **more}), quick=True)
+
+    exact, doubted, assumed = (
+        with_angle(),
+        with_angle(uncertainty="1 deg"),
+        with_angle(assumed=True, source="a guess"),
+    )
+    for name in ("cof", "fluid_load", "fluid_load_sensor", "peak_fluid_pressure"):
+        assert exact.value(name) == doubted.value(name) == assumed.value(name)
+    cof = {"exact": exact, "doubted": doubted, "assumed": assumed}
+    cof = {name: one.fields["cof_draws"].values for name, one in cof.items()}
+    middle = [np.quantile(cof[name], [0.25, 0.5, 0.75]) for name in ("doubted", "assumed")]
+    assert middle[0] == pytest.approx(middle[1], rel=0.15)
+    load = {id(one): one.scalars["fluid_load"].interval for one in (exact, doubted)}
+    if tread == "none":  # flush is where the film bears least: off to either side it bears more
+        assert cof["assumed"].mean() < 0.95 * cof["exact"].mean()
+        assert np.quantile(cof["assumed"], 0.25) < np.quantile(cof["exact"], 0.25)
+    assert load[id(doubted)][1] > load[id(exact)][1]
+    assert load[id(doubted)][1] <= exact.value("normal_force")
+    assert "bevel of the heel" in assumed.labels["cof_spread_from"]
+    assert any(line.about == "shoe.heel.profile" for line in assumed.assumptions)
+    assert "heel_bevel" in assumed.labels
+    assert "heel_bevel" not in exact.labels
+    assert not any("heel shape" in line for line in assumed.cautions())
 
 
 def test_the_shoe_angles_have_the_variance_of_an_even_band():

@@ -46,6 +46,7 @@ _INPUTS = {
     "model": "the law itself",
     "tread_position": "position of the tread",
     "shoe_angle": "shoe angle",
+    "bevel": "bevel of the heel",
     "numerical": "grid",
     "film load": "load on the film",
     "suction": "suction behind the edges of lugs",
@@ -55,7 +56,7 @@ _INPUTS = {
 }
 ROUGH, SMALL = ("hysteresis", "full_contact", "gap", "flow"), 0.005
 """What the rough contact adds to the spread: told however small; others from this share on."""
-FILM_ERROR = math.log(1.41)
+FILM_ERROR = math.log(1.59)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
 SUCTION_SPREAD = 29e3

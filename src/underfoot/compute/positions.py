@@ -7,12 +7,14 @@ from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, display
+from underfoot.core import SourcedValue, content_hash, display
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Remark
 from underfoot.friction import FrictionCoefficients, SampledCof
+from underfoot.friction.propagation import normal_draws
 from underfoot.shoe import Tread
 from underfoot.sole_contact.cost import Cost
 from underfoot.sole_contact.solver import SoleContact
@@ -29,6 +31,9 @@ ANGLE_BAND = math.radians(1)
 """The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
 ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 """Standard deviation of that band, rad."""
+FACET_DEVIATION = math.radians(1)
+"""Standard deviation of the angle of a heel's bevel that nobody measured, rad; assumed: ground or
+worn by hand, as ``underfoot sensitivity`` varies it."""
 YAW = math.radians(1)
 """Angle of a tread against the corner of its heel, to either side, rad; assumed: neither a mould,
 a grinder nor wear holds it better. No standard says it."""
@@ -69,6 +74,42 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class UnmeasuredBevel:
+    """The bevel of a heel whose angle nobody measured: steeper, the film sees the shoe toe down.
+
+    Attributes:
+        deviation: Standard deviation of its angle, rad.
+        heel: Name of the heel: its draws are one in all results.
+        seed: Of the draws.
+    """
+
+    deviation: float
+    heel: str
+    seed: int
+
+    @classmethod
+    def of(cls, case: Case) -> "UnmeasuredBevel | None":
+        """Return that of a case; None where the angle counts as exact or there is no bevel."""
+        path = "shoe.heel.profile.angle"
+        if path in case.idle_paths or not case.value(path):
+            return None
+        angle = case.sourced(path)
+        deviation = angle.uncertainty or FACET_DEVIATION * angle.assumed
+        paths = (row[0] for row in case.rows())
+        heel = [(one, case.value(one)) for one in paths if one.startswith("shoe.heel.")]
+        return cls(deviation, content_hash(heel), case.numerics.seed) if deviation else None
+
+    def turns(self, count: int) -> Array:
+        """Return by how much the shoe is turned against its bevel in each draw, (count,), rad."""
+        return self.deviation * normal_draws(self.seed, f"bevel of heel {self.heel}", count)
+
+    @property
+    def told(self) -> str:
+        """What is drawn, in words."""
+        return f"±{display(math.degrees(self.deviation), '1')} deg"
+
+
+@dataclass(frozen=True, slots=True)
 class TreadPositions:
     """Numbers of a run at some positions of the tread.
 
@@ -81,6 +122,7 @@ class TreadPositions:
         by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
             case's own place; empty where that is not known or in the values.
         film_by_angle: What it adds to ln F / (W - F), F the load on the film of W.
+        bevel: Of the heel, where nobody measured its angle.
         uncompared: Cells, m, where no other grid was compared with; else 0.
     """
 
@@ -95,6 +137,7 @@ class TreadPositions:
     between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     film_by_angle: float = field(default=0.0, kw_only=True)
+    bevel: UnmeasuredBevel | None = field(default=None, kw_only=True)
     uncompared: float = field(default=0.0, kw_only=True)
 
     def answer(self, name: str) -> float:
@@ -102,24 +145,37 @@ class TreadPositions:
         return float(self.values[name].mean())
 
     def drawn(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at each place in turn, evenly over the band of the angle.
+        """Return the scalar (count,) at each place in turn, drawn over the angle and the bevel.
 
         The angle moves the load on the film by its odds, and adds to other numbers.
         """
-        turns = self._turns(count)
-        if name != "fluid_load":
-            return np.maximum(self._each(name, count) + self.by_angle.get(name, 0.0) * turns, 0)
         film, contact = (self._each(load, count) for load in LOADS)
-        more = film * np.exp(self.film_by_angle * turns)
-        return more * (film + contact) / (more + contact)
+        more = film * np.exp(self._more_odds(count))
+        loads = more * (film + contact) / (more + contact)
+        return loads if name == "fluid_load" else self._beside_film(name, count, loads)
 
     def _each(self, name: str, count: int) -> Array:
         """Return the scalar (count,) at each place in turn, at the angle of the case."""
         return self.values[name][np.arange(count) % len(self.places)]
 
-    def _turns(self, count: int) -> Array:
-        """Return turns (count,) evenly over the band of the angle, in its standard deviations."""
-        return math.sqrt(3) * (2 * np.mod(GOLDEN * np.arange(count), 1) - 1)
+    def _turns(self, count: int, *, bevel: bool = True) -> Array:
+        """Return turns (count,) evenly over the band of the angle, in its standard deviations.
+
+        ``bevel``: with that of the heel, where it was not measured.
+        """
+        turns = math.sqrt(3) * (2 * np.mod(GOLDEN * np.arange(count), 1) - 1)
+        if self.bevel and bevel:
+            turns = turns + self.bevel.turns(count) / ANGLE_DEVIATION
+        return turns
+
+    def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
+        """Return what the angle adds to ln F / (W - F) of the places in turn, (count,)."""
+        return self.film_by_angle * self._turns(count, bevel=bevel)
+
+    def _beside_film(self, name: str, count: int, loads: Array) -> Array:
+        """Return draws (count,) of a scalar other than the load on the film, of draws ``loads``."""
+        more = self.by_angle.get(name, 0.0) * self._turns(count)
+        return np.maximum(self._each(name, count) + more, 0)
 
     def friction(
         self, friction: FrictionCoefficients, sampled: SampledCof | None
@@ -133,14 +189,20 @@ class TreadPositions:
         if sampled is not None:
             count = sampled.cof.size
             film, contact = (self._each(load, count) for load in LOADS)
-            draws = sampled.law.at(
-                contact / (film + contact),
-                **{name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS},
-                more_odds=self.film_by_angle * self._turns(count),
+            parts = {name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS}
+            as_measured, draws = (
+                sampled.law.at(
+                    contact / (film + contact),
+                    **parts,
+                    more_odds=self._more_odds(count, bevel=bevel),
+                )
+                for bevel in (False, True)
             )
             more = {self.origin: float(np.var(values["cof"]))}
             if self.by_angle:
                 more["shoe_angle"] = self.by_angle["cof"] ** 2
+            if self.bevel:
+                more["bevel"] = float(np.var(draws["cof"] - as_measured["cof"]))
             law_variance = float(np.var(sampled.cof))
             whole = law_variance + sum(more.values())
             share = {name: each * law_variance / whole for name, each in sampled.share.items()}
@@ -190,6 +252,7 @@ class TreadPositions:
                 "not converge. Most such positions float: COF may be lower and the load on the "
                 "film higher than the means over the others."
             )
+        told |= self._bevel_label()
         if len(self.places) == 1:
             return {"tread_position": f"as the case describes it; {failed} of the average", **told}
         cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
@@ -214,11 +277,17 @@ class TreadPositions:
             **told,
         }
 
+    def _bevel_label(self) -> dict[str, str]:
+        """Return that the bevel of the heel is drawn; empty where its angle counts as exact."""
+        return {"heel_bevel": f"not measured: angle drawn {self.bevel.told}"} if self.bevel else {}
+
     def assumptions(self) -> tuple[Remark, ...]:
-        """Return the band of the shoe angle, where it was used."""
+        """Return the band of the shoe angle, where it was used, and that of the heel's bevel."""
         angle = bool(self.by_angle) or any(place.turn for place in self.places)
         yaw = any(place.yaw for place in self.places)
+        bevel = self.bevel and Remark("shoe.heel.profile", f"angle {self.bevel.told}, drawn")
         return (
+            *((bevel,) if bevel else ()),
             *(Remark("motion.shoe_angle", "±1 deg"),) * angle,
             *(Remark("shoe.tread", "turned ±1 deg against the heel's corner"),) * yaw,
         )
@@ -253,6 +322,36 @@ class ShoeAngles(TreadPositions):
     held = "shoe angle"
     several = "shoe angles"
 
+    def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
+        """Return what the bevel adds: the odds over the angle in straight lines through those of
+        the shoe angles, which go on beyond them.
+        """
+        if not (self.bevel and bevel):
+            return np.zeros(count)
+        film, contact = (self.values[load] for load in LOADS)
+        least = FAINT * (film + contact)
+        odds = np.log(np.maximum(film, least) / np.maximum(contact, least))
+        before, after = self._turns_beside(count)
+        over_angle = make_interp_spline(*self._by_turn(odds), k=1)
+        return over_angle(after) - over_angle(before)
+
+    def _beside_film(self, name: str, count: int, loads: Array) -> Array:
+        """Return the scalar (count,) over the angle; beyond the shoe angles it stays."""
+        if not self.bevel:
+            return self._each(name, count)
+        return np.interp(self._turns_beside(count)[1], *self._by_turn(self.values[name]))
+
+    def _turns_beside(self, count: int) -> tuple[Array, Array]:
+        """Return the turns of the places in turn, (count,), rad, without the bevel and with it."""
+        turn = np.array([place.turn for place in self.places])[np.arange(count) % len(self.places)]
+        return turn, turn + (self.bevel.turns(count) if self.bevel else 0.0)
+
+    def _by_turn(self, values: Array) -> tuple[Array, Array]:
+        """Return the turns of the places, rising, and their values."""
+        turn = np.array([place.turn for place in self.places])
+        order = np.argsort(turn)
+        return turn[order], values[order]
+
     def labels(self) -> dict[str, str]:
         """Return what the interval holds in words."""
         if len(self.places) == 1:
@@ -263,7 +362,8 @@ class ShoeAngles(TreadPositions):
             "shoe_angle": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
             "case's angle. Numbers are means over them; maps and histories show the case's angle "
-            f"(COF {display(cof, '1')}, {display(load, 'N')} on the film)"
+            f"(COF {display(cof, '1')}, {display(load, 'N')} on the film)",
+            **self._bevel_label(),
         }
 
     def fields(self) -> dict[str, Any]:
@@ -406,6 +506,7 @@ def tread_positions(
         by_angle = {name: (up[name] - down[name]) / 2 for name in own}
         by_film = (_film_odds(up) - _film_odds(down)) / 2
     kind = TreadPositions if lugs else ShoeAngles
+    moved = bool(by_angle) if lugs else len(answers) > 1
     return kind(
         tuple(answers),
         values,
@@ -414,6 +515,7 @@ def tread_positions(
         between=between,
         by_angle=by_angle,
         film_by_angle=by_film,
+        bevel=UnmeasuredBevel.of(case) if moved else None,
         uncompared=0.0 if compared else spacing,
     )
 
