@@ -40,7 +40,7 @@ fuzz: $(READY)  ## Hypothesis with examples that no run had before; SEED=N repea
 fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for fewer
 	PYTHONPATH=tests $(BIN)/python tests/fuzz_files.py $(or $(COUNT),100000) $(SEED)
 
-mutants: $(READY)  ## 20 seeded faults of one room, and those that its quick tests let pass; ROOM=compute
+mutants: $(READY)  ## 20 seeded faults a room, and those that quick tests let pass; ROOM="slip shoe" for some
 	PYTHONPATH=tests $(BIN)/python tests/mutants.py $(ROOM) --count $(or $(COUNT),20) --seed $(SEED)
 
 neighbours:  ## what other programs do with the rows of docs/reference/other_programs.md; WRITE=--write

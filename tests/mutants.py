@@ -1,40 +1,60 @@
 """Changes lines of the source one at a time and counts the changes that no quick test sees.
 
-    make mutants ROOM=compute                 20 seeded faults in one room (a folder of the source)
-    python tests/mutants.py slip shoe --count 40 --seed 7
+    make mutants                              20 seeded faults in every room of the source
+    make mutants ROOM="slip shoe" COUNT=40 SEED=7
     python tests/mutants.py --named [ROOM]    the faults of mutants.toml, which tests once let pass
 
 A fault turns a sign, a comparison or a choice round, moves a number or an index, or swaps two
-arguments. It runs the quick tests that import its module, then those of its room (24 files at
-most), in a copy of the repository, until the first that fails; three times the time of these tests
-without a fault is its end. What survives is printed with its place: mend the tests, or say why it
-may live (it changes nothing that can be seen). Not part of ``make test``: it takes minutes.
+arguments. Which quick tests run which lines is recorded first (``mutants_map.py``), where it isn't
+known yet. A fault meets the tests that run its line, in a copy of the repository, in a fork of a
+process that holds the libraries, until the first that fails: first those of its room (they import
+its module, or are called ``test_<room>_``), then the others; each test once before one comes again
+with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
+meets the tests that run anything of its file; one that no test runs in this process (compiled, or
+in a process of its own) meets those of its room. What survives is printed with its place: mend the
+tests, or say why it may live. A test that fails without a fault kills nothing; a fault that its
+room's test killed counts as dead while that test and the source stand. Not part of ``make test``.
 """
 
 import ast
+import json
 import os
 import random
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
 import tomllib
 from argparse import ArgumentParser
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import cache
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
-from queue import Queue
 from typing import Any, NamedTuple
+
+import pytest
+
+from mutants_map import digest, known_map
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
 NO_TESTS_OF_CODE = ("docs", "install")
-MOST_FILES = 24
 QUICK = "not slow and not study and not browser"
-LEAST_TIME = 60.0  # s, below which no fault is called endless
+LEAST_TIME = 60  # s of CPU, below which no fault is called endless
+MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
+# what a fork finds imported
+LIBRARIES = (
+    "numpy scipy.linalg scipy.optimize scipy.sparse.linalg scipy.stats scipy.special "
+    "scipy.ndimage scipy.interpolate scipy.integrate scipy.spatial scipy.fft scipy.signal pandas "
+    "xarray pydantic pint tomlkit typer rich matplotlib.pyplot hypothesis h5py".split()
+)
 GUARD = 1e-5  # a number below it keeps a division or a rounding safe: twice it changes nothing
 ALIKE = {"min", "max", "hypot", "minimum", "maximum", "gcd", "isinstance", "getattr"}
 OPERATORS: dict[type, tuple[str, str]] = {
@@ -64,6 +84,7 @@ class Mutant(NamedTuple):
     end: int
     new: str
     shown: str
+    line: int
 
     def __str__(self) -> str:
         return f"{self.file}: {self.shown}"
@@ -90,7 +111,7 @@ class Faults(ast.NodeVisitor):
         begin, stop = data.rfind(b"\n", 0, start) + 1, data.find(b"\n", end)
         shown = (data[begin:start] + b"[" + data[start:end] + b" -> " + new.encode() + b"]"
                  + data[end:stop]).decode()  # fmt: skip
-        self.found.append(Mutant(self.file, start, end, new, f"line {line}: {shown.strip()}"))
+        self.found.append(Mutant(self.file, start, end, new, f"line {line}: {shown.strip()}", line))
 
     def _between(self, left: ast.AST, right: ast.AST, operator: ast.AST) -> None:
         old, new = OPERATORS.get(type(operator), ("", ""))
@@ -206,26 +227,120 @@ def named_faults() -> Iterator[Mutant]:
             if data.count(old.encode()) != 1:
                 raise SystemExit(f"{file}: {data.count(old.encode())} times {old!r}")
             start = data.index(old.encode())
-            yield Mutant(file, start, start + len(old.encode()), new, f"{old!r} -> {new!r}")
+            line = data[:start].count(b"\n") + 1
+            yield Mutant(file, start, start + len(old.encode()), new, f"{old!r} -> {new!r}", line)
 
 
+@cache
 def tests_of(file: str) -> tuple[str, ...]:
-    """Return the tests of a file: those that import its module, then those of its room."""
+    """Return the files of tests of a file of the source: that import its module, or of its room."""
     parts = Path(file).with_suffix("").parts
     module, room = ".".join(("underfoot", *parts)), parts[0]
     names = (module, f"from {module.rpartition('.')[0]} import {parts[-1]}\n")
     nearest, others = [], []
-    for path in sorted((REPOSITORY / "tests").rglob("test_*.py")):
-        text = path.read_text(encoding="utf-8")
-        name = path.relative_to(REPOSITORY / "tests").as_posix()
-        if name.split("/")[0] in NO_TESTS_OF_CODE:
-            continue
+    for path, text in test_texts():
         if any(one in text for one in names):
-            nearest.append(name)
-        elif path.name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
-            others.append(name)
-    others.sort(key=lambda name: not Path(name).name.startswith(f"test_{room}_"))
-    return (*nearest, *others)[:MOST_FILES]
+            nearest.append(path)
+        elif Path(path).name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
+            others.append(path)
+    return (*nearest, *others)
+
+
+@cache
+def test_texts() -> tuple[tuple[str, str], ...]:
+    """Return each file of tests of the code (relative to the repository) and its text."""
+    paths = sorted((REPOSITORY / "tests").rglob("test_*.py"))
+    names = [path.relative_to(REPOSITORY).as_posix() for path in paths]
+    return tuple(
+        (name, path.read_text(encoding="utf-8"))
+        for name, path in zip(names, paths, strict=True)
+        if name.split("/")[1] not in NO_TESTS_OF_CODE
+    )
+
+
+class Test(NamedTuple):
+    """A quick test that passes, and the s of CPU that it takes."""
+
+    name: str
+    seconds: float
+
+    @property
+    def file(self) -> str:
+        """The file that it stands in."""
+        return self.name.partition("::")[0]
+
+
+class Lines:
+    """Which tests run which lines of the source."""
+
+    def __init__(self) -> None:
+        self.red: list[str] = []
+        self.tests: dict[str, list[Test]] = {}
+        self._lines: dict[str, dict[int, list[Test]]] = defaultdict(lambda: defaultdict(list))
+        for file, _ in test_texts():
+            found = known_map(file)
+            if not found:
+                continue
+            every = [Test(one["name"], one.get("seconds", 0.0)) for one in found["tests"]]
+            passed = [one["passed"] for one in found["tests"]]
+            self.tests[file] = [one for one, good in zip(every, passed, strict=True) if good]
+            self.red += [one.name for one, good in zip(every, passed, strict=True) if not good]
+            for path, lines in found["lines"].items():
+                for line, numbers in lines.items():
+                    self._lines[path][int(line)] += [every[n] for n in numbers if passed[n]]
+
+    def meeting(self, mutant: Mutant) -> list[Test]:
+        """Return the tests that a fault should meet."""
+        of_file = self._lines.get(mutant.file, {})
+        if exact := of_file.get(mutant.line):
+            return exact
+        begin, end = statement_lines(mutant.file, mutant.line)
+        if head := of_file.get(begin):
+            return head
+        if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
+            return list(near)
+        if begin < 0:  # runs at import
+            return list({one for tests in of_file.values() for one in tests})
+        return [one for file in tests_of(mutant.file) for one in self.tests.get(file, ())]
+
+
+@cache
+def statements(file: str) -> list[tuple[int, int]]:
+    """Return the lines of the statements inside the functions of a file, the longest first."""
+    tree = ast.parse((REPOSITORY / SOURCE / file).read_text(encoding="utf-8"))
+    found = {
+        (one.lineno, one.end_lineno or one.lineno)
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef)
+        for part in function.body
+        for one in ast.walk(part)
+        if isinstance(one, ast.stmt)
+    }
+    return sorted(found, key=lambda lines: lines[0] - lines[1])
+
+
+def statement_lines(file: str, line: int) -> tuple[int, int]:
+    """Return the first and last line of the innermost statement in a function, else (-1, -1)."""
+    around = [lines for lines in statements(file) if lines[0] <= line <= lines[1]]
+    return around[-1] if around else (-1, -1)
+
+
+def in_turn(tests: Iterable[Test], seconds: float) -> list[Test]:
+    """Return tests, each once before one comes again with other parameters, quickest first."""
+    forms: dict[str, list[Test]] = defaultdict(list)
+    for one in sorted(tests, key=lambda test: test.seconds):
+        forms[one.name.partition("[")[0]].append(one)
+    ranked = [(rank, one.seconds, one) for form in forms.values() for rank, one in enumerate(form)]
+    chosen, files, total = list[Test](), set[str](), 0.0
+    for _, _, one in sorted(ranked):
+        if one.file not in files and len(files) == MOST_FILES:
+            continue
+        files.add(one.file)
+        total += one.seconds
+        if total > seconds or len(chosen) == MOST_TESTS:
+            break
+        chosen.append(one)
+    return chosen
 
 
 def copied(folder: Path) -> Path:
@@ -239,19 +354,142 @@ def copied(folder: Path) -> Path:
     return folder
 
 
-def passes(folder: Path, tests: tuple[str, ...], limit: float | None = None) -> bool:
-    """Return whether some tests pass in a copy, within ``limit`` (s)."""
-    paths = [folder / "src", folder / "tests"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))}
-    options = ["-x", "-q", "-p", "no:xdist", "-m", QUICK]
-    command = [sys.executable, "-m", "pytest", *options, *(f"tests/{name}" for name in tests)]
-    try:
-        done = subprocess.run(
-            command, cwd=folder, env=environment, capture_output=True, timeout=limit, check=False
+class Chosen:
+    """A plugin that runs some tests in their order and writes the one that runs to a file."""
+
+    def __init__(self, names: list[str], at: Path) -> None:
+        self._places, self._at = {name: place for place, name in enumerate(names)}, at
+
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Leave the others out."""
+        items[:] = sorted(
+            (one for one in items if one.nodeid in self._places),
+            key=lambda one: self._places[one.nodeid],
         )
-    except subprocess.TimeoutExpired:
-        return False
-    return done.returncode == 0
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> None:
+        """Write its name."""
+        self._at.write_text(item.nodeid, encoding="utf-8")
+
+
+class Run(NamedTuple):
+    """A child that runs tests in a copy."""
+
+    folder: Path
+    until: float
+    mutant: Mutant | None
+    names: list[str]
+
+
+def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, Run]:
+    """Run tests in a fork, with a fault in the copy; return its number and what it does."""
+    names = [one.name for one in tests]
+    at, seconds = folder / "runs", sum(one.seconds for one in tests)
+    at.write_text("", encoding="utf-8")
+    if mutant:
+        path = folder / SOURCE / mutant.file
+        data = path.read_bytes()
+        path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.end :])
+    limit = int(LEAST_TIME + 4 * seconds)
+    if number := os.fork():
+        return number, Run(folder, time.monotonic() + 8 * limit, mutant, names)
+    try:
+        os.setsid()
+        os.chdir(folder)
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+        paths = [str(folder / "src"), str(folder / "tests")]
+        sys.path[:0] = paths
+        os.environ |= {"PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
+        sys.dont_write_bytecode = True
+        silent = os.open(folder / "log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(silent, 1)
+        os.dup2(silent, 2)
+        files = list(dict.fromkeys(one.file for one in tests))
+        code = pytest.main(
+            ["-x", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", "-m", QUICK,
+             "-W", "ignore::pytest.PytestAssertRewriteWarning",
+             "--basetemp", str(folder / "made"), *files],
+            plugins=[Chosen(names, at)],
+        )  # fmt: skip
+        os._exit(int(code))
+    finally:
+        os._exit(3)
+
+
+def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
+    """Wait for a run; return it and the test that failed ("" at import), None where all passed."""
+    while True:
+        for number, run in runs.items():
+            late = time.monotonic() > run.until
+            if late:
+                os.killpg(number, signal.SIGKILL)
+            done, status = os.waitpid(number, 0 if late else os.WNOHANG)
+            if not done:
+                continue
+            del runs[number]
+            with suppress(ProcessLookupError):  # what a killed test left behind
+                os.killpg(number, signal.SIGKILL)
+            if run.mutant:
+                file = SOURCE / run.mutant.file
+                shutil.copy(REPOSITORY / file, run.folder / file)
+            if status == 0:
+                return run, None
+            return run, (run.folder / "runs").read_text(encoding="utf-8")
+        time.sleep(0.02)
+
+
+def record() -> None:
+    """Run the quick tests whose lines are not known yet."""
+    if not (files := [file for file, _ in test_texts() if known_map(file) is None]):
+        return
+    print(f"recording the lines that the tests of {len(files)} files run", flush=True)
+    subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "mutants_map", "--dist", "loadfile", "-n", "2", "-q",
+         "-m", QUICK, *files],
+        cwd=REPOSITORY, env={**os.environ, "PYTHONPATH": str(REPOSITORY / "tests")}, check=False,
+    )  # fmt: skip
+
+
+class Deaths:
+    """What killed faults before; a death counts while its test and the source stand."""
+
+    PATH = REPOSITORY / "out" / "mutants" / "deaths.json"
+
+    def __init__(self) -> None:
+        self._known = json.loads(self.PATH.read_text("utf-8")) if self.PATH.exists() else {}
+
+    @staticmethod
+    def _key(mutant: Mutant) -> str:
+        return f"{digest(REPOSITORY / SOURCE / mutant.file)} {mutant.start} {mutant.end} {mutant}"
+
+    def killer(self, mutant: Mutant) -> str | None:
+        """Return the test of its room that killed a fault, None where none is known."""
+        killer, of = self._known.get(self._key(mutant), (None, ""))
+        same = killer and digest(REPOSITORY / killer.partition("::")[0]) == of
+        return killer if same else None
+
+    def add(self, mutant: Mutant, killer: str) -> None:
+        """Write a death down."""
+        of = digest(REPOSITORY / killer.partition("::")[0])
+        self.__init__()  # another process may have written
+        self._known[self._key(mutant)] = killer, of
+        self.PATH.parent.mkdir(parents=True, exist_ok=True)
+        self.PATH.write_text(json.dumps(self._known), encoding="utf-8")
+
+
+class Answer(NamedTuple):
+    """What became of a fault."""
+
+    mutant: Mutant
+    killer: str | None
+    own: bool
+    met: int
+
+    def __str__(self) -> str:
+        word = "ALIVE " if self.killer is None else "own   " if self.own else "other "
+        end = f"{self.met} tests" if self.killer is None else self.killer or "at import"
+        return f"{word} {self.mutant}   <- {end}"
 
 
 def main() -> None:
@@ -263,52 +501,92 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=20, help="faults a room")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seconds", type=float, default=20.0, help="of tests that a fault meets")
+    parser.add_argument("--known", action="store_true", help="record nothing")
     given = parser.parse_args()
     if unknown := [room for room in given.rooms if room not in rooms]:
         parser.error(f"no room: {', '.join(unknown)}. Allowed: {', '.join(rooms)}")
-    if not given.rooms and not given.named:
-        parser.error(f"which room? {', '.join(rooms)}; or --named")
-    chosen = [
-        one
-        for one in (named_faults() if given.named else ())
-        if one.file.split("/")[0] in (given.rooms or rooms)
-    ]
-    for room in given.rooms if not given.named else ():
-        if not (faults := room_faults(room, given.count, given.seed)):
+    chosen, named = list[Mutant](), list(named_faults()) if given.named else []
+    for room in given.rooms or rooms:
+        faults = [
+            one
+            for one in (named if given.named else room_faults(room, given.count, given.seed))
+            if one.file.split("/")[0] == room
+        ]
+        if not faults and given.rooms:
             parser.error(f"{room}: nothing in it can be changed")
         chosen += faults
-    alive: list[Mutant] = []
-    with tempfile.TemporaryDirectory() as made, ThreadPoolExecutor(given.jobs) as pool:
-        copies: Queue[Path] = Queue()
-        for number in range(given.jobs):
-            copies.put(copied(Path(made, str(number))))
-        limits: dict[tuple[str, ...], float] = {}
-        for tests in dict.fromkeys(tests_of(one.file) for one in chosen):
-            if not tests:
-                parser.error("a file has no tests: " + ", ".join(
-                    sorted({one.file for one in chosen if not tests_of(one.file)})))  # fmt: skip
-            begun = time.monotonic()
-            if not passes(Path(made, "0"), tests):
-                parser.error(f"these tests fail without a fault: {' '.join(tests)}")
-            limits[tests] = max(3 * (time.monotonic() - begun), LEAST_TIME)
+    if not given.known:
+        record()
+    lines = Lines()
+    if lines.red:
+        print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
+    for library in LIBRARIES:
+        import_module(library)
+    answers, deaths = list[Answer](), Deaths()
+    runs: dict[int, Run] = {}
+    made = Path(tempfile.mkdtemp())
+    try:
+        copies = [copied(made / str(number)) for number in range(given.jobs)]
 
-        def looked(mutant: Mutant) -> None:
-            folder = copies.get()
-            path = folder / SOURCE / mutant.file
-            data, tests = path.read_bytes(), tests_of(mutant.file)
-            path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.end :])
-            try:
-                lives = passes(folder, tests, given.jobs * limits[tests])
-            finally:
-                path.write_bytes(data)
-                copies.put(folder)
-            print(f"{'ALIVE ' if lives else 'killed'} {mutant}", flush=True)
-            if lives:
-                alive.append(mutant)
+        def take() -> None:
+            run, killer = ended(runs)
+            assert run.mutant is not None
+            mutant = run.mutant
+            own = run.names[0].partition("::")[0] in tests_of(mutant.file)
+            if killer is None and own and (others := elsewhere.pop(mutant)):
+                number, run = start(run.folder, mutant, others)
+                runs[number] = run
+                return
+            copies.append(run.folder)
+            answers.append(Answer(mutant, killer, own, len(run.names)))
+            print(answers[-1], flush=True)
+            if killer and own:
+                deaths.add(mutant, killer)
 
-        list(pool.map(looked, chosen))
-    repeat = "" if given.named else f" (--seed {given.seed} repeats them)"
-    print(f"{len(chosen) - len(alive)} of {len(chosen)} killed{repeat}")
+        elsewhere = dict[Mutant, list[Test]]()
+        for mutant in chosen:
+            if killer := deaths.killer(mutant):
+                answers.append(Answer(mutant, killer, True, 0))
+                continue
+            meeting, files = lines.meeting(mutant), tests_of(mutant.file)
+            own = in_turn((one for one in meeting if one.file in files), given.seconds)
+            others = in_turn((one for one in meeting if one.file not in files), given.seconds)
+            elsewhere[mutant] = others
+            if not (own or others):
+                answers.append(Answer(mutant, None, False, 0))
+                print(answers[-1], flush=True)
+                continue
+            while not copies:
+                take()
+            number, run = start(copies.pop(), mutant, own or others)
+            runs[number] = run
+        while runs:
+            take()
+        false = set[str]()  # killers that fail without a fault too
+        killers = {one.killer for one in answers if one.killer}
+        while killers:
+            number, run = start(copies.pop(), None, [Test(name, 1.0) for name in sorted(killers)])
+            runs[number] = run
+            run, killer = ended(runs)
+            copies.append(run.folder)
+            if killer is None:
+                break
+            false.add(killer)
+            killers.discard(killer)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+    if false:
+        print(
+            "These tests fail in a copy without a fault, and kill none:", *sorted(false), sep="\n  "
+        )
+    print(f"{'room':14} faults  own  quick   (seed {given.seed})")
+    for room in (*(given.rooms or rooms), ""):
+        of_room = [one for one in answers if one.mutant.file.startswith(f"{room}/" if room else "")]
+        dead = [one for one in of_room if one.killer is not None and one.killer not in false]
+        if of_room:
+            own = sum(one.own for one in dead)
+            print(f"{room or 'all':14} {len(of_room):6} {own:4} {len(dead):6}")
 
 
 if __name__ == "__main__":

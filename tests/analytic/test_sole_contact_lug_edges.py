@@ -102,6 +102,7 @@ def block_film(radius, drag, spacing=1e-3):
     return solved.fluid_load / load
 
 
+@pytest.mark.slow
 def test_film_and_friction_of_blocks_of_the_coupled_finite_elements():
     """Film within 0.13 of the load; suction within 6 % of friction where the edge wipes."""
     for radius, rows in COUPLED.items():
@@ -138,6 +139,7 @@ def test_film_under_a_block_is_that_of_its_mirror_image_slid_back():
     )
 
 
+@pytest.mark.slow
 def test_ribs_along_the_sliding_have_no_edge_that_lets_a_film_in():
     case = tread("longitudinal", **SIZES).replace("numerics.tread_positions", 1)
     with_edges, without = (

@@ -367,3 +367,11 @@ def test_a_case_that_does_not_converge_ends_with_4_and_no_plain_number(underfoot
     assert found.exit_code == 4
     assert "not converged" in (found.stdout + found.stderr)
     assert "Coefficient of friction" not in found.stdout
+
+
+def test_the_words_of_a_report_of_trials_are_explained():
+    printed = (
+        "Bland-Altman", "Wilcoxon", "Mann-Whitney", "Friedman", "Kruskal-Wallis", "FWHM", "Firth",
+        "Greenhouse-Geisser", "Benjamini-Hochberg", "TOST", "type III", "standard uncertainty",
+    )  # fmt: skip
+    assert set(printed) <= set(TERMS)

@@ -85,6 +85,7 @@ def test_a_scan_is_read_and_its_lines_make_a_case(folder):
     assert case.value("floor.roughness.cutoff") == 0.8e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hurst", [0.6, 0.8])
 def test_spectrum_of_one_profile_is_that_of_its_surface(tmp_path, hurst):
     """Slope and height within 15 % of the map's; the map's Hurst exponent within 0.1."""

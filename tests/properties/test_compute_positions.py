@@ -416,6 +416,7 @@ def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
         assert more.memory == one.memory
 
 
+@pytest.mark.slow
 def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_case, monkeypatch):
     monkeypatch.setattr(  # the angles alone
         "underfoot.compute.read.with_numerical_error", lambda sampled, *_, **__: sampled

@@ -52,6 +52,7 @@ def numbers(case):
     return place_numbers(parts, contact), contact
 
 
+@pytest.mark.slow
 def test_a_default_answer_forgets_the_film_at_touch_down():
     (thin, _), (thick, contact) = (
         numbers(treaded(**{"motion.start_film": film})) for film in ("15 um", "200 um")
@@ -136,6 +137,7 @@ def test_a_pool_thinner_than_the_film_at_touch_down_has_an_answer(start):
     assert thin["cof"] == pytest.approx(deep["cof"], rel=0.15)
 
 
+@pytest.mark.slow
 def test_channels_that_summits_fill_are_named():
     shallow = run(treaded(**{"shoe.tread.depth": "0.02 mm"}), quick=True)
     assert any(line.startswith("tread: ") for line in shallow.breaches)

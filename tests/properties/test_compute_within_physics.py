@@ -50,6 +50,7 @@ def test_a_flat_pad_that_floats_at_its_own_angle_has_an_answer():
     assert beyond_physics(case, result) == []
 
 
+@pytest.mark.slow
 def test_a_tread_worn_through_has_an_answer_at_every_speed():
     """Cells pressed shut with liquid in them held Newton's method up at a third of the speeds."""
     pair = {"shoe": "work_shoe_full_tread", "floor": "vinyl_g4", "contaminant": "glycerol_90pct"}

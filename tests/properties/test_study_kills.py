@@ -192,6 +192,7 @@ def test_a_goal_that_no_design_meets_is_told_with_the_nearest_design(made_up, tm
     assert "cof" in result.summary()
 
 
+@pytest.mark.slow
 def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, monkeypatch):
     """An input that changes nothing: every case has the same numbers."""
 

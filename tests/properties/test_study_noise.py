@@ -62,6 +62,7 @@ def small():
     return played("budget = 40\nagain = 3", 0, draws=draws)
 
 
+@pytest.mark.slow
 def test_the_best_are_run_again_elsewhere_and_beside_the_start(small):
     again = [job for job in small.jobs if not job.quick]
     assert {job.point for job in again[:-1]} == {one.point for one in small.again}

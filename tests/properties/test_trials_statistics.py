@@ -161,3 +161,23 @@ def test_empty_cells_are_warned_of():
     table = analysis_of_variance(y, {"a": a, "b": b})
     assert any("a y and b q" in text for text in table.warnings)
     assert table["a:b"].df == 0
+
+
+@pytest.mark.parametrize("method", ["maximum_likelihood", "firth"])
+def test_slips_counted_as_steps_that_held_turn_every_sign_and_no_warning(method):
+    generator = np.random.default_rng(4)
+    x, idle = generator.normal(0.2, 0.05, 60), generator.normal(size=60)
+    slipped = (generator.random(60) < 1 / (1 + np.exp(2.0 + 20 * (x - 0.2)))).astype(float)
+    assert 2 < slipped.sum() < 10  # fewer than five for each predictor
+    one, other = (
+        logistic_regression(outcome, {"cof": x, "idle": idle}, method=method)
+        for outcome in (slipped, 1 - slipped)
+    )
+    for first, second in zip(one.coefficients, other.coefficients, strict=True):
+        assert second.estimate == pytest.approx(-first.estimate, rel=1e-4, abs=1e-5)
+        assert second.low == pytest.approx(-first.high, rel=1e-3, abs=1e-3)
+    assert one.warnings == other.warnings
+    assert len(one.warnings) == 1
+    both = np.tile(slipped, 4), {"cof": np.tile(x, 4), "idle": np.tile(idle, 4)}
+    four = logistic_regression(*both, method=method)
+    assert len(four.warnings) == 0

@@ -80,6 +80,7 @@ def test_draws_of_cof_carry_the_error_and_two_soles_do_not_share_it():
     assert wide.contact.max() == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quick_grid", ["3 mm", "3.2 mm"])
 def test_a_grid_is_not_compared_with_itself(quick_grid):
     """The difference of a grid to its like is 0: an error of a tenth of the truth was printed."""

@@ -163,3 +163,9 @@ def test_on_the_front_stand_designs_that_none_beats_and_that_meet_what_is_requir
     found, best = front_of(*rows)
     assert found == front
     assert best == front
+
+
+def test_shoes_that_never_slip_share_the_chance_to_be_best(monkeypatch):
+    told = choice_of(monkeypatch, dict.fromkeys("abc", (4.0, 4.0)) | {"d": (0.1, 0.1)})
+    chances = {each.shoe.name: each.best for each in told.shoes}
+    assert chances == pytest.approx({"a": 1 / 3, "b": 1 / 3, "c": 1 / 3, "d": 0}, abs=1e-9)

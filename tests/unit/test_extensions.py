@@ -337,6 +337,7 @@ def test_physics_of_another_package_is_computed_and_counts(tribo, given):
     assert Case.from_text(case.to_toml(complete=True)).hash == case.hash
 
 
+@pytest.mark.slow
 def test_a_film_is_an_object(tribo):
     """A power law of exponent 1 is a Newtonian film; thinning takes load off the film."""
     case = Case(**PARTS)

@@ -431,6 +431,7 @@ def package(tmp_path, monkeypatch):
         del sys.modules[name]
 
 
+@pytest.mark.slow
 def test_code_of_a_law_counts_with_the_files_beside_it(package, smooth):
     hashes, cofs = [], []
     for level, top in ((0.3, ""), (0.3, ""), (0.5, ""), (0.5, "K = 1")):

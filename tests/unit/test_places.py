@@ -477,6 +477,7 @@ def test_what_helps_most_is_the_first_row_and_nothing_idle_is_one(choice):
     assert not re.search(r"\d,\d{3},\d{3}", words)  # no slips in millions
 
 
+@pytest.mark.slow
 def test_a_floor_that_is_as_rough_is_not_offered_another():
     floors = [
         {"name": "kitchen", "from": "quarry_tile"},
@@ -733,3 +734,21 @@ def test_the_repeat_of_a_reading_is_the_scatter_it_states():
         off = np.array([0.4, 0.4 * math.exp(sd / 0.4)])
         at, beside = JointDraws.log_likelihood(draws, off, reading)
         assert at - beside == pytest.approx(0.5)
+
+
+def test_a_friction_that_people_need_is_assumed_only_where_it_was_not_given():
+    def asked(**people):
+        return place_of(small_place() | {"people": people})
+
+    def assumes(place):
+        return any(each.startswith("people.rcof_mean") for each in place.assumed)
+
+    walk, carry = {"name": "walking", "share": 0.5}, {"name": "carrying", "share": 0.5}
+    assert assumes(asked(steps_per_day=5000))
+    assert not assumes(asked(task=[walk | {"rcof": 0.19}, carry | {"rcof": 0.3}]))
+    mixed = asked(task=[walk, carry | {"rcof": 0.3}])
+    assert assumes(mixed)
+    assert [task.rcof for task in mixed.tasks] == [0.20, 0.3]
+    told = asked(rcof_mean=0.23, task=[walk, carry | {"rcof": 0.3}])
+    assert not assumes(told)
+    assert [task.rcof for task in told.tasks] == [0.23, 0.3]

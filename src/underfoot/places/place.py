@@ -194,13 +194,14 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     people = table.get("people", {})
     _check_keys(people, "people", "people")
     mean = _number(people, "rcof_mean", "people", 0.20, (0.05, 0.6))
-    if "rcof_mean" not in people:
-        assumed.append("people.rcof_mean: not given; 0.20 of adults who walk straight on the level")
     steps = _number(people, "steps_per_day", "people", 8000.0, (1, 1e5))
     _number(people, "days_per_year", "people", 220.0, (1, 366))  # files of 0.2 have it
     if "steps_per_day" not in people:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
-    tasks = tuple(_task(each) for each in people.get("task", [])) or (Task("walking", 1.0, mean),)
+    tasks = tuple(_task(each, mean) for each in people.get("task", []))
+    tasks = tasks or (Task("walking", 1.0, mean),)
+    if "rcof_mean" not in people and not all("rcof" in t for t in people.get("task") or [{}]):
+        assumed.append("people.rcof_mean: not given; 0.20 of adults who walk straight on the level")
     _adds_to_one([task.share for task in tasks], "people.task")
     place = Place(
         str(table.get("name", name)),
@@ -291,14 +292,14 @@ def _adds_to_one(shares: Sequence[float], where: str) -> None:
         )
 
 
-def _task(entry: Any) -> Task:
+def _task(entry: Any, mean: float) -> Task:
     _check_keys(entry, "people.task", "people.task")
     name = str(entry.get("name", "task"))
     where = f"people.task {name}"
     return Task(
         name,
         _number(entry, "share", where, 1.0, (0.0, 1.0)),
-        _number(entry, "rcof", where, 0.20, (0.05, 0.6)),
+        _number(entry, "rcof", where, mean, (0.05, 0.6)),
     )
 
 
