@@ -242,6 +242,11 @@ def test_from_the_first_page_to_a_compared_pair_in_under_ten_clicks(app):
         page.wait_for_url("**/compare?**")
         drawn(page)
         assert page.locator(".stage").count() == 2
+        rows = page.locator("table:has(caption:has-text('Inputs that differ')) th[scope=row]")
+        rows.first.wait_for(state="attached")
+        labels = rows.all_text_contents()
+        assert labels
+        assert not [label for label in labels if "." in label]  # names, no keys
         assert len(clicks) < 10
         assert page.complaints == []
 

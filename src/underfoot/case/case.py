@@ -40,6 +40,8 @@ from .surfaces import Floor, Interface
 from .versions import GONE, current_path, current_settings, sentence, upgrade
 
 _SECTIONS = tuple(CaseParts.model_fields)
+UNNAMED, NAMED = {"numerics", "sensor", "file_version", "name", "description"}, 3
+"""Sections that no name speaks of; changes that a name tells at most."""
 _ABSENT = SourcedValue(None, "1", reason="not given in the case")
 
 
@@ -163,7 +165,7 @@ class Case(Presentable):
         remarks = [sentence(old, new) for new, old in places.moved.items()]
         if older:
             edits = {"file_version": FILE_VERSION, **edits}
-        changes = _checked(settings)
+        changes = _with_name(given, _checked(settings))
         given = _edited(given, changes)
         case._compose(
             given,
@@ -530,10 +532,40 @@ def with_settings(mapping: Mapping[str, Any], settings: Mapping[str, Any]) -> di
     return _edited(_current(mapping)[0], current_settings(settings))
 
 
-def _is_empty(mapping: Mapping[str, Any], path: str) -> bool:
+def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return changes with a name that tells them: the file's own may state what they replace."""
+    replaced = {
+        path: value
+        for path, value in changes.items()
+        if path.partition(".")[0] not in UNNAMED
+        and expanded(_value_at(given, path), path) != expanded(value, path)
+    }
+    if "name" in changes or not isinstance(given.get("name"), str) or not replaced:
+        return dict(changes)
+    told = [_told_change(path, value) for path, value in replaced.items()]
+    more = [f"and {len(told) - NAMED} more"] if len(told) > NAMED else []
+    return {**changes, "name": ", ".join([given["name"], *told[:NAMED], *more])}
+
+
+def _told_change(path: str, value: Any) -> str:
+    """Return a changed value in words: of a section the entry or option that it takes."""
+    words = path.rpartition(".")[2].replace("_", " ")
+    if isinstance(value, Mapping):
+        value = next((value[key] for key in ("value", "from", "model") if key in value), "changed")
+    if isinstance(value, Section | list | tuple):
+        value = "changed"
+    return f"{words} {'as by default' if value is None else str(value).replace('_', ' ')}"
+
+
+def _value_at(mapping: Mapping[str, Any], path: str) -> Any:
     item: Any = mapping
     for part in path.split("."):
         item = item.get(part) if isinstance(item, Mapping) else None
+    return item
+
+
+def _is_empty(mapping: Mapping[str, Any], path: str) -> bool:
+    item = _value_at(mapping, path)
     marks = {"source", "note", "assumed", "verified"}
     return isinstance(item, Mapping) and set(item) <= marks
 

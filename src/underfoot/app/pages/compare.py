@@ -103,7 +103,8 @@ class _Compare:
             sentences(comparison["cautions"], "soft")
         with self.inputs:
             for each in comparison["tables"]:
-                table(each)
+                named = [[self.text.get(f"inputs.{key}", key), *row] for key, *row in each["rows"]]
+                table({**each, "rows": named})
 
     def _separate(self) -> None:
         """Compute what would tell an order that is open, once for the same results."""
