@@ -442,8 +442,6 @@ DEFAULTS = {
     "by the default law without": lambda: usual("friction") == "pair",
     "default law, Eq. 26": lambda: usual("friction") == "pair",
     "each step against its own value by the default": definition_of_rcof,
-    "better than the default 2 is no ground": lambda: float(
-        default("interface.roughness_beyond_cutoff")) == 2,
     "where the default population comes from": assumed_rcof,
     "on which the default curve was fitted": lambda: usual("risk") == "report_g6",
 }  # fmt: skip
