@@ -165,12 +165,14 @@ def refused_input(call: Any) -> str | None:
 
 
 @pytest.mark.parametrize("device", DEVICES)
-@pytest.mark.parametrize("wrong", ["missing", "infinite", "thin", "line", "cube", "complex"])
+@pytest.mark.parametrize(
+    "wrong", ["missing", "infinite", "thin", "line", "cube", "complex", "bool"]
+)
 def test_heights_of_any_library_are_refused_like_numpy_s(device, wrong):
     height: Any = waves()
     height[3, 7] = {"missing": np.nan, "infinite": np.inf}.get(wrong, 0.0)
     height = {"thin": height[:, :1], "line": height[0], "cube": height[None]}.get(wrong, height)
-    height = height + 0j if wrong == "complex" else height
+    height = {"complex": height + 0j, "bool": height > 0.0}.get(wrong, height)
     other = on_device(np.ascontiguousarray(height), device)
     texts = []
     for given in (height, other):
@@ -193,6 +195,7 @@ def test_what_lies_on_another_device_is_refused_where_numpy_computes():
     there = on_device(waves(), "strict device1")
     calls = {
         "gap": lambda: flow_factors(there),
+        "heights": lambda: HeightMap(there, 1e-5),
         "floor_height": lambda: transient_sliding(there, 1e-5, MATERIAL, 0.1, pressure=1e4),
         "shoe_height": lambda: transient_sliding(
             waves(), 1e-5, MATERIAL, 0.1, pressure=1e4, shoe_height=there
@@ -280,7 +283,7 @@ def test_a_device_that_is_not_there_is_refused(monkeypatch):
     given = ([floor], MATERIAL, [1e4, 2e4, 3e4, 4e4], [0.1])
     monkeypatch.setattr(devices, "card", lambda: None)
     monkeypatch.setattr(devices, "find_spec", lambda _: object())
-    for named in ("cuda", "gpu"):
+    for named in ("cuda", "gpu", None, 0):
         call = lambda named=named: ContactTable.from_surfaces(*given, device=named)  # noqa: E731
         assert refused_input(call) == "device"
     monkeypatch.setattr(devices, "find_spec", lambda _: None)

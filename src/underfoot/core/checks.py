@@ -61,7 +61,8 @@ def choice(value: str, allowed: Iterable[str], where: str) -> str:
     """Return ``value``; refuse a word that is none of ``allowed``, with the nearest one."""
     allowed = tuple(allowed)
     if value not in allowed:
-        raise unknown_name(where.rpartition(".")[2].replace("_", " "), value, allowed, where=where)
+        kind = where.rpartition(".")[2].replace("_", " ")
+        raise unknown_name(kind, str(value), allowed, where=where)
     return value
 
 

@@ -224,6 +224,8 @@ def _as_floats(height: Any) -> tuple[Any, bool]:
     xp = namespace(height)
     if xp.isdtype(height.dtype, "complex floating"):
         raise InputError(f"the heights are complex ({height.dtype})", **refused)
+    if xp.isdtype(height.dtype, "bool"):
+        raise InputError("the heights are true or false, no lengths", **refused)
     if getattr(height, "requires_grad", False):
         refused["remedy"] = "Give height.detach(): a contact has no derivative by its heights"
         raise InputError("the heights ask for their gradient", **refused)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
+from underfoot.core.checks import host_array
 from underfoot.core.units import metres
 
 
@@ -22,7 +23,8 @@ class Heights:
     processing: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        heights = np.array(self.heights, dtype=float)
+        given = host_array(self.heights, "heights", "an array of NumPy")
+        heights = np.array(given, dtype=float)
         if heights.ndim != self.axes or min(heights.shape) < 2:
             raise InputError(
                 f"heights of shape {heights.shape}",
