@@ -7,7 +7,6 @@ from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from underfoot.case import Case
 from underfoot.core import SourcedValue, content_hash, display
@@ -34,6 +33,8 @@ ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
 FACET_DEVIATION = math.radians(1)
 """Standard deviation of the angle of a heel's bevel that nobody measured, rad; assumed: ground or
 worn by hand, as ``underfoot sensitivity`` varies it."""
+FURTHER = 1.5
+"""Standard deviations of such a bevel to which its film is solved: beyond, films hardly change."""
 YAW = math.radians(1)
 """Angle of a tread against the corner of its heel, to either side, rad; assumed: neither a mould,
 a grinder nor wear holds it better. No standard says it."""
@@ -123,6 +124,7 @@ class TreadPositions:
             case's own place; empty where that is not known or in the values.
         film_by_angle: What it adds to ln F / (W - F), F the load on the film of W.
         bevel: Of the heel, where nobody measured its angle.
+        further: Scalars by name at turns (rad) that only such a bevel reaches; not in the means.
         uncompared: Cells, m, where no other grid was compared with; else 0.
     """
 
@@ -138,6 +140,7 @@ class TreadPositions:
     by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     film_by_angle: float = field(default=0.0, kw_only=True)
     bevel: UnmeasuredBevel | None = field(default=None, kw_only=True)
+    further: Mapping[float, Mapping[str, float]] = field(default_factory=dict, kw_only=True)
     uncompared: float = field(default=0.0, kw_only=True)
 
     def answer(self, name: str) -> float:
@@ -323,32 +326,30 @@ class ShoeAngles(TreadPositions):
     several = "shoe angles"
 
     def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
-        """Return what the bevel adds: the odds over the angle in straight lines through those of
-        the shoe angles, which go on beyond them.
-        """
+        """Return what the bevel adds: the odds at its turn less those at the place's own."""
         if not (self.bevel and bevel):
             return np.zeros(count)
-        film, contact = (self.values[load] for load in LOADS)
-        least = FAINT * (film + contact)
-        odds = np.log(np.maximum(film, least) / np.maximum(contact, least))
-        before, after = self._turns_beside(count)
-        over_angle = make_interp_spline(*self._by_turn(odds), k=1)
-        return over_angle(after) - over_angle(before)
+        film, contact = (self._over_angle(load) for load in LOADS)
+        least = FAINT * (film[1] + contact[1])
+        odds = np.log(np.maximum(film[1], least) / np.maximum(contact[1], least))
+        before, after = (np.interp(turn, film[0], odds) for turn in self._turns_beside(count))
+        return after - before
 
     def _beside_film(self, name: str, count: int, loads: Array) -> Array:
-        """Return the scalar (count,) over the angle; beyond the shoe angles it stays."""
+        """Return the scalar (count,) at the turn of its angle and bevel."""
         if not self.bevel:
             return self._each(name, count)
-        return np.interp(self._turns_beside(count)[1], *self._by_turn(self.values[name]))
+        return np.interp(self._turns_beside(count)[1], *self._over_angle(name))
 
     def _turns_beside(self, count: int) -> tuple[Array, Array]:
         """Return the turns of the places in turn, (count,), rad, without the bevel and with it."""
         turn = np.array([place.turn for place in self.places])[np.arange(count) % len(self.places)]
         return turn, turn + (self.bevel.turns(count) if self.bevel else 0.0)
 
-    def _by_turn(self, values: Array) -> tuple[Array, Array]:
-        """Return the turns of the places, rising, and their values."""
-        turn = np.array([place.turn for place in self.places])
+    def _over_angle(self, name: str) -> tuple[Array, Array]:
+        """Return all turns that were solved, rising, rad, and the scalar there."""
+        turn = np.array([*(place.turn for place in self.places), *self.further])
+        values = np.array([*self.values[name], *(one[name] for one in self.further.values())])
         order = np.argsort(turn)
         return turn[order], values[order]
 
@@ -375,6 +376,19 @@ class ShoeAngles(TreadPositions):
             name: each for name, each in fields.items() if "shift" not in name and "yaw" not in name
         }
         return {"position_turn": ("tread_position", turn, about), **kept}
+
+
+def further_angles(case: Case) -> tuple[Place, ...]:
+    """Return the angles beyond ``shoe_angles`` that the interval of a case without lugs needs.
+
+    One to each side, as far as the angle of a bevel that nobody measured goes; else none.
+    """
+    bevel = None if treaded(case) else UnmeasuredBevel.of(case)
+    return (
+        (Place(turn=FURTHER * bevel.deviation), Place(turn=-FURTHER * bevel.deviation))
+        if (bevel)
+        else ()
+    )
 
 
 def shoe_angles() -> tuple[Place, ...]:
@@ -475,6 +489,7 @@ def tread_positions(
     angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
     asked += [(place, coarse) for place in all_places if coarse != spacing]
+    asked += [(place, coarse) for place in further_angles(case)]
     ended = dict(at_places(asked))
     at = {(place, spacing): numbers for place, numbers in known.items()}
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
@@ -496,17 +511,18 @@ def tread_positions(
     for name in own:
         apart = after[name] - before[name]
         scatter = float(np.std(apart, ddof=1)) if len(pairs) > 1 else abs(float(apart[0]))
-        further = float((values[name] - near[name]).mean())
+        onward_part = float((values[name] - near[name]).mean())
         further_on = onto if name in (*LOADS, *COF_PARTS) or not lugs else 1.0
-        between[name] = math.hypot(further / 2, further_on * scatter / len(pairs) ** rate)
+        between[name] = math.hypot(onward_part / 2, further_on * scatter / len(pairs) ** rate)
     between["cof"] = sum(between[name] for name in COF_PARTS)
     by_angle, by_film = {}, 0.0
     if lugs and all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
         by_angle = {name: (up[name] - down[name]) / 2 for name in own}
         by_film = (_film_odds(up) - _film_odds(down)) / 2
-    kind = TreadPositions if lugs else ShoeAngles
-    moved = bool(by_angle) if lugs else len(answers) > 1
+    further = [place for place in further_angles(case) if (place, coarse) in at]
+    beyond = carried(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
+    kind, known_beyond = (TreadPositions, bool(by_angle)) if lugs else (ShoeAngles, bool(further))
     return kind(
         tuple(answers),
         values,
@@ -515,7 +531,10 @@ def tread_positions(
         between=between,
         by_angle=by_angle,
         film_by_angle=by_film,
-        bevel=UnmeasuredBevel.of(case) if moved else None,
+        bevel=UnmeasuredBevel.of(case) if known_beyond else None,
+        further={
+            place.turn: {n: v[k] for n, v in beyond.items()} for k, place in enumerate(further)
+        },
         uncompared=0.0 if compared else spacing,
     )
 
@@ -625,10 +644,11 @@ def first_share(case: Case, *, quick: bool) -> float:
     if count == 1:
         return 1.0
     share = numerics.grid_spacing / numerics.quick_grid_spacing
+    further = len(further_angles(case))
     if quick or (lugs and share >= 1):
-        marches = float(count + lugs)
+        marches = float(count + lugs + further)
     else:
-        marches = 1 + math.ceil(count / 2) * lugs + count * share**2
+        marches = 1 + math.ceil(count / 2) * lugs + (count + further) * share**2
     if lugs:  # a history of the motion is marched at both angles
         marches += len(TURNED) * (case.motion.build() is not None)
     return 1 / marches
