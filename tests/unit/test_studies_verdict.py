@@ -134,6 +134,12 @@ def test_a_steady_approach_is_extrapolated_with_its_error():
     assert verdict(on_grids(125.0, 110.0, 102.5)) == "overlaps"
 
 
+def test_a_value_far_below_any_grid_is_not_extrapolated_to():
+    """268, 198, 147 on grids that shrink by 0.6 and 0.7 would end at 28."""
+    found = grid_value([(1e-3, 268.0), (0.6e-3, 198.0), (0.42e-3, 147.0)], 10.0)
+    assert (found.value, found.converged) == (147.0, False)
+
+
 def test_what_jumps_between_grids_is_not_extrapolated():
     assert verdict(on_grids(90.0, 115.0, 100.0)) == "not converged"
     assert verdict(on_grids(100.0, 105.0, 115.0)) == "not converged"  # growing steps

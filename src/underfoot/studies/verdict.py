@@ -224,7 +224,8 @@ def grid_value(levels: Sequence[tuple[float, float]], tolerance: float) -> GridV
 
     Converged where the last refinement moved it by less than a third of the ``tolerance``.
     Elsewhere the first-order Richardson value with the distance to the finest grid as its error,
-    where three grids approach it from one side in shrinking steps.
+    where three grids approach it from one side in shrinking steps, and it is less than half of the
+    finest grid's value away: further off a straight line is no correction.
     """
     if len(levels) < 2:
         return GridValue(levels[-1][1] if levels else math.nan, 0.0, False, "one grid only")
@@ -237,7 +238,8 @@ def grid_value(levels: Sequence[tuple[float, float]], tolerance: float) -> GridV
         if step * earlier > 0.0 and abs(step) < abs(earlier):
             error = abs(step) / (coarse / fine - 1.0)
             value = last + math.copysign(error, step)
-            return GridValue(value, error, True, "Richardson value of three grids")
+            if error < abs(last) / 2:
+                return GridValue(value, error, True, "Richardson value of three grids")
     return GridValue(last, 0.0, False, f"the last refinement moved it by {step:+.3g}")
 
 
