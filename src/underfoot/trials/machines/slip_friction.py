@@ -166,11 +166,14 @@ def slide_plate(trial: Trial, up: np.ndarray, record: TesterCalibration | None =
     return replace(plate, force=next(factors) * normal + next(factors) * (plate.force - normal))
 
 
+UNCALIBRATED = "no record: the tester's gain is not in the uncertainty"
+"""Convention of a COF whose tester has no calibration record."""
+
+
 def calibrated(cof: Measurement, record: TesterCalibration | None) -> Measurement:
     """Return a COF with the calibration it refers to, and its uncertainty added."""
     if record is None:
-        text = "no record: the tester's gain is not in the uncertainty"
-        return replace(cof, conventions={**cof.conventions, "calibration": text})
+        return replace(cof, conventions={**cof.conventions, "calibration": UNCALIBRATED})
     choices = {**cof.conventions, "calibration": record.description()}
     error = None
     if cof.value is not None and cof.uncertainty is not None:

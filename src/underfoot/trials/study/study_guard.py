@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..machines.slip_friction import UNCALIBRATED
 from ..recording.protocols import Protocol
 from ..statistics import drift, told_apart
 from .circumstances import ORDERS, gone_with, run_numbers
@@ -582,7 +583,7 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Yield the checks that need a person, each once."""
     said = [m["conventions"] for one in files for m in one.measurements]
-    if any(c.get("calibration", "").startswith("no record") for c in said):
+    if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"
         yield Doubt(words, ("all",))
     if protocol.text("quantity") == "ptv":
