@@ -152,10 +152,11 @@ class TreadPositions:
 
         The angle moves the load on the film by its odds, and adds to other numbers.
         """
+        if name != "fluid_load":
+            return self._beside_film(name, count)
         film, contact = (self._each(load, count) for load in LOADS)
         more = film * np.exp(self._more_odds(count))
-        loads = more * (film + contact) / (more + contact)
-        return loads if name == "fluid_load" else self._beside_film(name, count, loads)
+        return more * (film + contact) / (more + contact)
 
     def _each(self, name: str, count: int) -> Array:
         """Return the scalar (count,) at each place in turn, at the angle of the case."""
@@ -175,8 +176,8 @@ class TreadPositions:
         """Return what the angle adds to ln F / (W - F) of the places in turn, (count,)."""
         return self.film_by_angle * self._turns(count, bevel=bevel)
 
-    def _beside_film(self, name: str, count: int, loads: Array) -> Array:
-        """Return draws (count,) of a scalar other than the load on the film, of draws ``loads``."""
+    def _beside_film(self, name: str, count: int) -> Array:
+        """Return draws (count,) of a scalar other than the load on the film."""
         more = self.by_angle.get(name, 0.0) * self._turns(count)
         return np.maximum(self._each(name, count) + more, 0)
 
@@ -335,7 +336,7 @@ class ShoeAngles(TreadPositions):
         before, after = (np.interp(turn, film[0], odds) for turn in self._turns_beside(count))
         return after - before
 
-    def _beside_film(self, name: str, count: int, loads: Array) -> Array:
+    def _beside_film(self, name: str, count: int) -> Array:
         """Return the scalar (count,) at the turn of its angle and bevel."""
         if not self.bevel:
             return self._each(name, count)
