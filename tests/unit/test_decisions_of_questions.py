@@ -1,0 +1,72 @@
+"""Offers, copies and rankings of questions and places by small cases whose answer is plain."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from underfoot.case import Case
+from underfoot.places.choice import BINS, _of_bins
+from underfoot.places.evidence import ScoredReading, score
+from underfoot.places.place import _task
+from underfoot.questions.changes import possible_changes
+from underfoot.questions.contact import mirrored
+from underfoot.surface import HeightMap
+
+
+def changes_at(rq):
+    case = Case.load("examples/work_shoe_untreaded_glycerol.toml")
+    given = {"shoe.roughness.rq": f"{rq} um", "shoe.roughness.ra": None}
+    return {change.name: change.values for change in possible_changes(case.replace(given))}
+
+
+def test_a_sole_is_abraded_to_twice_its_roughness_where_that_can_be_done():
+    assert changes_at(14.9)["abraded_sole"]["shoe.roughness.rq"] == pytest.approx(29.8e-6)
+    assert "abraded_sole" not in changes_at(15.1)
+
+
+def test_a_mirrored_map_holds_the_map_and_is_its_own_mirror_image():
+    heights = np.random.default_rng(0).normal(size=(12, 10)) * 1e-6
+    whole = mirrored(HeightMap(heights, 1e-6))
+    assert whole.heights.shape == (24, 20)
+    assert whole.periodic
+    corner = whole.heights[:12, :10]
+    for flipped in (whole.heights[::-1], whole.heights[:, ::-1]):
+        assert flipped == pytest.approx(whole.heights)
+    # the corner is the levelled map: the map less a plane
+    x, y = np.meshgrid(np.arange(12), np.arange(10), indexing="ij")
+    terms = np.column_stack([np.ones(120), x.ravel(), y.ravel()])
+    rest = (corner - heights).ravel()
+    assert rest == pytest.approx(terms @ np.linalg.lstsq(terms, rest, rcond=None)[0], abs=1e-15)
+
+
+def test_a_task_keeps_its_share_and_its_friction_apart():
+    task = _task({"name": "carry", "share": 0.25, "rcof": 0.3}, 0.2)
+    assert (task.name, task.share, task.rcof) == ("carry", 0.25, 0.3)
+    assert (_task({}, 0.2).share, _task({}, 0.2).rcof) == (1.0, 0.2)
+
+
+def test_a_chance_below_half_a_bin_is_told_as_below_a_bin():
+    assert _of_bins(0.6 / BINS) != _of_bins(0.0) == _of_bins(0.4 / BINS)
+    assert _of_bins(0.0).startswith("below")
+
+
+@pytest.mark.parametrize(("order", "rank"), [((1, 2, 3), 1.0), ((3, 2, 1), -1.0)])
+def test_machines_are_scored_by_error_rank_and_what_intervals_hold(order, rank):
+    rows = [
+        ScoredReading(
+            cast(Any, SimpleNamespace(middle=float(k), ends=(float(k), float(k)), source=f"{k}")),
+            (guess - 0.5, float(guess), guess + 0.5),
+            10.0,
+        )
+        for k, guess in zip((1, 2, 3), order, strict=True)
+    ]
+    result = score(rows)
+    assert result.rank == pytest.approx(rank)
+    errors = [abs(guess - k) for k, guess in zip((1, 2, 3), order, strict=True)]
+    assert result.error == np.median(errors)
+    assert result.inside == np.mean([error <= 0.5 for error in errors])
+    assert np.isnan(score(rows[:2]).rank)
+    assert np.isnan(score([replace(row, constant=None) for row in rows]).constant_error)
