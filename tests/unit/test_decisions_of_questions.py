@@ -13,6 +13,8 @@ from underfoot.places.evidence import ScoredReading, score
 from underfoot.places.place import _task
 from underfoot.questions.changes import possible_changes
 from underfoot.questions.contact import mirrored
+from underfoot.questions.effects import MOST_ERROR, _continued
+from underfoot.questions.sensitivity import OPEN_INPUTS, _at
 from underfoot.surface import HeightMap
 
 
@@ -70,3 +72,34 @@ def test_machines_are_scored_by_error_rank_and_what_intervals_hold(order, rank):
     assert result.inside == np.mean([error <= 0.5 for error in errors])
     assert np.isnan(score(rows[:2]).rank)
     assert np.isnan(score([replace(row, constant=None) for row in rows]).constant_error)
+
+
+def test_what_keeps_its_ratio_to_an_open_input_keeps_it_at_any_value():
+    case = Case.load("examples/work_shoe_untreaded_glycerol.toml")
+    (width,) = (each for each in OPEN_INPUTS if each.along)
+    (radius,) = width.along
+    ratio = case.value(radius) / case.value(width.path)
+    for value in (0.6, 0.66, 0.74):
+        there = _at(case, width, value / 10)
+        assert there.value(width.path) == pytest.approx(value / 10)
+        assert there.value(radius) / there.value(width.path) == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(
+    ("error", "uncertainty", "lugs", "taken"),
+    [
+        (0.9 * MOST_ERROR, 0.0, False, True),
+        (1.1 * MOST_ERROR, 0.0, False, False),
+        (1.1 * MOST_ERROR, 4 * MOST_ERROR, False, False),
+        (1.9 * MOST_ERROR, 4 * MOST_ERROR, True, True),
+        (2.1 * MOST_ERROR, 4 * MOST_ERROR, True, False),
+        (1.1 * MOST_ERROR, MOST_ERROR, True, False),
+    ],
+)
+def test_a_preview_stands_for_a_change_where_its_error_is_small(error, uncertainty, lugs, taken):
+    """Under lugs up to half of the COF's own standard uncertainty, without them no further."""
+    seen = SimpleNamespace(cof=SimpleNamespace(uncertainty=uncertainty), errors={"cof": error})
+    march = SimpleNamespace(continued=lambda values: seen if values == {"a": 1} else None)
+    change = SimpleNamespace(values={"a": 1})
+    result = _continued(cast(Any, march), cast(Any, change), lugs)
+    assert (result is seen) == taken
