@@ -70,7 +70,7 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
 
     from underfoot.case import Case
-    from underfoot.compute.positions import Place
+    from underfoot.compute.position_draws import Place
     from underfoot.compute.prepare import prepared
     from underfoot.compute.solve import solved_at
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from benchmarks.tread_widths import bars
 from underfoot import Case
-from underfoot.compute.positions import TURNED, Place, place_numbers, places
+from underfoot.compute.position_draws import Place
+from underfoot.compute.positions import TURNED, place_numbers, places
 from underfoot.compute.prepare import Prepared, prepared
 from underfoot.compute.sole import tread_on_sole
 from underfoot.compute.solve import continued, solved_at

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from underfoot.case import Case
-from underfoot.compute.positions import Place, place_numbers
+from underfoot.compute.position_draws import Place
+from underfoot.compute.positions import place_numbers
 from underfoot.compute.prepare import prepared
 from underfoot.compute.solve import solved_at
 from underfoot.core import InputError

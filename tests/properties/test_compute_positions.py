@@ -11,14 +11,16 @@ from hypothesis import strategies as st
 
 from underfoot.case import Case, CaseError
 from underfoot.compute import numerical_error, solve
-from underfoot.compute.positions import (
+from underfoot.compute.position_draws import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
     COF_PARTS,
-    YAW,
     Place,
     ShoeAngles,
     TreadPositions,
+)
+from underfoot.compute.positions import (
+    YAW,
     carried,
     case_places,
     places,

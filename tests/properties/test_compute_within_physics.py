@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot import Case, run
-from underfoot.compute.positions import Place
+from underfoot.compute.position_draws import Place
 from underfoot.compute.prepare import prepared
 from underfoot.compute.solve import solved_at
 from underfoot.core import UnderfootError

@@ -13,7 +13,7 @@ from underfoot.film import NewtonianFilm
 from . import numbers
 from .histories import history_fields
 from .pictured import pictured_fields
-from .positions import TreadPositions
+from .position_draws import TreadPositions
 from .prepare import Prepared, case_hash, object_texts
 from .read import Reading
 from .result import Result

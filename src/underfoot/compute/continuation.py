@@ -27,7 +27,8 @@ from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import ContactFriction, contact_friction
-from .positions import COF_PARTS, LOADS, place_numbers, treaded
+from .position_draws import COF_PARTS, LOADS
+from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
 from .solve import continued, film_spreads, solved_motion
 

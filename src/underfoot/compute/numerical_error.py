@@ -14,7 +14,8 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import readings
-from .positions import CLOSEST, RATES, Place, ShoeAngles, TreadPositions
+from .position_draws import Place, ShoeAngles, TreadPositions
+from .positions import CLOSEST, RATES
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along, tread_on_sole

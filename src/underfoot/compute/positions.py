@@ -2,18 +2,13 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import product
-from typing import Any, ClassVar
 
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, content_hash, display
 from underfoot.core.arrays import Array
-from underfoot.core.remark import Remark
-from underfoot.friction import FrictionCoefficients, SampledCof
-from underfoot.friction.propagation import normal_draws
 from underfoot.shoe import Tread
 from underfoot.sole_contact.cost import Cost
 from underfoot.sole_contact.solver import SoleContact
@@ -21,24 +16,28 @@ from underfoot.sole_contact.solver import SoleContact
 from .contact_friction import friction_sums
 from .cost import cost
 from .numbers import scalars
+from .position_draws import (
+    ANGLE_BAND,
+    ANGLE_DEVIATION,
+    COF_PARTS,
+    LOADS,
+    ON_CONTACT,
+    Place,
+    ShoeAngles,
+    TreadPositions,
+    UncertainBevel,
+    log_film_odds,
+)
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import bottom_surface, file_surface, landing_front, tread_on_sole
 from .steadiness import later_numbers
 
-ANGLE_BAND = math.radians(1)
-"""The shoe angle lies evenly within this of the case's, rad; assumed: how well an upper is held."""
-ANGLE_DEVIATION = ANGLE_BAND / math.sqrt(3)
-"""Standard deviation of that band, rad."""
-FACET_DEVIATION = math.radians(1)
-"""Standard deviation of the angle of a heel's bevel that nobody measured, rad; assumed: ground or
-worn by hand, as ``underfoot sensitivity`` varies it."""
 FURTHER = 1.5
-"""Standard deviations of such a bevel to which its film is solved: beyond, films hardly change."""
+"""Standard deviations of a heel's bevel to which its film is solved: films hardly change beyond."""
 YAW = math.radians(1)
 """Angle of a tread against the corner of its heel, to either side, rad; assumed: neither a mould,
 a grinder nor wear holds it better. No standard says it."""
-GOLDEN = (math.sqrt(5) - 1) / 2
 ACROSS = 6.0
 """How much less a wave of the places across the shoe matters than one along it: lugs side by side
 have all its phases."""
@@ -47,11 +46,6 @@ HANDED = 0.02
 tread from its mirror image."""
 FINEST = 0.25e-3
 """Cells that numbers under lugs are carried on to, m: the finest they were compared with."""
-LOADS = ("fluid_load", "contact_load")
-ON_CONTACT = ("cof_adhesion", "cof_hysteresis")
-COF_PARTS = (*ON_CONTACT, "cof_viscous")
-FAINT = 1e-6
-"""Share of the load that film and contact have at least where the odds of one are asked for."""
 CLOSEST = 1.25
 """Cells of two grids, coarser over finer, from which their difference says how far both are off."""
 USUAL_STEP = 2 / 3
@@ -59,337 +53,17 @@ USUAL_STEP = 2 / 3
 RATES = {1: 1.0, 2: 0.75}
 """Rate of the rule of positions by the number of periods of the tread, where the film jumps with
 the place (docs/physics/coupled_contact.md)."""
-_HELD = "spread of the friction law, its inputs and the"
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where a tread lies: its pattern shifted by (x, y), m, and turned by ``yaw``, rad.
-
-    ``turn``, rad, is added to the shoe angle.
-    """
-
-    shift: tuple[float, float] = (0.0, 0.0)
-    turn: float = 0.0
-    yaw: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class UnmeasuredBevel:
-    """The bevel of a heel whose angle nobody measured: steeper, the film sees the shoe toe down.
-
-    Attributes:
-        deviation: Standard deviation of its angle, rad.
-        heel: Name of the heel: its draws are one in all results.
-        seed: Of the draws.
-    """
-
-    deviation: float
-    heel: str
-    seed: int
-
-    @classmethod
-    def of(cls, case: Case) -> "UnmeasuredBevel | None":
-        """Return that of a case; None where the angle counts as exact or there is no bevel."""
-        path = "shoe.heel.profile.angle"
-        if path in case.idle_paths or not case.value(path):
-            return None
-        angle = case.sourced(path)
-        deviation = angle.uncertainty or FACET_DEVIATION * angle.assumed
-        paths = (row[0] for row in case.rows())
-        heel = [(one, case.value(one)) for one in paths if one.startswith("shoe.heel.")]
-        return cls(deviation, content_hash(heel), case.numerics.seed) if deviation else None
-
-    def turns(self, count: int) -> Array:
-        """Return by how much the shoe is turned against its bevel in each draw, (count,), rad."""
-        return self.deviation * normal_draws(self.seed, f"bevel of heel {self.heel}", count)
-
-    @property
-    def told(self) -> str:
-        """What is drawn, in words."""
-        return f"±{display(math.degrees(self.deviation), '1')} deg"
-
-
-@dataclass(frozen=True, slots=True)
-class TreadPositions:
-    """Numbers of a run at some positions of the tread.
-
-    Attributes:
-        places: Of the pattern and the shoe.
-        values: Name of a result's scalar: its value at each place, SI.
-        left_out: Number of positions that did not converge.
-        at_own_place: The scalars at the case's own place, on the grid of the run.
-        between: Name of a scalar: what the difference of two grids leaves unknown of its mean.
-        by_angle: Name of a scalar: what ``ANGLE_DEVIATION``, toe up, adds to its value at the
-            case's own place; empty where that is not known or in the values.
-        film_by_angle: What it adds to ln F / (W - F), F the load on the film of W.
-        bevel: Of the heel, where nobody measured its angle.
-        further: Scalars by name at turns (rad) that only such a bevel reaches; not in the means.
-        uncompared: Cells, m, where no other grid was compared with; else 0.
-    """
-
-    origin: ClassVar[str] = "tread_position"
-    held: ClassVar[str] = "position of the tread"
-    several: ClassVar[str] = "positions of the tread"
-
-    places: tuple[Place, ...]
-    values: Mapping[str, Array]
-    left_out: int
-    at_own_place: Mapping[str, float]
-    between: Mapping[str, float] = field(default_factory=dict, kw_only=True)
-    by_angle: Mapping[str, float] = field(default_factory=dict, kw_only=True)
-    film_by_angle: float = field(default=0.0, kw_only=True)
-    bevel: UnmeasuredBevel | None = field(default=None, kw_only=True)
-    further: Mapping[float, Mapping[str, float]] = field(default_factory=dict, kw_only=True)
-    uncompared: float = field(default=0.0, kw_only=True)
-
-    def answer(self, name: str) -> float:
-        """Return the scalar of the result: its mean over the places."""
-        return float(self.values[name].mean())
-
-    def drawn(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at each place in turn, drawn over the angle and the bevel.
-
-        The angle moves the load on the film by its odds, and adds to other numbers.
-        """
-        if name != "fluid_load":
-            return self._beside_film(name, count)
-        film, contact = (self._each(load, count) for load in LOADS)
-        more = film * np.exp(self._more_odds(count))
-        return more * (film + contact) / (more + contact)
-
-    def _each(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at each place in turn, at the angle of the case."""
-        return self.values[name][np.arange(count) % len(self.places)]
-
-    def _turns(self, count: int, *, bevel: bool = True) -> Array:
-        """Return turns (count,) evenly over the band of the angle, in its standard deviations.
-
-        ``bevel``: with that of the heel, where it was not measured.
-        """
-        turns = math.sqrt(3) * (2 * np.mod(GOLDEN * np.arange(count), 1) - 1)
-        if self.bevel and bevel:
-            turns = turns + self.bevel.turns(count) / ANGLE_DEVIATION
-        return turns
-
-    def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
-        """Return what the angle adds to ln F / (W - F) of the places in turn, (count,)."""
-        return self.film_by_angle * self._turns(count, bevel=bevel)
-
-    def _beside_film(self, name: str, count: int) -> Array:
-        """Return draws (count,) of a scalar other than the load on the film."""
-        more = self.by_angle.get(name, 0.0) * self._turns(count)
-        return np.maximum(self._each(name, count) + more, 0)
-
-    def friction(
-        self, friction: FrictionCoefficients, sampled: SampledCof | None
-    ) -> tuple[FrictionCoefficients, SampledCof | None]:
-        """Return COF and its draws over the positions, which the draws take in turn.
-
-        Each draw of the law meets the contact and the film of a place, turned by an angle.
-        """
-        values = {name: values for name, values in self.values.items() if name.startswith("cof")}
-        new = {name: replace(getattr(friction, name), value=self.answer(name)) for name in values}
-        if sampled is not None:
-            count = sampled.cof.size
-            film, contact = (self._each(load, count) for load in LOADS)
-            parts = {name.removeprefix("cof_"): self._each(name, count) for name in COF_PARTS}
-            as_measured, draws = (
-                sampled.law.at(
-                    contact / (film + contact),
-                    **parts,
-                    more_odds=self._more_odds(count, bevel=bevel),
-                )
-                for bevel in (False, True)
-            )
-            more = {self.origin: float(np.var(values["cof"]))}
-            if self.by_angle:
-                more["shoe_angle"] = self.by_angle["cof"] ** 2
-            if self.bevel:
-                more["bevel"] = float(np.var(draws["cof"] - as_measured["cof"]))
-            law_variance = float(np.var(sampled.cof))
-            whole = law_variance + sum(more.values())
-            share = {name: each * law_variance / whole for name, each in sampled.share.items()}
-            share |= {name: each / whole for name, each in more.items()}
-            sampled = replace(sampled, share=share, **draws)
-            for name, value in new.items():
-                if value.uncertainty is not None:  # what the law leaves open stays open
-                    new[name] = sampled.sourced(name.removeprefix("cof_"), value)
-            new["cof"] = replace(new["cof"], note=f"{_HELD} {self.held}")
-        load = self.answer("fluid_load")
-        force = self.answer("cof") * friction.normal_force
-        return replace(friction, **new, fluid_load=load, friction_force=force), sampled
-
-    def averaged(self, numbers: Mapping[str, SourcedValue]) -> dict[str, SourcedValue]:
-        """Return the numbers with means over the positions, and the spread of COF over them."""
-        means = dict(numbers)
-        if len(self.places) == 1:
-            return means
-        for name in self.values:
-            if name in numbers and not name.startswith("cof"):
-                means[name] = replace(numbers[name], value=self.answer(name))
-        over = f"over {len(self.places)} {self.several}"
-        means["fluid_load"] = replace(
-            means["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
-        )
-        means[f"cof_{self.origin}"] = SourcedValue(
-            float(np.std(self.values["cof"])),
-            source=f"contact and film at another {self.held}",
-            reason="itself a standard deviation",
-            note=f"{self._range('cof')} {over}",
-        )
-        if self.by_angle:
-            means["cof_shoe_angle"] = SourcedValue(
-                abs(self.by_angle["cof"]),
-                source="contact and film with the shoe turned",
-                reason="itself a standard deviation",
-            )
-        return means
-
-    def labels(self) -> dict[str, str]:
-        """Return what was averaged in words."""
-        failed = f"{self.left_out} did not converge and are left out" if self.left_out else ""
-        told = {}
-        if failed:
-            told["positions_left_out"] = (
-                f"{self.left_out} of {self.left_out + len(self.places)} positions of the tread did "
-                "not converge. Most such positions float: COF may be lower and the load on the "
-                "film higher than the means over the others."
-            )
-        told |= self._bevel_label()
-        if len(self.places) == 1:
-            return {"tread_position": f"as the case describes it; {failed} of the average", **told}
-        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
-        if not self.by_angle:
-            told["angle_as_exact"] = (
-                "The shoe could not be solved turned: its angle counts as exact, and the interval "
-                "is too narrow."
-            )
-        else:
-            up = display(math.degrees(ANGLE_DEVIATION), "1")
-            more, film = (self.by_angle[name] for name in ("cof", "fluid_load"))
-            told["shoe_angle"] = (
-                f"{up} deg toe up, one standard deviation of it, moves COF by "
-                f"{display(more, '1')} and the load on the film by {display(film, 'N')}"
-            )
-        return {
-            "tread_position": f"COF {self._range('cof')}, load on the film "
-            f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
-            f"Numbers are means over them; maps and histories show the position that the case "
-            f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
-            + (f"; {failed}" if failed else ""),
-            **told,
-        }
-
-    def _bevel_label(self) -> dict[str, str]:
-        """Return that the bevel of the heel is drawn; empty where its angle counts as exact."""
-        return {"heel_bevel": f"not measured: angle drawn {self.bevel.told}"} if self.bevel else {}
-
-    def assumptions(self) -> tuple[Remark, ...]:
-        """Return the band of the shoe angle, where it was used, and that of the heel's bevel."""
-        angle = bool(self.by_angle) or any(place.turn for place in self.places)
-        yaw = any(place.yaw for place in self.places)
-        bevel = self.bevel and Remark("shoe.heel.profile", f"angle {self.bevel.told}, drawn")
-        return (
-            *((bevel,) if bevel else ()),
-            *(Remark("motion.shoe_angle", "±1 deg"),) * angle,
-            *(Remark("shoe.tread", "turned ±1 deg against the heel's corner"),) * yaw,
-        )
-
-    def fields(self) -> dict[str, Any]:
-        """Return the variables of a data set: where the positions are, COF and load there."""
-
-        def at(values: Any, unit: str, name: str, **more: float) -> tuple[str, Any, dict[str, Any]]:
-            return ("tread_position", values, {"units": unit, "long_name": name, **more})
-
-        cof, film = ({"as_described": self.at_own_place[n]} for n in ("cof", "fluid_load"))
-        shift = np.array([place.shift for place in self.places])
-        yaw = [place.yaw for place in self.places]
-        return {
-            "position_yaw": at(yaw, "rad", "turn of the tread's pattern, anticlockwise"),
-            "position_shift_x": at(shift[:, 0], "m", "shift of the tread's pattern, forward"),
-            "position_shift_y": at(shift[:, 1], "m", "shift of the tread's pattern, across"),
-            "position_cof": at(self.values["cof"], "1", "coefficient of friction", **cof),
-            "position_fluid_load": at(self.values["fluid_load"], "N", "load on the film", **film),
-        }
-
-    def _range(self, name: str, unit: str = "1") -> str:
-        values = self.values[name]
-        return f"{display(values.min(), unit)} to {display(values.max(), unit)}"
-
-
-@dataclass(frozen=True, slots=True)
-class ShoeAngles(TreadPositions):
-    """Numbers of a run of a sole without lugs at its own shoe angle and beside it."""
-
-    origin = "shoe_angle"
-    held = "shoe angle"
-    several = "shoe angles"
-
-    def _more_odds(self, count: int, *, bevel: bool = True) -> Array:
-        """Return what the bevel adds: the odds at its turn less those at the place's own."""
-        if not (self.bevel and bevel):
-            return np.zeros(count)
-        film, contact = (self._over_angle(load) for load in LOADS)
-        least = FAINT * (film[1] + contact[1])
-        odds = np.log(np.maximum(film[1], least) / np.maximum(contact[1], least))
-        before, after = (np.interp(turn, film[0], odds) for turn in self._turns_beside(count))
-        return after - before
-
-    def _beside_film(self, name: str, count: int) -> Array:
-        """Return the scalar (count,) at the turn of its angle and bevel."""
-        if not self.bevel:
-            return self._each(name, count)
-        return np.interp(self._turns_beside(count)[1], *self._over_angle(name))
-
-    def _turns_beside(self, count: int) -> tuple[Array, Array]:
-        """Return the turns of the places in turn, (count,), rad, without the bevel and with it."""
-        turn = np.array([place.turn for place in self.places])[np.arange(count) % len(self.places)]
-        return turn, turn + (self.bevel.turns(count) if self.bevel else 0.0)
-
-    def _over_angle(self, name: str) -> tuple[Array, Array]:
-        """Return all turns that were solved, rising, rad, and the scalar there."""
-        turn = np.array([*(place.turn for place in self.places), *self.further])
-        values = np.array([*self.values[name], *(one[name] for one in self.further.values())])
-        order = np.argsort(turn)
-        return turn[order], values[order]
-
-    def labels(self) -> dict[str, str]:
-        """Return what the interval holds in words."""
-        if len(self.places) == 1:
-            return {}
-        least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
-        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
-        return {
-            "shoe_angle": f"COF {self._range('cof')}, load on the film "
-            f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
-            "case's angle. Numbers are means over them; maps and histories show the case's angle "
-            f"(COF {display(cof, '1')}, {display(load, 'N')} on the film)",
-            **self._bevel_label(),
-        }
-
-    def fields(self) -> dict[str, Any]:
-        """Return the variables of a data set: the angles, COF and load there."""
-        fields = super(ShoeAngles, self).fields()
-        turn = [place.turn for place in self.places]
-        about = {"units": "rad", "long_name": "change of the shoe angle"}
-        kept = {
-            name: each for name, each in fields.items() if "shift" not in name and "yaw" not in name
-        }
-        return {"position_turn": ("tread_position", turn, about), **kept}
 
 
 def further_angles(case: Case) -> tuple[Place, ...]:
     """Return the angles beyond ``shoe_angles`` that the interval of a case without lugs needs.
 
-    One to each side, as far as the angle of a bevel that nobody measured goes; else none.
+    One to each side, as far as the angle of its bevel may go; none where that counts as exact.
     """
-    bevel = None if treaded(case) else UnmeasuredBevel.of(case)
-    return (
-        (Place(turn=FURTHER * bevel.deviation), Place(turn=-FURTHER * bevel.deviation))
-        if (bevel)
-        else ()
-    )
+    bevel = None if treaded(case) else UncertainBevel.of(case)
+    if bevel is None:
+        return ()
+    return Place(turn=FURTHER * bevel.deviation), Place(turn=-FURTHER * bevel.deviation)
 
 
 def shoe_angles() -> tuple[Place, ...]:
@@ -490,7 +164,8 @@ def tread_positions(
     angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
     asked += [(place, coarse) for place in all_places if coarse != spacing]
-    asked += [(place, coarse) for place in further_angles(case)]
+    further = further_angles(case)
+    asked += [(place, coarse) for place in further]
     ended = dict(at_places(asked))
     at = {(place, spacing): numbers for place, numbers in known.items()}
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
@@ -520,11 +195,13 @@ def tread_positions(
     if lugs and all((place, spacing) in at for place in angles):
         up, down = (at[place, spacing] for place in angles)
         by_angle = {name: (up[name] - down[name]) / 2 for name in own}
-        by_film = (_film_odds(up) - _film_odds(down)) / 2
-    further = [place for place in further_angles(case) if (place, coarse) in at]
+        odds = [log_film_odds(*(one[load] for load in LOADS)) for one in (up, down)]
+        by_film = float(odds[0] - odds[1]) / 2
+    if not all((place, coarse) in at for place in further):
+        further = ()
     beyond = carried(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
-    kind, known_beyond = (TreadPositions, bool(by_angle)) if lugs else (ShoeAngles, bool(further))
-    return kind(
+    bevel_known = by_angle if lugs else further
+    return (TreadPositions if lugs else ShoeAngles)(
         tuple(answers),
         values,
         len(failed),
@@ -532,7 +209,7 @@ def tread_positions(
         between=between,
         by_angle=by_angle,
         film_by_angle=by_film,
-        bevel=UnmeasuredBevel.of(case) if known_beyond else None,
+        bevel=UncertainBevel.of(case) if bevel_known else None,
         further={
             place.turn: {n: v[k] for n, v in beyond.items()} for k, place in enumerate(further)
         },
@@ -543,13 +220,6 @@ def tread_positions(
 def _arrays(names: Iterable[str], numbers: Iterable[Mapping[str, float]]) -> dict[str, Array]:
     listed = list(numbers)
     return {name: np.array([each[name] for each in listed]) for name in names}
-
-
-def _film_odds(numbers: Mapping[str, float]) -> float:
-    """Return ln F / (W - F) of the load on the film."""
-    film, contact = (numbers[load] for load in LOADS)
-    least = FAINT * (film + contact)
-    return math.log(max(film, least) / max(contact, least))
 
 
 def carried(

@@ -17,7 +17,7 @@ from underfoot.sole_contact.slits import slit_words
 from . import numbers
 from .micro_contact import micro_contact
 from .numerical_error import NumericalErrors, numerical_errors, with_numerical_error
-from .positions import TreadPositions
+from .position_draws import TreadPositions
 from .prepare import Prepared
 from .sensors import blind_sensor
 from .sole import overload_breaches

@@ -24,10 +24,9 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
+from .position_draws import Place, TreadPositions
 from .positions import (
     TURNED,
-    Place,
-    TreadPositions,
     place_numbers,
     position_count,
     tread_positions,
