@@ -248,7 +248,7 @@ def cautions(
     if others := [name for name in subjects(breaches) if name != slip_model]:
         reasons.append(beyond_tests(others))
     sections = subjects(assumptions)
-    left_out = {} if "heel_bevel" in labels else {"shoe.heel": "heel shape"}
+    left_out = {"shoe.heel": "lengths of the heel" if "heel_bevel" in labels else "heel shape"}
     if "film_spread_basis" not in labels:
         left_out = {"interface": "interface roughness", **left_out}
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
