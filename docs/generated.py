@@ -484,7 +484,7 @@ def _page(
 def write_version_pages(folder: Path) -> list[str]:
     """Write what each released version broke, and what else it changed; return the pages' names."""
     pages: dict[str, str] = {}
-    changes = (ROOT / "CHANGELOG.md").read_text("utf-8").replace("](docs/", "](/")
+    changes = (ROOT / "CHANGELOG.md").read_text("utf-8").replace("](docs/", "](../../")
     for version, date, notes in re.findall(
         r"^## (\d\S*) \((\S+)\)\n(.*?)(?=^## |\Z)", changes, re.DOTALL | re.MULTILINE
     ):
