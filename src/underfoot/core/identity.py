@@ -31,6 +31,7 @@ from uuid import uuid4
 import numpy as np
 
 OWN = "underfoot"
+UNKNOWN = "unknown"
 CODE = (".py", ".toml", ".csv", ".json", ".so", ".pyd")
 """Endings of the files of a package that decide what it computes."""
 DEEPEST = 60
@@ -70,14 +71,14 @@ def program_hash() -> str:
 
 
 def package_version(name: str) -> str:
-    """Return the version of a package, "unknown" where it is not recorded.
+    """Return the version of a package, ``UNKNOWN`` where it is not recorded.
 
     An application that was frozen, or a folder on the path, carries no record of versions.
     """
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
-        return "unknown"
+        return UNKNOWN
 
 
 class _Walk:
@@ -222,7 +223,7 @@ class _Walk:
         top = name.partition(".")[0]
         if top == OWN or (top in sys.stdlib_module_names and top != "__main__"):
             return True
-        if top not in _libraries():
+        if not _required() & set(map(_plain, _distributions(top))):
             return False
         self._text("library", f"{top} {_versions(top)}")
         return True
@@ -294,27 +295,31 @@ def _text_hash(paths: Iterable[Path]) -> str:
 
 
 @cache
-def _distributions() -> Mapping[str, Sequence[str]]:
-    return metadata.packages_distributions()
+def _distributions(top: str) -> Sequence[str]:
+    """Return the packages that bring a module; that of its name alone, found at once, if any."""
+    if package_version(top) != UNKNOWN:
+        return (top,)
+    return sorted(set(_all_distributions().get(top, ())))
+
+
+@cache
+def _all_distributions() -> Mapping[str, Sequence[str]]:
+    return metadata.packages_distributions()  # reads the list of files of every package: 0.5 s
 
 
 @cache
 def _versions(top: str) -> str:
-    names = sorted(set(_distributions().get(top, ())))
-    return " ".join(f"{name} {package_version(name)}" for name in names)
+    return " ".join(f"{name} {package_version(name)}" for name in _distributions(top))
 
 
 @cache
-def _libraries() -> frozenset[str]:
-    """Return the modules of the packages that this one requires: their version says their code."""
+def _required() -> frozenset[str]:
+    """Return the packages that this one requires: the version of one says its code."""
     try:
         lines = metadata.requires(OWN) or []
     except metadata.PackageNotFoundError:
         lines = ["numpy", "scipy", "xarray", "pydantic"]
-    needed = {_plain(re.split(r"[^\w.-]", line, maxsplit=1)[0]) for line in lines}
-    return frozenset(
-        top for top, names in _distributions().items() if needed & set(map(_plain, names))
-    )
+    return frozenset(_plain(re.split(r"[^\w.-]", line, maxsplit=1)[0]) for line in lines)
 
 
 def _plain(name: str) -> str:

@@ -13,7 +13,7 @@ from .cache import default_folder
 from .catalogue import Catalogue, catalogue_folders, offered_catalogues
 from .device import described_card
 from .fourier import fourier_library
-from .identity import package_version
+from .identity import UNKNOWN, package_version
 from .mkl import mkl_library
 from .registry import OWN, all_offers, broken_offers
 from .sparse import back_end
@@ -69,7 +69,7 @@ def _dependencies() -> list[str]:
 def _required(name: str) -> str:
     """Return the version; a package without one may still load, as in a frozen application."""
     version = package_version(name)
-    if version == "unknown" and find_spec(name.replace("-", "_")) is None:
+    if version == UNKNOWN and find_spec(name.replace("-", "_")) is None:
         return "MISSING; remedy: install underfoot again"
     return version
 
