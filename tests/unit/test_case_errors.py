@@ -221,3 +221,37 @@ def test_a_roughness_of_nothing_and_of_a_millimetre_is_refused_where_it_stands(p
     assert [(e.where, e.allowed) for e in none] == [(f"{part}.roughness.rq", "from 1 nm to 1 mm")]
     assert [e.where for e in most] == [f"{part}.roughness"]
     assert "1 mm is no roughness of a sole on a floor" in most[0].what
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("floor.rz", "floor.roughness.rz"),
+        ("shoe.rq", "shoe.roughness.rq"),
+        ("shoe.hardness", "shoe.material.shore_a"),
+        ("shoe.lug_width", "shoe.tread.lug_width"),
+        ("motion.velocity", "motion.speed"),
+        ("motion.force", "motion.normal_force"),
+        ("motion.angle", "motion.shoe_angle"),
+        ("tread.depth", "shoe.tread.depth"),
+        ("speed", "motion.speed"),
+    ],
+)
+def test_a_path_that_is_none_names_the_one_that_it_means(written, meant):
+    case = Case.load("examples/work_shoe_half_tread_glycerol.toml")
+    with pytest.raises(InputError) as caught:
+        case.replace(written, "5")
+    assert caught.value.nearest == meant
+
+
+def test_a_key_that_stands_in_another_section_is_named_with_its_path(tmp_path):
+    file = tmp_path / "case.toml"
+    file.write_text(
+        'shoe = "work_shoe_half_tread"\nfloor = {from = "vinyl_g4", rq = "3 um"}\n'
+        'contaminant = "water"\nmotion = {from = "slip_tester_g4", load = "300 N"}\n',
+        "utf-8",
+    )
+    with pytest.raises(InputError) as caught:
+        Case.load(file)
+    meant = [error.nearest for error in caught.value.errors]
+    assert meant == ["floor.roughness.rq", "motion.normal_force"]

@@ -8,6 +8,7 @@ from pydantic_core import PydanticCustomError
 
 from underfoot.core import InputError, RangeError, nearest_match, unknown_name
 
+from .parts import CaseParts, nearest_path
 from .section import Option, Section, item_section, section_in
 
 _TYPES = {
@@ -93,7 +94,10 @@ def _translated(
         pieces = {name: context.get(name) for name in ("allowed", "nearest", "remedy")}
         return error(context["what"], where=where, **pieces)
     if kind == "extra_forbidden":
-        return _not_taken(_owner(model, tree, location[:-1]), location[-1], where)
+        error = _not_taken(_owner(model, tree, location[:-1]), location[-1], where)
+        if not (error.nearest or error.remedy) and issubclass(model, CaseParts):
+            error.nearest = nearest_path(".".join(location))
+        return error
     if kind == "missing":
         return _missing(_owner(model, tree, location[:-1]), location[-1], where)
     if kind == "literal_error":

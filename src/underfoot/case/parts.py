@@ -1,6 +1,6 @@
 """The sections of a case together, and their dotted paths."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -8,6 +8,7 @@ from pydantic import Field
 from pydantic.fields import FieldInfo
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.errors import nearest_match
 
 from .contact import ComplianceOption, FilmOption, HardnessOption, RoughContactOption
 from .contaminant import ContaminantSection
@@ -33,6 +34,15 @@ CATALOGUE_SECTIONS: dict[str, tuple[str, str]] = {
     "risk": ("setup", "risk"),
 }
 """Sections that can be taken ``from`` the catalogue: kind of entry and its sub-table."""
+
+USUAL_WORDS = {
+    "load": "normal_force",
+    "force": "normal_force",
+    "velocity": "speed",
+    "hardness": "shore_a",
+    "shore": "shore_a",
+}
+"""What people write: the key that it means."""
 
 
 def _usual() -> Any:
@@ -157,9 +167,36 @@ def path_kind(path: str) -> str:
     raise unknown_path(path)
 
 
+def _below(section: str, listed: Iterable[str]) -> list[str]:
+    return [path for path in listed if path.startswith(f"{section}.")]
+
+
+def nearest_path(path: str) -> str | None:
+    """Return the path that another one means, None where none is close.
+
+    One of its own section with the same last word comes first, then any of its section.
+
+    >>> nearest_path("floor.rq"), nearest_path("motion.load"), nearest_path("motion.angle")
+    ('floor.roughness.rq', 'motion.normal_force', 'motion.shoe_angle')
+    """
+    known, section, last = paths(), path.partition(".")[0], path.split(".")[-1]
+    last = USUAL_WORDS.get(last, last)
+    alike = [each for each in known if each.split(".")[-1] == last]
+    return (
+        nearest_match(path, _below(section, alike), least=0)
+        or nearest_match(path, _below(section, known))
+        or nearest_match(path, alike, least=0)
+        or nearest_match(path, known)
+    )
+
+
 def unknown_path(path: str) -> InputError:
     """Return the error for a path that is none: the nearest one, or the package that can't load."""
-    error = unknown_name("path", path, paths())
+    known, (*sections, _) = paths(), path.split(".")
+    above = [".".join(sections[:depth]) for depth in range(len(sections), 0, -1)]
+    beside = next((near for at in above if (near := _below(at, known))), known)
+    error = unknown_name("path", path, beside)
+    error.nearest = nearest_path(path)
     for at, slot in slot_table().items():
         broken = "; ".join(slot.broken()) if path.startswith(f"{at}.") else ""
         if broken:

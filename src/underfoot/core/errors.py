@@ -124,15 +124,17 @@ def file_trouble(error: OSError) -> str:
     return text.format(name or "the file") + "."
 
 
-def nearest_match(given: str, known: Iterable[str]) -> str | None:
+def nearest_match(given: str, known: Iterable[str], *, least: float = 0.5) -> str | None:
     """Return the known name closest to ``given``, or None when nothing is close.
+
+    ``least`` (0 to 1) is the share of letters that both must have in one order.
 
     >>> nearest_match("coff", ["cof", "fluid_load"])
     'cof'
     """
     names = list(known)
     folded = {name.casefold(): name for name in names}
-    matches = difflib.get_close_matches(given.casefold(), folded, n=1, cutoff=0.5)
+    matches = difflib.get_close_matches(given.casefold(), folded, n=1, cutoff=least)
     return folded[matches[0]] if matches else None
 
 
