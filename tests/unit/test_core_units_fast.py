@@ -1,11 +1,14 @@
 """The exact powers of ten against the unit library."""
 
+from pathlib import Path
+
 import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from underfoot.core import InputError, to_si
+from underfoot.case import Case
+from underfoot.core import InputError, to_si, units
 from underfoot.core.units import _POWERS, si_unit
 
 CASES = [(unit, text) for unit, names in _POWERS.items() for text in names]
@@ -48,3 +51,11 @@ def test_the_si_unit_of_a_text(text, unit):
 def test_a_text_without_a_unit_in_use_is_refused(text):
     with pytest.raises(InputError, match=r"^x: "):
         si_unit(text, where="x")
+
+
+@pytest.mark.parametrize(
+    "path", sorted(Path("examples").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_an_example_and_its_stored_case_wait_for_no_unit_library(path, monkeypatch):
+    monkeypatch.setattr(units, "_registry", lambda: pytest.fail("takes a second to start"))
+    Case.from_text(Case.load(path).to_toml(complete=True))

@@ -96,7 +96,13 @@ _POWERS: dict[str, dict[str, int]] = {
     "Hz": {"Hz": 0, "kHz": 3},
     "rad": {"rad": 0},
     "1/s": {"1/s": 0},
+    "1/m": {"1/m": 0, "1/mm": 3},
     "K": {"K": 0},
+    "m^2": {"m^2": 0, "cm^2": -4, "mm^2": -6},
+    "m^3": {"m^3": 0, "cm^3": -6, "mm^3": -9},
+    "m^3/Pa": {"m^3/Pa": 0, "mm^3/MPa": -15},
+    "N/m": {"N/m": 0, "N/mm": 3, "kN/mm": 6},
+    "B": {"B": 0, "kB": 3, "MB": 6, "GB": 9},
     "1": {"percent": -2},
 }
 
@@ -232,7 +238,7 @@ def si_unit(given: str, *, where: str) -> str:
     if not text:
         return "1"
     for unit, names in _POWERS.items():
-        if text in names:
+        if unit in _EXAMPLES and text in names:
             return unit
     for unit in _EXAMPLES:
         try:
