@@ -67,7 +67,7 @@ def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
     return max(-gap.min(), np.sum(np.abs(gap) * p) / p.sum()) / height.std()
 
 
-def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
+def ours(height: Any, pressure: float, speed: float, fft: str, **settings: Any) -> SteadySliding:
     modulus = 1.0 if speed == 0.0 else RUBBER
     return steady_sliding(
         height,
@@ -76,7 +76,7 @@ def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
         speed / LENGTH,
         pressure,
         0.0,
-        settings=SlidingSettings(fft=fft),
+        settings=SlidingSettings(fft=fft, **settings),
     )
 
 
