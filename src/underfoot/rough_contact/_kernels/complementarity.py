@@ -123,7 +123,8 @@ def _on_grid(
     best, since, rounds = error, 0, 0
     step = 0
     for step in range(1, search.max_steps + 1):
-        if bool(xp.all(contact)):
+        part = Restriction(contact, xp)
+        if part.nodes == points:
             closed = (
                 operators.exact_pressure(height)
                 if exact
@@ -135,9 +136,10 @@ def _on_grid(
                 return ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0], True)
             p = xp.astype(p, xp.float64 if double else xp.float32)
             del closed
-        if not bool(xp.any(contact)):
+            part = Restriction(contact, xp)
+        if part.nodes == 0:
             contact = height == xp.max(height)
-        part = Restriction(contact, xp)
+            part = Restriction(contact, xp)
         if lowest < 0.0:
             p = xp.where(contact, p, xp.zeros_like(p))
         missing = load - float(xp.sum(p))

@@ -46,12 +46,13 @@ class Restriction:
             integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
             number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
             self._number = xp.where(flat, number - 1, xp.full_like(number, self.nodes))
+            self._zero = xp.zeros_like(flat[:1], dtype=xp.float32)
 
     def take(self, field: AnyArray) -> AnyArray:
         """Return a new vector with the values of ``field`` on the nodes."""
         flat = self.xp.reshape(field, (-1,))
         if self.gathered:
-            return self.xp.take(flat, self._index, axis=0)
+            return flat[self._index]
         return flat * self._mask
 
     def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
@@ -72,13 +73,14 @@ class Restriction:
             self._buffer[...] = 0.0
             xp.reshape(self._buffer, (-1,))[self._index] = vector
             return self._buffer
-        zero = xp.zeros_like(vector[:1])
-        return xp.reshape(xp.take(xp.concat((vector, zero)), self._number, axis=0), self._shape)
+        return xp.reshape(xp.concat((vector, self._zero))[self._number], self._shape)
 
     def centre(self, vector: AnyArray) -> None:
         """Take the mean over the nodes off a vector, in place."""
-        mean = self.xp.sum(vector) / self.nodes
-        vector -= mean if self.gathered else self._mask * mean
+        if self.gathered:
+            vector -= self.xp.mean(vector)
+        else:
+            vector -= self._mask * (self.xp.sum(vector) / self.nodes)
 
 
 class Workspace:
