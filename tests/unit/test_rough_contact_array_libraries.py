@@ -172,7 +172,12 @@ def refused_input(call: Any) -> str | None:
 def test_heights_of_any_library_are_refused_like_numpy_s(device, wrong):
     height: Any = waves()
     height[3, 7] = {"missing": np.nan, "infinite": np.inf}.get(wrong, 0.0)
-    height = {"thin": height[:, :1], "low": height[:1], "line": height[0], "cube": height[None]}.get(wrong, height)
+    height = {
+        "thin": height[:, :1],
+        "low": height[:1],
+        "line": height[0],
+        "cube": height[None],
+    }.get(wrong, height)
     height = {"complex": height + 0j, "bool": height > 0.0}.get(wrong, height)
     other = on_device(np.ascontiguousarray(height), device)
     texts = []

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from underfoot.core.arrays import AnyArray
+from underfoot.core.threads import on_host
 
 from .krylov import Restriction, Workspace, residual_correction
 from .operators import Operators
@@ -160,15 +161,14 @@ def _on_grid(
             workspace.release()
         gap = _gap(operators, p, height, double)
         residual = part.take(gap)
-        mean = float(xp.sum(residual)) / part.nodes
+        mean = xp.sum(residual) / part.nodes
         gap -= mean
         residual -= mean
         residual *= part.take(p)  # the pressure is zero beside the contact
-        lowest = float(xp.min(p))
-        carried = float(xp.sum(xp.abs(residual))) / load
+        measured = xp.sum(xp.abs(residual)), xp.sum(p), xp.min(gap), xp.min(p)
         residual = None
-        unbalanced = abs(float(xp.sum(p)) / load - 1.0)
-        error = max(-float(xp.min(gap)), carried, unbalanced)
+        carried, total, deepest, lowest = on_host(xp.stack(measured)).tolist()
+        error = max(-deepest, carried / load, abs(total / load - 1.0))
         history.append(error)
         best, since = (error, 0) if error < best else (best, since + 1)
         search.report(best)
