@@ -1,6 +1,11 @@
 """Rough contact: our elastic and sliding solves beside tamaas and aspher, one thread each.
 
     python -m benchmarks.rough_contact --sizes 256 512 --peers peers/bin/python
+    python -m benchmarks.rough_contact --device cuda --sizes 1024 2048 --peers peers/bin/python
+    python -m benchmarks.rough_contact --libraries --sizes 1024 2048
+
+The second prints wall seconds on tensors of a device beside tamaas on all threads of the machine;
+the third steps, products and memory on the arrays of each library that is installed.
 
 Self-affine surfaces (Hurst 0.8, waves from L/4 to 8 spacings, so that finer grids carry more
 scales), plane-strain modulus 1, rms slope 1; the sliding rubber has the relaxed modulus 1 and 30
@@ -22,6 +27,7 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +39,7 @@ import numpy as np
 
 from benchmarks._table import Row
 from underfoot.core.device import described_card, on_card
+from underfoot.core.mkl import mkl_library
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, SteadySliding, steady_sliding
 
@@ -67,7 +74,7 @@ def elastic_error(pressure: np.ndarray, height: np.ndarray) -> float:
     return max(-gap.min(), np.sum(np.abs(gap) * p) / p.sum()) / height.std()
 
 
-def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
+def ours(height: Any, pressure: float, speed: float, fft: str, **settings: Any) -> SteadySliding:
     modulus = 1.0 if speed == 0.0 else RUBBER
     return steady_sliding(
         height,
@@ -76,7 +83,7 @@ def ours(height: Any, pressure: float, speed: float, fft: str) -> SteadySliding:
         speed / LENGTH,
         pressure,
         0.0,
-        settings=SlidingSettings(fft=fft),
+        settings=SlidingSettings(fft=fft, **settings),
     )
 
 
@@ -89,8 +96,11 @@ def timed(height: np.ndarray, pressure: float, speed: float, fft: str, repeats: 
     return best, result
 
 
-def timed_on(device: str, n: int, pressure: float, speed: float) -> str:
-    """Return a line of the table of a device: seconds and its limit, products by transforms."""
+def timed_on(device: str, n: int, pressure: float, speed: float, tamaas: float | None) -> str:
+    """Return a line of the table of a device: seconds and its limit, products by transforms.
+
+    ``tamaas`` are the seconds of its elastic contact there.
+    """
     torch = import_module("torch")
     wait = torch.cuda.synchronize if device == "cuda" else lambda: None
     height = torch.asarray(self_affine(n), device=device)
@@ -111,8 +121,69 @@ def timed_on(device: str, n: int, pressure: float, speed: float) -> str:
     products = result.operator_applications
     return (
         f"{n:6d} {pressure:5.2f} {speed:5.2f} {solve:8.3f} {products * both:8.3f} {products:8.0f} "
-        f"{result.iterations:5d}"
+        f"{result.iterations:5d}" + ("" if speed else f" {cell(tamaas)} {ratio(tamaas, solve)}")
     )
+
+
+def device_table(options: argparse.Namespace) -> None:
+    """Print wall seconds on a device, its limit, and tamaas on all threads of this machine."""
+    name = described_card() if on_card(options.device, 0) else "the processor"
+    threads = os.cpu_count()
+    print(f"wall seconds on {name}; limit: products times the transform's time; tamaas: the")
+    print(f"elastic contact alone, on the {threads} threads of this machine, and its ratio to ours")
+    print("  size     p speed    solve    limit products steps   tamaas      x")
+    with tempfile.TemporaryDirectory() as folder:
+        height = str(Path(folder) / "height.npy")
+        task = {"height": height, "out": str(Path(folder) / "pressure.npy"), "repeats": 2}
+        for n in options.sizes:
+            np.save(height, self_affine(n))
+            python = options.peers if n <= options.tamaas_up_to else None
+            for p in options.pressures:
+                task |= {"pressure": p, "tolerance": 1e-6, "threads": threads}
+                tamaas, _ = peer(python, "tamaas", task)
+                for speed in (0.0, *SPEEDS):
+                    print(timed_on(options.device, n, p, speed, tamaas), flush=True)
+
+
+LIBRARIES = {"numpy mkl": "mkl", "numpy": "scipy", "array_api_strict": "auto", "torch": "auto"}
+"""Fourier library of the arrays of each library; "numpy mkl" is NumPy with Intel's."""
+CASES = ((0.02, 0.1), (0.1, 1.0), (0.3, 0.0), (0.1, 0.01))
+"""(Pressure, speed) of the comparison of libraries."""
+SPREAD = 0.1
+"""Largest difference of products between libraries, over the most."""
+
+
+def of_library(height: np.ndarray, name: str) -> Any:
+    return height if name.startswith("numpy") else import_module(name).asarray(height)
+
+
+def library_table(sizes: Sequence[int]) -> None:
+    """Print steps and products of each library, and the memory of the last size.
+
+    Exits with a message where products differ by more than SPREAD.
+    """
+    installed = [name for name in LIBRARIES if " " not in name and find_spec(name) is not None]
+    if mkl_library() is not None:
+        installed.insert(0, "numpy mkl")
+    print("steps, products: " + ", ".join(installed) + "; then the spread of products")
+    worst = 0.0
+    for n in sizes:
+        height = self_affine(n)
+        for p, v in CASES:
+            made = [ours(of_library(height, name), p, v, LIBRARIES[name]) for name in installed]
+            products = [result.operator_applications for result in made]
+            spread = 1.0 - min(products) / max(products)
+            worst = max(worst, spread)
+            cells = " ".join(f"{r.iterations:3d} {r.operator_applications:6.1f}" for r in made)
+            print(f"{n:5d} {p:5.2f} {v:5.2f}  {cells}  {100 * spread:4.1f} %", flush=True)
+    n = sizes[-1]
+    for p, v in CASES:
+        arrays = [memory_in_arrays(n, p, v, LIBRARIES[name], name) for name in installed]
+        print(
+            f"{n:5d} {p:5.2f} {v:5.2f}  arrays {' '.join(f'{a:6.1f}' for a in arrays)}", flush=True
+        )
+    if worst > SPREAD:
+        sys.exit(f"products differ by {100 * worst:.0f} %")
 
 
 def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.ndarray | None]:
@@ -132,12 +203,14 @@ def peer(python: str | None, name: str, task: dict) -> tuple[float | None, np.nd
     return reply["seconds"], np.load(task["out"])
 
 
-def memory_in_arrays(n: int, pressure: float, speed: float, fft: str) -> float:
+def memory_in_arrays(
+    n: int, pressure: float, speed: float, fft: str, library: str = "numpy"
+) -> float:
     """Return the peak memory of one solve beyond its start, in double arrays of the grid."""
     code = (
         "import resource, sys; sys.path.insert(0, sys.argv[1]); import rough_contact as r\n"
-        "h = r.self_affine(64); r.ours(h, 0.1, 1.0, sys.argv[5])\n"
-        "n = int(sys.argv[2]); h = r.np.load(sys.argv[6])\n"
+        "h = r.of_library(r.self_affine(64), sys.argv[7]); r.ours(h, 0.1, 1.0, sys.argv[5])\n"
+        "n = int(sys.argv[2]); h = r.of_library(r.np.load(sys.argv[6]), sys.argv[7])\n"
         "base = r.resident()\n"
         "r.ours(h, float(sys.argv[3]), float(sys.argv[4]), sys.argv[5])\n"
         "print((r.peak() - base) / (8 * n * n))"
@@ -146,7 +219,7 @@ def memory_in_arrays(n: int, pressure: float, speed: float, fft: str) -> float:
         path = Path(folder) / "height.npy"
         np.save(path, self_affine(n))
         here = str(Path(__file__).parent)
-        arguments = [here, str(n), str(pressure), str(speed), fft, str(path)]
+        arguments = [here, str(n), str(pressure), str(speed), fft, str(path), library]
         answer = subprocess.run(
             [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=True
         )
@@ -259,17 +332,13 @@ def main(arguments: Sequence[str] = ()) -> None:
     parser.add_argument("--tamaas-up-to", type=int, default=1024, help="largest size for tamaas")
     parser.add_argument("--fft", choices=["auto", "mkl", "scipy"], default="auto")
     parser.add_argument("--device", choices=["cpu", "cuda"], help="tensors there, wall seconds")
+    parser.add_argument("--libraries", action="store_true", help="the same on arrays of each")
     parser.add_argument("--out", type=Path, help="JSON file for the numbers")
     options = parser.parse_args(arguments)
+    if options.libraries:
+        return library_table(options.sizes)
     if options.device:
-        name = described_card() if on_card(options.device, 0) else "the processor"
-        print(f"wall seconds on {name}; limit: products times the transform's time")
-        print("  size     p speed    solve    limit products steps")
-        for n in options.sizes:
-            for pressure in options.pressures:
-                for speed in (0.0, *SPEEDS):
-                    print(timed_on(options.device, n, pressure, speed), flush=True)
-        return
+        return device_table(options)
     print(
         "CPU seconds, one thread; p in E* h'; sliding at 0.01, 0.1 and 1 m/s; x: tamaas over our "
         "slowest sliding, aspher over our elastic"

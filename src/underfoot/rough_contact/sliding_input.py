@@ -34,9 +34,8 @@ _RANGES = {
 }
 FEWEST_NODES = 30
 """Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
-ARRAYS = 12
-"""Double arrays of its grid that a contact may take beside the heights: 10, and 12 where it is
-solved by way of thinner mattresses."""
+ARRAYS = 10
+"""Most double arrays of its grid that a contact takes beside the heights (measured)."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
 _SMALL = 128 * 128
 """Points below which a contact takes a few hundredths of a second on a grid of any size."""

@@ -2,17 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from underfoot.core.arrays import AnyArray
+from underfoot.core.threads import on_host
 
 from .krylov import Restriction, Workspace, residual_correction
 from .operators import Operators
 
 _SWITCH = 1e-5
 """Error at which the residual is taken in double precision: ten times the rounding of single."""
-_RENEW = 0.05
-"""Share of changed nodes beyond which the response to a uniform approach is computed again."""
 _PATIENCE = 4
 """Steps without a new least error after which the inner solves are made ten times more exact."""
 _HOPELESS = 3
@@ -45,7 +43,8 @@ class Search:
 
     ``exact``: the last steps take their residual in double precision. Without ``settle`` a solution
     with some negative pressures will do, as a start for a finer grid. ``reduction`` is the share of
-    its residual that an inner solve leaves; ``report`` receives the error of each step.
+    its residual that an inner solve leaves; ``report`` receives the least error so far after each
+    step.
     """
 
     tolerance: float
@@ -121,13 +120,12 @@ def _on_grid(
     gap: AnyArray = None
     history: list[float] = []
     error = float("inf")
-    known: AnyArray = None  # S 1 on a recent contact
     lowest = -1.0
-    changed = 0
     best, since, rounds = error, 0, 0
     step = 0
     for step in range(1, search.max_steps + 1):
-        if bool(xp.all(contact)):
+        part = Restriction(contact, xp)
+        if part.nodes == points:
             closed = (
                 operators.exact_pressure(height)
                 if exact
@@ -139,45 +137,41 @@ def _on_grid(
                 return ContactState(p, xp.zeros_like(p), step, 0.0, True, [*history, 0.0], True)
             p = xp.astype(p, xp.float64 if double else xp.float32)
             del closed
-        if not bool(xp.any(contact)):
+            part = Restriction(contact, xp)
+        if part.nodes == 0:
             contact = height == xp.max(height)
-        part = Restriction(contact, xp)
-        if known is None or changed > _RENEW * part.nodes:
-            known = operators.pressure(part.spread(part.constant()))
-            known = xp.where(known > 0.0, known, xp.zeros_like(known))
-        response = part.take(known)
-        if not float(xp.sum(response)) > 0.0:
-            response, known = part.constant(), None
+            part = Restriction(contact, xp)
         if lowest < 0.0:
             p = xp.where(contact, p, xp.zeros_like(p))
         missing = load - float(xp.sum(p))
         negligible = 0.3 * tolerance if double else max(0.3 * tolerance, 1e-7)
         if abs(missing) > negligible * load:
-            p += part.spread(response * (missing / float(xp.sum(response))))
+            p = xp.where(contact, p + missing / part.nodes, p)
             gap = None
         if gap is None:
             gap = _gap(operators, p, height, double)
         residual = part.take(gap)
-        mean = float(xp.sum(residual)) / part.nodes
         gap = None  # before the next one is made: fields are what a large grid costs
+        part.centre(residual)
         residual = xp.astype(residual, xp.float32)
         residual *= -1.0
-        part.shift(residual, mean)
-        p += part.spread(
-            residual_correction(operators, part, residual, response, reduction, workspace)
-        )
-        response = residual = None
+        p += part.spread(residual_correction(operators, part, residual, reduction, workspace))
+        residual = None
         if double:
             workspace.release()
         gap = _gap(operators, p, height, double)
-        gap -= float(xp.sum(part.take(gap))) / part.nodes
-        lowest = float(xp.min(p))
-        carried = _absolute_product(xp, gap, p) / load
-        unbalanced = abs(float(xp.sum(p)) / load - 1.0)
-        error = max(-float(xp.min(gap)), carried, unbalanced)
+        residual = part.take(gap)
+        mean = xp.sum(residual) / part.nodes
+        gap -= mean
+        residual -= mean
+        residual *= part.take(p)  # the pressure is zero beside the contact
+        measured = xp.sum(xp.abs(residual)), xp.sum(p), xp.min(gap), xp.min(p)
+        residual = None
+        carried, total, deepest, lowest = on_host(xp.stack(measured)).tolist()
+        error = max(-deepest, carried / load, abs(total / load - 1.0))
         history.append(error)
-        search.report(error)
         best, since = (error, 0) if error < best else (best, since + 1)
+        search.report(best)
         if since >= _PATIENCE:
             reduction, since, rounds = max(0.1 * reduction, 1e-4), 0, rounds + 1
         if rounds >= _HOPELESS or not error < 1e6:
@@ -186,8 +180,7 @@ def _on_grid(
         settled = lowest >= 0.0 or not search.settle
         if error <= tolerance and settled and (double or not exact):
             return ContactState(p, gap, step, error, True, history)
-        before, contact = contact, kept | ((gap < 0.0) & ~contact)
-        changed = int(xp.count_nonzero(contact != before))
+        contact = kept | ((gap < 0.0) & ~contact)
         if exact and not double and error <= max(_SWITCH, 3.0 * tolerance):
             double = True
             gap = None
@@ -202,7 +195,7 @@ def _on_grid(
             if its_error <= tolerance:
                 history[-1] = its_error
                 return ContactState(trial, its_gap, step, its_error, True, history)
-    gap = known = part = None
+    gap = part = None
     workspace.release()
     p, gap, error = _clipped(operators, p, height, load, double)
     return ContactState(p, gap, step, error, False, history)
@@ -217,14 +210,9 @@ def _clipped(
     p *= load / max(float(xp.sum(p)), 1e-300)
     gap = _gap(operators, p, height, double)
     gap -= float(xp.sum(gap * p)) / load
-    error = max(-float(xp.min(gap)), _absolute_product(xp, gap, p) / load)
-    return p, gap, error
-
-
-def _absolute_product(xp: Any, gap: AnyArray, p: AnyArray) -> float:
-    product = gap * p
-    product *= xp.sign(product)
-    return float(xp.sum(product))
+    carried = gap * p
+    carried *= xp.sign(carried)
+    return p, gap, max(-float(xp.min(gap)), float(xp.sum(carried)) / load)
 
 
 def _gap(operators: Operators, pressure: AnyArray, height: AnyArray, double: bool) -> AnyArray:

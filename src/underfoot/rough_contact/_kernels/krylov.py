@@ -46,12 +46,13 @@ class Restriction:
             integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
             number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
             self._number = xp.where(flat, number - 1, xp.full_like(number, self.nodes))
+            self._zero = xp.zeros_like(flat[:1], dtype=xp.float32)
 
     def take(self, field: AnyArray) -> AnyArray:
         """Return a new vector with the values of ``field`` on the nodes."""
         flat = self.xp.reshape(field, (-1,))
         if self.gathered:
-            return self.xp.take(flat, self._index, axis=0)
+            return flat[self._index]
         return flat * self._mask
 
     def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
@@ -72,18 +73,14 @@ class Restriction:
             self._buffer[...] = 0.0
             xp.reshape(self._buffer, (-1,))[self._index] = vector
             return self._buffer
-        zero = xp.zeros_like(vector[:1])
-        return xp.reshape(xp.take(xp.concat((vector, zero)), self._number, axis=0), self._shape)
+        return xp.reshape(xp.concat((vector, self._zero))[self._number], self._shape)
 
-    def constant(self) -> AnyArray:
-        """Return the vector of ones."""
+    def centre(self, vector: AnyArray) -> None:
+        """Take the mean over the nodes off a vector, in place."""
         if self.gathered:
-            return self.xp.ones_like(self._index, dtype=self.xp.float32)
-        return self._mask
-
-    def shift(self, vector: AnyArray, value: AnyArray) -> None:
-        """Add ``value`` to the vector on its nodes, in place."""
-        vector += value if self.gathered else self._mask * value
+            vector -= self.xp.mean(vector)
+        else:
+            vector -= self._mask * (self.xp.sum(vector) / self.nodes)
 
 
 class Workspace:
@@ -136,16 +133,15 @@ def residual_correction(
     operators: Operators,
     part: Restriction,
     residual: AnyArray,
-    response: AnyArray,
     reduction: float,
     workspace: Workspace,
 ) -> AnyArray:
     """Return the correction c with sum c = 0 and A c = residual up to a constant.
 
-    Generalised conjugate residuals in single precision: directions z = S r, brought to zero sum
-    with ``response`` (S 1 on the contact), images A z orthonormal. Stops when the residual's norm
-    has fallen by ``reduction``, or after the workspace's steps. ``residual`` has zero mean and is
-    overwritten. The host waits for the device once a step.
+    Generalised conjugate residuals in single precision: directions z = S r, brought to zero
+    sum, images A z orthonormal. Stops when the residual's norm has fallen by ``reduction``, or
+    after the workspace's steps. ``residual`` has zero mean and is overwritten. The host waits
+    for the device once a step.
     """
     xp = operators.xp
     images, directions = workspace.rows(part.size, part.points)
@@ -155,13 +151,12 @@ def residual_correction(
     r = residual
     left = float(r @ r) ** 0.5
     goal = reduction * left
-    total = xp.sum(response)
     step = 0
     while left > goal and step < steps:
         z = part.through(operators.pressure, r)
-        z -= response * (xp.sum(z) / total)
+        part.centre(z)
         w = part.through(operators.displacement, z)
-        part.shift(w, -xp.sum(w) / part.nodes)
+        part.centre(w)
         raw = w @ w
         overlap = images[:step, :] @ w
         if step:
@@ -192,5 +187,5 @@ def residual_correction(
     r *= float(y.sum())
     r += operators.asarray((weights[:step] * np.cumsum(y)).astype(np.float32)) @ images[:step, :]
     z = part.through(operators.pressure, r)
-    z -= response * (xp.sum(z) / total)
+    part.centre(z)
     return z

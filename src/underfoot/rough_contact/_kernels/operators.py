@@ -96,7 +96,8 @@ class Operators:
 
     def unit(self) -> AnyArray:
         """Return the compliance for E = 1 in double precision, made anew: it is rarely used."""
-        q = self.xp.hypot(*self._waves)
+        qx, qy = self._waves
+        q = self.xp.sqrt(qx**2 + qy**2)
         q[0, 0] = 1.0
         unit = self._body.unit(q)
         unit *= self._body.scale
