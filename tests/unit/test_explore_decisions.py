@@ -1,5 +1,6 @@
 """Batches, rates and measures of studies on small worlds whose right number is plain."""
 
+from collections import Counter
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -11,6 +12,7 @@ from underfoot.explore import engines
 from underfoot.explore.computing import SURFACE, heel_surface, measures, sole_shape
 from underfoot.explore.engines import _threads
 from underfoot.explore.proposals import FEWEST, FIRST, first_points
+from underfoot.explore.record import Ending
 from underfoot.explore.status import StudyStatus
 
 
@@ -75,6 +77,28 @@ def test_a_clock_that_went_back_leaves_no_rate():
     assert status([session(1e6)], [30.0], 10.0).per_minute == 0.0
 
 
+@pytest.mark.parametrize(
+    ("again", "last", "left"),
+    [
+        (0, (0.5,), 30 - 4),  # 10 designs of 3 cases, 4 of 6 proposed ones ended
+        (2, (0.5,), 39 - 4),  # and the best two with the start once more
+        (20, (0.5,), 63 - 4),  # no more than there are
+        (2, (), 30 - 4),  # the start was the last of them: all is proposed
+    ],
+)
+def test_cases_left_are_those_of_all_designs_and_of_the_best_again(again, last, left):
+    made = status([], [], 0.0)
+    method = SimpleNamespace(again_on="runs" if again else "", again=again)
+    given = {
+        "plan": SimpleNamespace(designs=10, cases_per_design=3, goals=("cof",), method=method),
+        "jobs": [SimpleNamespace(point=last)],
+        "endings": Counter({Ending.COMPUTED: 4, Ending.OPEN: 2}),
+    }
+    for name, value in given.items():
+        object.__setattr__(made, name, value)
+    assert made.cases_left == left
+
+
 def result_at(approach):
     history = SimpleNamespace(values=np.array([0.5, approach]))
     return cast(Any, SimpleNamespace(data={"approach_history": history}))
@@ -94,6 +118,7 @@ def test_a_flat_outsole_weighs_its_area_times_its_thickness_times_its_density():
     assert told["mass"] == pytest.approx(1100 * volume)
     assert told["stiffness"] == pytest.approx(case.motion.normal_force / 2e-4)
     thickness = case.shoe.sole.outsole_thickness
+    assert 0.5 < volume / (plan_area(case) * thickness) < 1  # its bevel takes some
     more = case.replace({"shoe.sole.outsole_thickness": thickness + 1e-3})
     added = measures(more, result_at(2e-4))["rubber_volume"].value - volume
     # a millimetre more of rubber under all of the plan form

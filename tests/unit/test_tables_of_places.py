@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import SourcedValue
+from underfoot.core.presentation import probability_text
 from underfoot.places import choice
 from underfoot.places.choice import BINS, Choice, ShoeAnswer, _measurements
 from underfoot.places.machines import MachinePrediction
@@ -29,11 +30,13 @@ def choice_of(*shoes, floors=(), readings_leave=1000.0):
 
 
 def test_shoes_stand_by_their_chance_whatever_their_order_in_the_place():
-    shoes = answer("a", 0.2, price=60.0, months=6), answer("b", 0.7), answer("c", 0.1)
+    shoes = answer("a", 0.2, price=60.0, months=6), answer("b", 0.7), answer("c", 0.0)
     for given in (shoes, shoes[::-1]):
         table = choice_of(*given).table()
         assert [row[0] for row in table.rows] == ["b", "a", "c"]
         assert list(table.columns)[:2] == ["Shoe", "Best"]
+    slips = {row[0]: row[2] for row in table.rows}
+    assert slips == {"a": "2.0 %", "b": "7.0 %", "c": probability_text(0.0)}
     prices = {row[0]: row[-2:] for row in table.rows}
     assert prices["a"] == ["60", "10"]  # 60 in six months
     assert prices["b"] == ["", ""]
@@ -84,7 +87,8 @@ def measured(monkeypatch, slips, cof):
 
     ``cof`` is what the machine reads in each draw.
     """
-    device = SimpleNamespace(cof=lambda *_: cof, fluids=("water",))
+    read = {"blank": np.full(cof.size, 0.5) + 1e-9 * np.arange(cof.size) % 7e-9, "hall": cof}
+    device = SimpleNamespace(cof=lambda _, name, *__: read[name], fluids=("water",))
     monkeypatch.setattr(choice, "machines", lambda: {choice.CHECKED[0][0]: device})
     monkeypatch.setattr(choice, "slip_tests", lambda: {choice.CHECKED[1][0]: None})
     joint = SimpleNamespace(
@@ -92,11 +96,11 @@ def measured(monkeypatch, slips, cof):
         constants=SimpleNamespace(sd_reading=0.0),
         normal=lambda name: np.zeros(cof.size),
     )
-    floor = SimpleNamespace(name="hall", readings=())
+    floors = [SimpleNamespace(name=name, readings=()) for name in read]
     shoes = [SimpleNamespace(name=str(k), readings=("read",)) for k in range(len(slips))]
-    place = SimpleNamespace(floors=[floor], shoes=shoes)
+    place = SimpleNamespace(floors=floors, shoes=shoes)
     return _measurements(
-        cast(Any, place), cast(Any, joint), {"hall": (1e-6, 2e-6)}, {}, np.asarray(slips)
+        cast(Any, place), cast(Any, joint), dict.fromkeys(read, (1e-6, 2e-6)), {}, np.asarray(slips)
     )
 
 
@@ -106,14 +110,15 @@ def test_a_reading_is_worth_what_the_other_choice_saves_where_it_is_better(monke
     rough = np.arange(count) >= count // 2
     first = np.where(rough, 0.4, 0.1)
     second = np.where(rough, 0.1, 0.5)
-    (one,) = measured(monkeypatch, [first, second], cof)
+    one, blank = measured(monkeypatch, [first, second], cof)
+    assert one.name.endswith("hall")  # the most first
+    assert blank.saves < one.saves
     # now the first (0.25 against 0.3); half of the draws read that the second saves 0.3 there
     assert one.changes == pytest.approx(0.5)
     assert one.saves == pytest.approx(0.5 * 0.3 / 0.25)
-    (none,) = measured(monkeypatch, [first, first + 0.1], cof)
-    assert (none.changes, none.saves) == (0.0, 0.0)
-    (tie,) = measured(monkeypatch, [first, first], cof)  # of equals none is another choice
-    assert (tie.changes, tie.saves) == (0.0, 0.0)
+    for second in (first + 0.1, first):  # of equals none is another choice
+        told = measured(monkeypatch, [first, second], cof)
+        assert [(each.changes, each.saves) for each in told] == [(0.0, 0.0)] * 2
     assert measured(monkeypatch, [first], cof) == ()
 
 
