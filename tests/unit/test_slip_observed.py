@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.slip.dynamics.observation import AFTER, BEFORE, RATE, heel_marker
+from underfoot.slip.dynamics.observation import AFTER, BEFORE, RATE, SWING_SPEED, heel_marker
 from underfoot.slip.dynamics.reduced_model import SPEED_SCALE, error_of
 from underfoot.slip.dynamics.study import SlipStudy
 
@@ -41,6 +41,9 @@ def test_a_marker_goes_with_a_heel_that_slides_and_comes_from_its_swing():
     v = np.diff(x) * RATE
     assert v[np.searchsorted(frames, -0.2)] > v[np.searchsorted(frames, -0.01)]
     assert v[0] < 0.1
+    # halfway between the beginning and 0.35 s before contact: half of the largest speed
+    half = np.searchsorted(frames, -0.5 * (BEFORE + 0.35))
+    assert v[half] == pytest.approx(0.5 * SWING_SPEED, rel=0.03)
 
 
 def test_a_foot_that_rests_stays_a_while_and_then_lifts():
