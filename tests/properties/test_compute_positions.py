@@ -287,6 +287,7 @@ def test_what_the_angle_adds_is_its_own_standard_deviation_of_every_number():
     odds = np.log(film / (100 - film))
     assert odds.mean() == pytest.approx(math.log(0.25), abs=1e-4)
     assert odds.std() == pytest.approx(0.05, rel=1e-3)
+    assert made.drawn("contact_load", 100) == pytest.approx(80.0)  # what it adds nothing to
     numbers = {name: SourcedValue(value, "1") for name, value in own.items()}
     assert made.averaged(numbers)["cof_shoe_angle"].value == pytest.approx(0.01)
 
