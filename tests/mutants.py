@@ -3,6 +3,7 @@
     make mutants                              20 seeded faults in every room of the source
     make mutants ROOM="slip shoe" COUNT=40 SEED=7
     python tests/mutants.py --named [ROOM]    the faults of mutants.toml, which tests once let pass
+    python tests/mutants.py --own fluid       tests of the room only: what others run isn't recorded
 
 A fault turns a sign, a comparison or a choice round, moves a number or an index, or swaps two
 arguments. Which quick tests run which lines is recorded first (``mutants_map.py``), where it isn't
@@ -439,9 +440,9 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
         time.sleep(0.02)
 
 
-def record() -> None:
-    """Run the quick tests whose lines are not known yet."""
-    if not (files := [file for file, _ in test_texts() if known_map(file) is None]):
+def record(tests: Iterable[str]) -> None:
+    """Run the quick tests, of these files, whose lines are not known yet."""
+    if not (files := [file for file in tests if known_map(file) is None]):
         return
     print(f"recording the lines that the tests of {len(files)} files run", flush=True)
     subprocess.run(
@@ -502,6 +503,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=20.0, help="of tests that a fault meets")
+    parser.add_argument("--own", action="store_true", help="meet tests of the fault's room only")
     parser.add_argument("--known", action="store_true", help="record nothing")
     given = parser.parse_args()
     if unknown := [room for room in given.rooms if room not in rooms]:
@@ -517,7 +519,8 @@ def main() -> None:
             parser.error(f"{room}: nothing in it can be changed")
         chosen += faults
     if not given.known:
-        record()
+        of_rooms = {test for one in chosen for test in tests_of(one.file)}
+        record(test for test, _ in test_texts() if not given.own or test in of_rooms)
     lines = Lines()
     if lines.red:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
@@ -551,7 +554,8 @@ def main() -> None:
                 continue
             meeting, files = lines.meeting(mutant), tests_of(mutant.file)
             own = in_turn((one for one in meeting if one.file in files), given.seconds)
-            others = in_turn((one for one in meeting if one.file not in files), given.seconds)
+            others = [] if given.own else [one for one in meeting if one.file not in files]
+            others = in_turn(others, given.seconds)
             elsewhere[mutant] = others
             if not (own or others):
                 answers.append(Answer(mutant, None, False, 0))

@@ -7,7 +7,14 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.compute.run import run
-from underfoot.fluid.temperature import FLOOR, ROOM, SOLE, sliding_heat, viscosity_slope
+from underfoot.fluid.temperature import (
+    FLOOR,
+    ROOM,
+    ROOM_DEVIATION,
+    SOLE,
+    sliding_heat,
+    viscosity_slope,
+)
 
 
 def test_fluids_thin_as_tables_say():
@@ -19,6 +26,11 @@ def test_fluids_thin_as_tables_say():
     assert slopes == sorted(slopes)
     # 90 % glycerol by mass: 219 mPa s at 20 C and 109 at 30 C (Segur and Oberstar 1951)
     assert viscosity_slope(0.18) == pytest.approx(math.log(219 / 109) / 10, rel=0.06)
+
+
+def test_a_room_is_anywhere_between_its_two_temperatures():
+    every = np.linspace(20.0, 25.0, 100_001) + 273.15
+    assert (every.mean(), every.std()) == pytest.approx((ROOM, ROOM_DEVIATION), rel=1e-4)
 
 
 def test_the_heat_of_sliding_is_that_of_conduction_into_both_faces():

@@ -62,6 +62,12 @@ def test_westergaard_solves_the_half_space_equation():
     assert np.abs(error).max() < 2e-5 * amplitude
 
 
+def test_without_pressure_the_gap_is_the_sinusoid():
+    x = np.linspace(0.0, 1.0, 9)
+    gap = reference.sinusoid_gap(x, 0.0, 2e-6, 1.0, 1e6)
+    assert gap == pytest.approx(4e-6 * np.sin(np.pi * x) ** 2)
+
+
 def test_westergaard_ends():
     full = reference.sinusoid_full_contact_pressure(1e-6, 1e-4, 1e6)
     assert full == pytest.approx(np.pi * 1e4)

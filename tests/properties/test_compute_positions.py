@@ -27,6 +27,7 @@ from underfoot.compute.positions import (
     position_count,
     run_cost,
     shoe_angles,
+    tread_positions,
 )
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
@@ -271,6 +272,47 @@ def test_draws_take_every_position_and_its_spread_is_named():
     moved = np.log(film / (1e6 - film) * (1e6 / np.tile(values["fluid_load"], 1000) - 1))
     assert np.std(moved) == pytest.approx(0.05, rel=0.01)
     assert np.mean(moved) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_what_the_angle_adds_is_its_own_standard_deviation_of_every_number():
+    own = {"cof": 0.3, "fluid_load": 20.0, "contact_load": 80.0}
+    values = {name: np.full(2, value) for name, value in own.items()}
+    made = TreadPositions(
+        places(np.eye(2), 2), values, 0, own, by_angle={"cof": -0.01}, film_by_angle=0.05
+    )
+    drawn, film = made.drawn("cof", 4000), made.drawn("fluid_load", 4000)
+    assert drawn.mean() == pytest.approx(0.3, abs=1e-5)
+    assert drawn.std() == pytest.approx(0.01, rel=1e-3)
+    assert np.ptp(drawn) == pytest.approx(2 * math.sqrt(3) * 0.01, rel=1e-2)
+    odds = np.log(film / (100 - film))
+    assert odds.mean() == pytest.approx(math.log(0.25), abs=1e-4)
+    assert odds.std() == pytest.approx(0.05, rel=1e-3)
+    assert made.drawn("contact_load", 100) == pytest.approx(80.0)  # what it adds nothing to
+    numbers = {name: SourcedValue(value, "1") for name, value in own.items()}
+    assert made.averaged(numbers)["cof_shoe_angle"].value == pytest.approx(0.01)
+
+
+def test_the_angle_adds_half_of_what_toe_up_and_toe_down_differ_by(bars):
+    """A world in which each degree toe up adds 0.02 to COF and moves 4 N to the film."""
+    parts = ("cof_adhesion", "cof_hysteresis", "cof_viscous")
+
+    def numbers(place):
+        more = 0.02 * place.turn / ANGLE_DEVIATION
+        film = 50 + 4 * place.turn / ANGLE_DEVIATION
+        return {"cof": 0.3 + more, "fluid_load": film, "contact_load": 100 - film,
+                parts[0]: 0.1 + more, parts[1]: 0.1, parts[2]: 0.1}  # fmt: skip
+
+    spacing = bars.numerics.quick_grid_spacing / 2
+    made = tread_positions(
+        bars,
+        {Place(): numbers(Place())},
+        lambda asked: ((k, numbers(place)) for k, (place, _) in enumerate(asked)),
+        spacing=spacing,
+        quick=False,
+    )
+    assert made.by_angle["cof"] == pytest.approx(0.02)
+    assert made.by_angle["fluid_load"] == pytest.approx(4.0)
+    assert made.film_by_angle == pytest.approx(math.log(54 / 46))
 
 
 def test_the_offset_of_a_case_moves_the_pattern_with_its_sipes(bars):

@@ -47,6 +47,14 @@ def test_extrapolation_is_marked():
     assert "500 N" in str(found[0])
 
 
+@pytest.mark.parametrize(
+    "other", [{"normal_force": 30.0}, {"speed": 0.015}, {"viscosity": 0.1}, {"viscosity": 4e-4}]
+)
+def test_one_load_and_one_speed_were_tested(other):
+    told = {"normal_force": 20.9, "speed": 0.01, "viscosity": 1.9e-3} | other
+    assert len(strobel_breaches(**told)) == 1
+
+
 def test_bad_input():
     with pytest.raises(InputError, match="Did you mean"):
         adhesion_blocking("canola")

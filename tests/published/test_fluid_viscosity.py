@@ -86,6 +86,7 @@ def test_bad_input_is_refused_with_the_remedy():
         glycerol_water_viscosity(np.nan, 293.15)
     assert glycerol_water_breaches(0.5, 293.15) == []
     assert "temperature" in str(glycerol_water_breaches(0.5, 260.0)[0])
+    assert "fraction" in str(glycerol_water_breaches(1.2, 293.15)[0])
 
 
 @pytest.mark.parametrize(
@@ -126,3 +127,9 @@ def test_contaminant_refuses_nonsense():
         Contaminant("x", SourcedValue(1.0, "cP", reason="test"))
     with pytest.raises(RangeError, match="temperature"):
         Contaminant("x", water, temperature=-1.0)
+
+
+@pytest.mark.parametrize(("fraction", "kelvin"), [([0.5, 1.01], 293.0), (0.5, [293.0, 374.0])])
+def test_one_value_beyond_its_range_is_refused_among_others(fraction, kelvin):
+    with pytest.raises(RangeError):
+        glycerol_water_viscosity(fraction, kelvin)
