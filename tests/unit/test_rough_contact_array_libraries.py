@@ -128,12 +128,13 @@ def test_another_library_takes_the_same_steps_and_products(
 @pytest.mark.parametrize("nodes", SIZES)
 @pytest.mark.parametrize(("pressure", "speed"), CASES)
 def test_torch_takes_the_steps_and_products_of_numpy(monkeypatch, cost, nodes, pressure, speed):
-    # torch's transform rounds in its own way: NumPy's arrays with two transforms differ alike
+    # torch's transform rounds in its own way: the last step hangs on it, as on that of NumPy's
+    # arrays, which take 7 steps with MKL's and 8 with two others (512, 0.02, 0.1)
     steps, products = cost(nodes, pressure, speed, "torch cpu")
     numpys = [cost(nodes, pressure, speed, "numpy")]
     same_transform(monkeypatch)
     numpys.append(cost(nodes, pressure, speed, "numpy"))
-    assert steps in [one for one, _ in numpys]
+    assert min(abs(steps - one) for one, _ in numpys) <= 1
     least, most = (pick(one for _, one in numpys) for pick in (min, max))
     assert 0.9 * least <= products <= 1.1 * most
 
