@@ -188,6 +188,7 @@ class _Answer:
                     ui.label(self._risk(answer)).classes("strong")
         with self.summary:
             with ui.element("div").classes("answer-card"):
+                ui.label(self.text("answer.under", **self._under(answer["under"]))).classes("soft")
                 ui.label(self.text("answer.cof")).classes("soft")
                 ui.label(f"{answer['cof']:.3f}").classes("big")
                 if answer["interval"]:
@@ -202,6 +203,15 @@ class _Answer:
             self.beside = ui.element("div")
             self._beside(answer)
             ui.label(answer["limit"]).classes("soft")
+
+    def _under(self, told: Mapping[str, tuple[str, bool]]) -> dict[str, str]:
+        """Return floor and contaminant of what was computed, which no name of a variant tells."""
+        under = {}
+        for part, (entry, changed) in told.items():
+            shown = entry or self.text("origin.given" if changed else "design.dry")
+            altered = entry and changed
+            under[part] = self.text("answer.changed_entry", title=shown) if altered else shown
+        return under
 
     def _beside(self, answer: dict[str, Any]) -> None:
         """Show the COF on a scale with what walkers need and a shoe that the person knows."""
