@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "app"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 
 from pages import ROOT, blocks_of, command_output, reader
-from web_app import begin, drawn, page_of, served
+from web_app import begin, drawn, helped, page_of, served
 
 from underfoot.places.choice import chosen
 from underfoot.places.place import read_place
@@ -125,7 +125,7 @@ def app_pictures() -> None:
         seen()
         page.wait_for_selector(".big")
         drawn(page)
-        page.get_by_role("button", name="Simulated without gain").wait_for()
+        helped(page)
         seen("app_answer")
         for field in ("Fluid pressure", "Film thickness"):
             page.locator(".choice label", has_text=field).click()

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from web_app import PATHS, Cost, begin, coarsened, drawn, page_of, served
+from web_app import PATHS, Cost, begin, coarsened, drawn, helped, page_of, served
 
 from underfoot.case import Case
 from underfoot.shoe.files import FileSettings, outsole_from_file
@@ -120,8 +120,7 @@ def test_the_answer_then_previews_then_the_full_run(app):
         cof = float(page.locator(".big").inner_text())
         result = next((app.folder / "results").glob("*/result.json"))
         assert cof == pytest.approx(json.loads(result.read_text())["cof"]["value"], abs=6e-4)
-        page.get_by_role("heading", name="What would help").wait_for(timeout=240_000)
-        page.get_by_role("button", name="Simulated without gain").wait_for()
+        helped(page)
         page.mouse.wheel(0, 600)
         page.wait_for_function("scrollY >= 500")
         places = "(name) => document.querySelector(name).getBoundingClientRect()"
