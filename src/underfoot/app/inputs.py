@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from itertools import count
 from math import degrees, log10
-from typing import Any
+from typing import Any, TypeVar
 
 from nicegui import ui
 from nicegui.events import GenericEventArguments
@@ -31,6 +31,7 @@ CUSTOMARY = {
 """Size and sign of the US unit that is shown in place of one of a case."""
 GROOVES = "shoe.tread.grooves"
 _numbers = count()
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +165,7 @@ def _row(session: Session, each: Input, value: float, origin: str) -> str:
     )
 
 
-def read_field(field: ui.input, read: Callable[[str], float]) -> float:
+def read_field(field: ui.input, read: Callable[[str], Read]) -> Read:
     """Return what ``read`` makes of the text of a field; its error is told there, too.
 
     Raises:

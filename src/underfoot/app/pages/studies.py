@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
+import re
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import tomlkit
@@ -17,10 +19,11 @@ from underfoot.case.parts import paths
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
-from underfoot.core.units import display
+from underfoot.core.typed import split_quantity
+from underfoot.core.units import display, to_si
 
 from ..components import SoleView, sentences, task_line, title
-from ..inputs import read_count
+from ..inputs import read_count, read_field
 from ..jobs import Task
 from ..project import NAME
 from ..session import Session, address, problem_parts
@@ -36,6 +39,8 @@ FIELDS = {
     "uncertain": ("kind", "first", "second"),
     "conditions": ("values",),
 }
+SEPARATOR = re.compile(r"\s*(?:;|,(?=\s)|(?<!\d),|,(?!\d))\s*")
+"""Between values: a comma between digits belongs to a number."""
 GOALS = ("maximise", "minimise", "require")
 METHOD = {
     "kind": ("sweep", "sensitivity", "optimise", "robust"),
@@ -411,10 +416,12 @@ class _Rows:
             choice.props("dense outlined options-dense").classes("study-path")
             choice.props(f'label="{self.text("studies.path")}"')
             fields: dict[str, Any] = {}
+            good: list[Any] = [path, value]
 
             def read() -> tuple[str, Any]:
-                given = {key: field.value for key, field in fields.items()}
-                return choice.value or "", _value(self.section, given)
+                with suppress(InputError):  # its field tells it; the file keeps what it has
+                    good[:] = choice.value or "", self._value(choice.value or "", fields)
+                return good[0], good[1]
 
             self._keep(row, read)
             fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
@@ -444,6 +451,40 @@ class _Rows:
             made.on("keydown.enter", self.changed)
         return made.props("dense outlined").classes(f"study-{key}")
 
+    def _value(self, path: str, fields: Mapping[str, Any]) -> Any:
+        """Return what the file says for what a row shows; None while it is not complete.
+
+        Raises:
+            InputError: A field holds no such value, which it tells.
+        """
+        comma = self.text.comma
+        for key, field in fields.items():
+            if key != "kind":
+                field.error = None
+
+        def number(key: str, at: str) -> Any:
+            return read_field(fields[key], partial(typed, path=at, comma=comma))
+
+        if "values" in fields and (fields["values"].value or "").strip():
+            return read_field(
+                fields["values"],
+                lambda text: [
+                    typed(part, path, comma=comma, words=True)
+                    for part in SEPARATOR.split(text.strip())
+                    if part
+                ],
+            )
+        ends = ("first", "second") if self.section == "uncertain" else ("from", "to")
+        if not all(key in fields and (fields[key].value or "").strip() for key in ends):
+            return None
+        keys = KINDS[fields["kind"].value] if self.section == "uncertain" else ends
+        numbers = [
+            number(field, "" if key == "factor" else path)
+            for key, field in zip(keys, ends, strict=True)
+        ]
+        steps = read_count(self.page.session, fields["steps"]) if "steps" in fields else None
+        return dict(zip(keys, numbers, strict=True)) | ({"steps": steps} if steps else {})
+
     async def _proposed(self, path: str, fields: Mapping[str, Any]) -> None:
         """Propose a range about the value of the base, where the path is new."""
         variant = (await self.page.session.ask(f"{WORK}:form", self.page.written())).get("base", "")
@@ -471,7 +512,7 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
     """Return what a row shows of a value; None where a row can't."""
     fields = dict.fromkeys(FIELDS[section], "")
     if isinstance(value, list) and "values" in fields:
-        return fields | {"values": ", ".join(map(str, value))}
+        return fields | {"values": "; ".join(map(str, value))}
     if not isinstance(value, Mapping) or (section == "conditions" and value):
         return None
     if section == "uncertain":
@@ -482,24 +523,26 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
     return fields | {k: str(v) for k, v in value.items()} if set(value) <= set(fields) else None
 
 
-def _value(section: str, fields: Mapping[str, str]) -> Any:
-    """Return what the file says for what a row shows; None while it is not complete."""
-    if values := fields.get("values"):
-        return [_plain(part.strip()) for part in values.split(",") if part.strip()]
-    keys = KINDS[fields["kind"]] if section == "uncertain" else ("from", "to")
-    ends = [fields.get(key) for key in (("first", "second") if section == "uncertain" else keys)]
-    if not all(ends):
-        return None
-    steps = {"steps": _plain(fields["steps"])} if fields.get("steps") else {}
-    return dict(zip(keys, map(_plain, map(str, ends)), strict=True)) | steps
+def typed(text: str, path: str, *, comma: bool, words: bool = False) -> Any:
+    """Return what was typed of a value at a path as a study file writes it: a number, a quantity.
 
+    Parameters:
+        text: What was typed.
+        path: In a case; "" for a number without a unit.
+        comma: The writer's decimal sign is the comma.
+        words: What is no number may stand, as the name of a pattern.
 
-def _plain(text: str) -> Any:
-    """Return a number where the text is one; what a file can't hold (1e400, nan) stays text."""
-    for kind in (int, float):
-        try:
-            number = kind(text)
-        except ValueError:
-            continue
-        return number if math.isfinite(number) else text
-    return text
+    Raises:
+        InputError: No number, one that can be two, a unit that is missing or of another quantity.
+    """
+    unit = "1"
+    with suppress(InputError):  # a section, a short name, a path that the check of the file refuses
+        unit = unit_at(path)
+    parts = split_quantity(text, comma=comma)
+    if words and unit == "1" and (parts is None or parts[1]):
+        return text
+    value = to_si(text, unit, where="", comma=comma)
+    if unit == "1":
+        return int(value) if value == int(value) else value
+    assert parts is not None  # else it was refused above
+    return f"{repr(parts[0]).removesuffix('.0')} {parts[1]}"
