@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from itertools import count
 from math import degrees, log10
@@ -179,6 +180,18 @@ def read_field(field: ui.input, read: Callable[[str], Read]) -> Read:
         raise
 
 
+def whole_number(text: str, *, comma: bool) -> int:
+    """Return the whole number from 1 on that was typed.
+
+    Raises:
+        InputError: Another text.
+    """
+    number = to_si(text, "1", where="", comma=comma)
+    if number < 1 or number != int(number):
+        raise InputError(f"{text} is no count", allowed="1, 2, 3 ...")
+    return int(number)
+
+
 def read_count(session: Session, field: ui.input) -> int | None:
     """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
 
@@ -188,14 +201,7 @@ def read_count(session: Session, field: ui.input) -> int | None:
     field.error = None
     if not (field.value or "").strip():
         return None
-    try:
-        number = to_si(field.value, "1", where="", comma=session.text.comma)
-        if number < 1 or number != int(number):
-            raise InputError(f"{field.value} is no count", allowed="1, 2, 3 ...")
-    except InputError as error:
-        field.error = str(error)
-        raise
-    return int(number)
+    return read_field(field, partial(whole_number, comma=session.text.comma))
 
 
 def number_field(

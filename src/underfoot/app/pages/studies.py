@@ -23,7 +23,7 @@ from underfoot.core.typed import split_quantity
 from underfoot.core.units import display, to_si
 
 from ..components import SoleView, sentences, task_line, title
-from ..inputs import read_count, read_field
+from ..inputs import read_count, read_field, whole_number
 from ..jobs import Task
 from ..project import NAME
 from ..session import Session, address, problem_parts
@@ -419,8 +419,16 @@ class _Rows:
             good: list[Any] = [path, value]
 
             def read() -> tuple[str, Any]:
+                at, comma = choice.value or "", self.text.comma
+                given = {key: field.value or "" for key, field in fields.items()}
+                for key in given.keys() - {"kind"}:
+                    fields[key].error = None
+
+                def told(key: str, reader: Callable[[str], Any]) -> Any:
+                    return read_field(fields[key], reader)
+
                 with suppress(InputError):  # its field tells it; the file keeps what it has
-                    good[:] = choice.value or "", self._value(choice.value or "", fields)
+                    good[:] = at, _value(self.section, at, given, comma=comma, read=told)
                 return good[0], good[1]
 
             self._keep(row, read)
@@ -450,40 +458,6 @@ class _Rows:
             made.on("blur", self.changed)
             made.on("keydown.enter", self.changed)
         return made.props("dense outlined").classes(f"study-{key}")
-
-    def _value(self, path: str, fields: Mapping[str, Any]) -> Any:
-        """Return what the file says for what a row shows; None while it is not complete.
-
-        Raises:
-            InputError: A field holds no such value, which it tells.
-        """
-        comma = self.text.comma
-        for key, field in fields.items():
-            if key != "kind":
-                field.error = None
-
-        def number(key: str, at: str) -> Any:
-            return read_field(fields[key], partial(typed, path=at, comma=comma))
-
-        if "values" in fields and (fields["values"].value or "").strip():
-            return read_field(
-                fields["values"],
-                lambda text: [
-                    typed(part, path, comma=comma, words=True)
-                    for part in SEPARATOR.split(text.strip())
-                    if part
-                ],
-            )
-        ends = ("first", "second") if self.section == "uncertain" else ("from", "to")
-        if not all(key in fields and (fields[key].value or "").strip() for key in ends):
-            return None
-        keys = KINDS[fields["kind"].value] if self.section == "uncertain" else ends
-        numbers = [
-            number(field, "" if key == "factor" else path)
-            for key, field in zip(keys, ends, strict=True)
-        ]
-        steps = read_count(self.page.session, fields["steps"]) if "steps" in fields else None
-        return dict(zip(keys, numbers, strict=True)) | ({"steps": steps} if steps else {})
 
     async def _proposed(self, path: str, fields: Mapping[str, Any]) -> None:
         """Propose a range about the value of the base, where the path is new."""
@@ -521,6 +495,40 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
                 first, second = (str(value[key]) for key in keys)
                 return {"kind": kind, "first": first, "second": second}
     return fields | {k: str(v) for k, v in value.items()} if set(value) <= set(fields) else None
+
+
+def _value(
+    section: str,
+    path: str,
+    fields: Mapping[str, str],
+    *,
+    comma: bool = False,
+    read: Callable[[str, Callable[[str], Any]], Any] | None = None,
+) -> Any:
+    """Return what the file says for what a row shows; None while it is not complete.
+
+    ``read`` gets the name of a field and what reads its text.
+
+    Raises:
+        InputError: A field holds no such value.
+    """
+    read = read or (lambda key, reader: reader(fields[key]))
+    if fields.get("values", "").strip():
+        each = partial(typed, path=path, comma=comma, words=True)
+        return read(
+            "values", lambda text: [each(part) for part in SEPARATOR.split(text.strip()) if part]
+        )
+    ends = ("first", "second") if section == "uncertain" else ("from", "to")
+    if not all(fields.get(key, "").strip() for key in ends):
+        return None
+    keys = KINDS[fields["kind"]] if section == "uncertain" else ends
+    value = {
+        key: read(end, partial(typed, path="" if key == "factor" else path, comma=comma))
+        for key, end in zip(keys, ends, strict=True)
+    }
+    if fields.get("steps", "").strip():
+        value["steps"] = read("steps", partial(whole_number, comma=comma))
+    return value
 
 
 def typed(text: str, path: str, *, comma: bool, words: bool = False) -> Any:
