@@ -140,7 +140,8 @@ def app_pictures() -> None:
         seen("app_what_if")
         page.get_by_text("the full run differs by").wait_for()
         seen()
-        page.get_by_role("button", name="Keep it as a variant").click()
+        with page.expect_navigation():  # the page before shows a number, too
+            page.get_by_role("button", name="Keep it as a variant").click()
         page.wait_for_selector(".big")
         drawn(page)
         seen()

@@ -117,6 +117,7 @@ def test_the_answer_then_previews_then_the_full_run(app):
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_selector(".big")
         drawn(page)
+        page.get_by_text("Vinyl tile of the slip tester; Glycerol 90 %, water 10 %").wait_for()
         cof = float(page.locator(".big").inner_text())
         result = next((app.folder / "results").glob("*/result.json"))
         assert cof == pytest.approx(json.loads(result.read_text())["cof"]["value"], abs=6e-4)

@@ -3,7 +3,7 @@
 import pytest
 
 from underfoot import Case
-from underfoot.app.work import conditions
+from underfoot.app.pages.answer import conditions
 
 CASE = Case.from_mapping(
     {

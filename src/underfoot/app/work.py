@@ -191,24 +191,7 @@ def answer(folder: str, *, progress: Progress) -> dict[str, Any]:
             result.data["lug_way"].values > result.data["lug_height"].values
         ).tolist()
     html = sole_html(result, surface_of_result(result))
-    under = conditions(Case.from_text(result.case_text))
-    return {**presented(result), **numbers, "under": under, "advised": advised, "html": html}
-
-
-def conditions(case: Case) -> dict[str, tuple[str, bool]]:
-    """Return the titles of floor and contaminant of a case, and whether values were changed."""
-    told = {}
-    for part, kind in (("floor", "floor"), ("contaminant", "fluid")):
-        entry = case.entries.get(part)
-        title = "" if entry is None else case.catalogue.entry(kind, entry).title
-        told[part] = (
-            title,
-            any(
-                path.startswith(f"{part}.") and origin.kind == "given"
-                for path, origin in case.origins.items()
-            ),
-        )
-    return told
+    return {**presented(result), **numbers, "advised": advised, "html": html}
 
 
 def previewed(
