@@ -73,7 +73,7 @@ _ALIASES = {
     "Grad": "deg",
     "mil": "thou",
 }
-_SHARES = ("percent", "permille", "ppm")
+_SHARES = {"percent", "permille", "ppm"}
 _SIGNS = str.maketrans(
     {"µ": "u", "μ": "u", "°": "deg", "²": "^2", "³": "^3", "⁻": "^-", "¹": "1",
      "·": "*", "⋅": "*", "∙": "*", "×": "*", "″": '"', "”": '"'}
@@ -312,10 +312,11 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
     except pint.DimensionalityError as error:
         raise refused from error
     # what the library takes for pure numbers: shares, and angles beside none
-    units = str(quantity.units)
-    if text == "grad" or any(share in units for share in _SHARES):  # degrees, or gon
+    units = {registry.parse_unit_name(name)[0][1] for name, _ in quantity.unit_items()}
+    if text == "grad" or units & _SHARES:  # degrees, or gon
         raise refused
-    angles = "radian" in str(registry.get_root_units(quantity.units)[1])
+    roots = registry.Quantity(1.0, registry.get_root_units(quantity.units)[1])
+    angles = "radian" in dict(roots.unit_items())
     if angles == ("rad" in unit):
         return value
     if unit == "Hz" and angles:
