@@ -163,7 +163,7 @@ def test_the_answer_then_previews_then_the_full_run(app):
         assert page.locator("[data-live=preview]").inner_text().startswith("Preview: COF 0.")
         page.get_by_text("the full run differs by").wait_for()
         page.get_by_role("button", name="Keep it as a variant").click()
-        page.wait_for_url(re.compile(r"glycerol.+2$"))
+        page.wait_for_url(re.compile(r"variant=Work.shoe.+speed"))
         page.wait_for_selector(".big")
         assert len(list((app.folder / "variants").glob("*.toml"))) == 2
         assert page.complaints == []

@@ -326,7 +326,9 @@ class _Answer:
         if self.tried is not None and self.tried.open:
             jobs.cancel(self.tried)
         folder = str(self.session.project.inside("results", TRIED, self.name))
-        named = {**changes, "name": self.session.project.free_name(self.name)}
+        told = [f"{self.text(f'inputs.{path}')} {value}" for path, value in changes.items()]
+        wanted = ", ".join([self.name, *told]).replace("/", " per ")  # a file's name, too
+        named = {**changes, "name": self.session.project.free_name(wanted)}
         arguments = (path, folder, named)
         self.tried = self.session.submit(
             self.text("answer.full"),
