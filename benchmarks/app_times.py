@@ -49,7 +49,7 @@ PARTS = """() => {
 def measured() -> tuple[dict[str, str], dict[str, list[dict[str, Any]]]]:
     """Return times and memory by name, and the parts of each step of each slider (ms)."""
     sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "app")]
-    from web_app import Cost, begin, drawn, page_of, served
+    from web_app import Cost, begin, drawn, helped, page_of, served
 
     times: dict[str, str] = {}
     steps: dict[str, list[dict[str, Any]]] = {}
@@ -65,7 +65,7 @@ def measured() -> tuple[dict[str, str], dict[str, list[dict[str, Any]]]]:
         times["link to first page"] = str(cost)
         begin(page, app.base)
         page.get_by_role("button", name="Compute friction").click()
-        page.get_by_role("button", name="Simulated without gain").wait_for()
+        helped(page)
         with Cost() as cost:
             page.reload()
             drawn(page)

@@ -11,6 +11,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+import shapely
 import trimesh
 from numpy.typing import NDArray
 
@@ -53,19 +54,15 @@ def edge_errors(case: Case, folder: Path) -> NDArray[np.float64]:
     write_sole(new_sole(level), file)
     solid = trimesh.load_mesh(file)
     upright = solid.triangles[np.abs(solid.face_normals[:, 2]) < 0.02][:, :, :2]
-    begin, end = upright.reshape(-1, 2), np.roll(upright, -1, axis=1).reshape(-1, 2)
+    sides = np.stack([upright, np.roll(upright, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    faces = shapely.STRtree(shapely.linestrings(sides))
     sole = drawn_sole(map_fields(sole_map(level, 1e-3)))
     surface = designed_surface(level, spacing_for(sole))
     walls = surface.walls[surface.land[surface.walls[:, 0]] != surface.land[surface.walls[:, 2]]]
     ends = 1e3 * surface.points[walls[:, :2], :2]
     points = np.concatenate([ends[:, 0], ends.mean(axis=1)])
-    way = end - begin
-    length = np.maximum((way**2).sum(axis=1), 1e-12)
-    away = []
-    for point in points:
-        share = np.clip(((point - begin) * way).sum(axis=1) / length, 0, 1)[:, None]
-        away.append(np.hypot(*(point - begin - share * way).T).min())
-    return np.array(away)
+    _, away = faces.query_nearest(shapely.points(points), return_distance=True, all_matches=False)
+    return away
 
 
 def main() -> None:

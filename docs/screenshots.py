@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "app"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 
 from pages import ROOT, blocks_of, command_output, reader
-from web_app import begin, drawn, page_of, served
+from web_app import begin, drawn, helped, page_of, served
 
 from underfoot.places.choice import chosen
 from underfoot.places.place import read_place
@@ -125,7 +125,7 @@ def app_pictures() -> None:
         seen()
         page.wait_for_selector(".big")
         drawn(page)
-        page.get_by_role("button", name="Simulated without gain").wait_for()
+        helped(page)
         seen("app_answer")
         for field in ("Fluid pressure", "Film thickness"):
             page.locator(".choice label", has_text=field).click()
@@ -140,7 +140,8 @@ def app_pictures() -> None:
         seen("app_what_if")
         page.get_by_text("the full run differs by").wait_for()
         seen()
-        page.get_by_role("button", name="Keep it as a variant").click()
+        with page.expect_navigation():  # the page before shows a number, too
+            page.get_by_role("button", name="Keep it as a variant").click()
         page.wait_for_selector(".big")
         drawn(page)
         seen()

@@ -521,3 +521,26 @@ def test_the_colour_tables_are_those_of_matplotlib():
         colours = matplotlib.colormaps[name](np.arange(256))[:, :3] * 255
         stored = np.frombuffer(base64.b64decode(table), np.uint8).reshape(256, 3)
         assert np.array_equal(stored, colours.round())
+
+
+def test_the_word_at_the_toe_stays_whole_in_the_picture(page):
+    """As far as one zooms in or out, in a narrow window too."""
+    beyond = """(() => {
+      const toe = document.querySelector(".toe"), range = document.createRange();
+      range.selectNodeContents(toe);
+      const text = range.getBoundingClientRect(), box = toe.parentElement.getBoundingClientRect();
+      return Math.max(box.left - text.left, text.right - box.right, box.top - text.top,
+        text.bottom - box.bottom);
+    })()"""
+    zoom = """(() => {
+      const canvas = document.querySelector("canvas");
+      canvas.focus();
+      canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: WAY, cancelable: true }));
+    })()"""
+    for width in (390, 1280):
+        with opened(page, width=width) as session:
+            assert session.value(beyond) <= 0.5
+            for way in [-60] * 12 + [60] * 16:
+                session.value(zoom.replace("WAY", str(way)))
+                session.settle()
+                assert session.value(beyond) <= 0.5

@@ -16,6 +16,7 @@ from underfoot.app.pages.studies import FIELDS, KINDS, _fields, _value
 from underfoot.app.project import Project
 from underfoot.case import Case, CaseError, load
 from underfoot.compute.run import run
+from underfoot.core import InputError
 from underfoot.core.progress import silent
 from underfoot.report import write_report
 
@@ -93,27 +94,43 @@ def test_results_side_by_side_know_every_pair(project):
     assert file.read_bytes()[:4] == b"glTF"
 
 
-NUMBER = st.integers(0, 99).map(str) | st.sampled_from(["1 mm", "0.5 m/s", "219 cP"])
+NUMBERS = {
+    "shoe.material.shore_a": st.integers(0, 99).map(str) | st.just("62.5"),
+    "shoe.tread.depth": st.sampled_from(["1 mm", "2.5 mm", "0.2 cm"]),
+    "contaminant.viscosity": st.sampled_from(["219 cP", "0.04 Pa*s"]),
+}
+"""Path: what a file says of it."""
 
 
-@given(st.sampled_from(sorted(FIELDS)), st.sampled_from(sorted(KINDS)), st.data())
-def test_a_row_of_the_form_says_what_the_file_says(section, kind, data):
-    """A form can show what it writes; what it can't show it says so."""
+@given(
+    st.sampled_from(sorted(FIELDS)),
+    st.sampled_from(sorted(KINDS)),
+    st.sampled_from(sorted(NUMBERS)),
+    st.booleans(),
+    st.data(),
+)
+def test_a_row_of_the_form_says_what_the_file_says(section, kind, path, comma, data):
+    """A form can show what it writes, in either language; what it can't show it says so."""
+    number = NUMBERS[path]
     if section == "uncertain":
-        fields = {"kind": kind, "first": data.draw(NUMBER), "second": data.draw(NUMBER)}
+        second = NUMBERS["shoe.material.shore_a"] if kind == "lognormal" else number
+        fields = {"kind": kind, "first": data.draw(number), "second": data.draw(second)}
     elif section == "vary" and data.draw(st.booleans()):
-        ends = {key: data.draw(NUMBER) for key in ("from", "to")}
+        ends = {key: data.draw(number) for key in ("from", "to")}
         fields = {**ends, "steps": data.draw(st.sampled_from(["", "5"])), "values": ""}
     else:
-        values = ", ".join(data.draw(st.lists(NUMBER, min_size=1, max_size=3)))
+        values = "; ".join(data.draw(st.lists(number, min_size=1, max_size=3)))
         fields = dict.fromkeys(FIELDS[section], "") | {"values": values}
-    assert _fields(section, _value(section, fields)) == fields
+    assert _fields(section, _value(section, path, fields, comma=comma)) == fields
 
 
 def test_what_no_row_can_say_is_left_alone():
     assert _fields("vary", {"times": 1.5, "of": "shoe.tread.depth"}) is None
     assert _fields("uncertain", "posterior.csv") is None
-    assert _value("vary", {"from": "1 mm", "to": "", "steps": "", "values": ""}) is None
+    assert (
+        _value("vary", "shoe.tread.depth", {"from": "1 mm", "to": "", "steps": "", "values": ""})
+        is None
+    )
 
 
 @pytest.mark.browser
@@ -159,10 +176,18 @@ def ended(project):
         yield from path.read_text().splitlines()
 
 
-@pytest.mark.parametrize("typed", ["1e400", "-1e400", "nan", "inf"])
-def test_what_is_no_number_of_a_file_stays_as_it_was_typed(typed):
-    ends = {"from": typed, "to": "2", "steps": ""}
-    assert _value("vary", ends) == {"from": typed, "to": 2}
+@pytest.mark.parametrize("typed", ["1e400", "-1e400", "nan", "inf", "abc", "1 2", "3 mm"])
+def test_what_is_no_number_is_refused_at_its_field(typed):
+    asked = []
+
+    def read(key, reader):
+        asked.append(key)
+        return reader(ends[key])
+
+    ends = {"from": "1", "to": typed, "steps": ""}
+    with pytest.raises(InputError):
+        _value("vary", "shoe.material.shore_a", ends, read=read)
+    assert asked == ["from", "to"]
 
 
 @pytest.mark.browser

@@ -155,6 +155,11 @@ def begin(page, base, *, coarse=None):
         coarsened(page, coarse)
 
 
+def helped(page):
+    """Wait until the answer says what would help: of every change, with gain or without."""
+    page.get_by_role("heading", name="What would help", exact=True).wait_for()
+
+
 def coarsened(page, app):
     """Put every variant of an app on a grid that runs in a second, and draw the page anew."""
     from underfoot.app.project import Project

@@ -18,7 +18,12 @@ SPELLINGS = {
     ("m", "in", 0.0381): ["1 1/2", "1½ in", "1-1/2 in", '1 1/2"', "1,5", "1.5 inch"],
     ("N", "N", 1234.5): ["1.234,5", "1,234.5 N", "1 234,5", "1'234.5", "1\u00a0234,5 N",
                          "1,2345 kN", "1\u202f234,5"],
-    ("rad", "deg", 0.17453292519943295): ["10°", "10 deg", "10", "10,0", "1e1"],
+    ("rad", "deg", 0.17453292519943295): ["10°", "10 deg", "10", "10,0", "1e1", "10 Grad",
+                                          "10Grad", "600 arcmin", "0.17453292519943295 rad"],
+    ("rad/s", "rad/s", 62.83185307179586): ["10 Hz", "10Hz", "0,01 kHz", "600 rpm", "10 turn/s",
+                                            "62.83185307179586", "62,83185307179586 rad/s"],
+    ("Hz", "Hz", 10.0): ["10", "10 Hz", "600 rpm", "62.83185307179586 rad/s", "10 1/s"],
+    ("1/s", "1/s", 10.0): ["10", "10 1/s", "10 Hz", "10 s^-1"],
     ("m", "mm", -0.003): ["-3 mm", "\u22123 mm", "\u20133", "-3,0"],
     ("K", "degC", 293.15): ["20 °C", "20", "20,0 degC", "20 deg C", "68 °F"],
     ("kg/m^3", "kg/m^3", 1100.0): ["1 100", "1100 kg/m³", "1,1 g/cm3", "1.1 g/cm^3"],
@@ -52,6 +57,17 @@ def test_what_can_be_two_numbers_is_asked():
 def test_what_is_no_length_is_refused(text):
     with pytest.raises(InputError, match=r"field"):
         to_si(text, "m", where="field", usual="mm")
+
+
+@pytest.mark.parametrize(
+    ("text", "si"),
+    [("10 grad", "rad"), ("2 %", "rad"), ("2%", "rad"), ("5 mm/m", "rad"), ("10 ppm", "rad"),
+     ("41.5% mm", "m"), ("3 % N", "N"), ("10 rpm", "1/s"), ("10 rad/s", "1/s")],
+)  # fmt: skip
+def test_no_share_is_an_angle_and_no_turn_a_rate(text, si):
+    """A library of units takes angles and shares for pure numbers; "grad" is degrees or gon."""
+    with pytest.raises(InputError, match="is not a value in"):
+        to_si(text, si, where="field")
 
 
 GROUPS = st.sampled_from([",", ".", "'", "\u2019", " ", "\u00a0", "\u202f"])

@@ -91,6 +91,14 @@ def test_the_shoe_is_chosen_that_slips_least(world, monkeypatch):
     assert told.headline()[0].startswith(f"{best} is best")
 
 
+def test_fluids_are_told_by_their_names_not_by_their_keys(monkeypatch):
+    cofs, rest, _ = CHOICES["the fluid that is there oftenest"]
+    told = choice_of(monkeypatch, cofs, **rest)
+    cells = [cell for table in told.tables() for row in table.cells() for cell in row]
+    assert any("canola oil" in cell for cell in cells)
+    assert not any("_" in cell for cell in cells)
+
+
 def test_shoes_alike_share_the_chance_and_neither_is_best(monkeypatch):
     told = choice_of(monkeypatch, {"a": (0.2, 0.2), "b": (0.2, 0.2)})
     # each has its own error of 2 %

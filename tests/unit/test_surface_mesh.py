@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.report.surface_mesh import surface_mesh
-from underfoot.shoe import Facet, Heel, Rocker, Tread, heel_surface
+from underfoot.shoe import Facet, Heel, Rocker, Tread, heel_map, heel_surface
 
 FINE = 0.3e-3
 
@@ -58,6 +58,24 @@ def test_edges_of_lugs_and_rim_lie_where_they_were_designed(tread):
     assert area_of(mesh, mesh.triangles[land]) == pytest.approx(
         fine.land.sum() * fine.spacing**2, abs=half_cell_at_edges
     )
+
+
+@pytest.mark.parametrize("pattern", ["hexagons", "circles", "grid", "bars", "transverse"])
+def test_with_the_crossings_of_cells_lugs_are_drawn_within_a_twentieth_of_a_millimetre(pattern):
+    """On cells of 0.15 mm and, of a whole sole, 0.2 mm: corners as well as arcs."""
+    shape = heel(pattern)
+    for spacing in (0.15e-3, 0.2e-3):
+        sole = heel_map(shape, shoe_angle=0.0, spacing=spacing)
+        height = np.where(sole.inside, sole.clearance, np.nan)
+        mesh = surface_mesh(sole.x, sole.y, height, sole.land, sole.cut)
+        lugs = mesh.walls[mesh.land[mesh.walls[:, 0]] != mesh.land[mesh.walls[:, 2]]]
+        x, y = along(mesh, lugs[:, :2])[:, :2].T
+        within = shape.inward_distance(x, y) > 2 * spacing  # what lies on the rim is the rim's
+        off = np.abs(shape.tread.channel_distance(x, y))[within]
+        assert off.max() < 0.05e-3
+        assert np.quantile(off, 0.9) < 0.025e-3
+        plain = surface_mesh(sole.x, sole.y, height, sole.land)
+        assert len(lugs) < 4 * len(plain.walls), "as few lines as it takes"
 
 
 def test_a_round_heel_has_no_teeth():

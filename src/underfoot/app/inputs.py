@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from itertools import count
 from math import degrees, log10
-from typing import Any
+from typing import Any, TypeVar
 
 from nicegui import ui
 from nicegui.events import GenericEventArguments
@@ -31,6 +32,7 @@ CUSTOMARY = {
 """Size and sign of the US unit that is shown in place of one of a case."""
 GROOVES = "shoe.tread.grooves"
 _numbers = count()
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +166,7 @@ def _row(session: Session, each: Input, value: float, origin: str) -> str:
     )
 
 
-def read_field(field: ui.input, read: Callable[[str], float]) -> float:
+def read_field(field: ui.input, read: Callable[[str], Read]) -> Read:
     """Return what ``read`` makes of the text of a field; its error is told there, too.
 
     Raises:
@@ -178,6 +180,18 @@ def read_field(field: ui.input, read: Callable[[str], float]) -> float:
         raise
 
 
+def whole_number(text: str, *, comma: bool) -> int:
+    """Return the whole number from 1 on that was typed.
+
+    Raises:
+        InputError: Another text.
+    """
+    number = to_si(text, "1", where="", comma=comma)
+    if number < 1 or number != int(number):
+        raise InputError(f"{text} is no count", allowed="1, 2, 3 ...")
+    return int(number)
+
+
 def read_count(session: Session, field: ui.input) -> int | None:
     """Return the whole number from 1 on in a field, None where it is empty; else it is told there.
 
@@ -187,14 +201,7 @@ def read_count(session: Session, field: ui.input) -> int | None:
     field.error = None
     if not (field.value or "").strip():
         return None
-    try:
-        number = to_si(field.value, "1", where="", comma=session.text.comma)
-        if number < 1 or number != int(number):
-            raise InputError(f"{field.value} is no count", allowed="1, 2, 3 ...")
-    except InputError as error:
-        field.error = str(error)
-        raise
-    return int(number)
+    return read_field(field, partial(whole_number, comma=session.text.comma))
 
 
 def number_field(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+ASSUMED = "Assumed"
+"""What a line is about that tells a guess: what nobody stated."""
+
 
 class Remark(str):
     """A line "about: what" of breaches or assumptions; it prints, compares and is stored as text.
@@ -37,6 +40,16 @@ class Remark(str):
         """Return the remark that a file of results holds as one line of text."""
         about, colon, what = line.partition(": ")
         return cls(about, what) if colon else cls("", line)
+
+
+def assumed(what: str) -> Remark:
+    """Return the line that tells a guess."""
+    return Remark(ASSUMED, what)
+
+
+def is_assumed(line: str) -> bool:
+    """Return whether a line tells a guess."""
+    return isinstance(line, Remark) and line.about == ASSUMED
 
 
 def remarks(lines: Iterable[object]) -> tuple[Remark, ...]:

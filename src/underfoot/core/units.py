@@ -70,8 +70,10 @@ _ALIASES = {
     "in.": "inch",
     "''": "inch",
     "lbs": "lb",
+    "Grad": "deg",
     "mil": "thou",
 }
+_SHARES = {"percent", "permille", "ppm"}
 _SIGNS = str.maketrans(
     {"µ": "u", "μ": "u", "°": "deg", "²": "^2", "³": "^3", "⁻": "^-", "¹": "1",
      "·": "*", "⋅": "*", "∙": "*", "×": "*", "″": '"', "”": '"'}
@@ -308,12 +310,28 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
             nearest=nearest_match(text, _KNOWN),
         ) from error
     target = {"K": "kelvin"}.get(unit, unit)
+    refused = InputError(
+        f'"{given}" is not a value in {unit}', where=where, allowed=f'for example "{example}"'
+    )
     try:
-        return float(quantity.to(target).magnitude)
+        value = float(quantity.to(target).magnitude)
     except pint.DimensionalityError as error:
-        raise InputError(
-            f'"{given}" is not a value in {unit}', where=where, allowed=f'for example "{example}"'
-        ) from error
+        raise refused from error
+    # what the library takes for pure numbers: shares, and angles beside none
+    units = {registry.parse_unit_name(name)[0][1] for name, _ in quantity.unit_items()}
+    if text == "grad" or units & _SHARES:  # degrees, or gon
+        raise refused
+    roots = registry.Quantity(1.0, registry.get_root_units(quantity.units)[1])
+    angles = "radian" in dict(roots.unit_items())
+    if angles == ("rad" in unit):
+        return value
+    if unit == "Hz" and angles:
+        return value / math.tau
+    if unit == "rad/s" and "hertz" in units:
+        return math.tau * value
+    if unit in ("rad", "1/s", "Hz"):
+        raise refused
+    return value
 
 
 def _finite(value: float, given: object, where: str) -> float:

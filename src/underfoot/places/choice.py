@@ -59,7 +59,7 @@ from underfoot.slip import RcofPopulation, ReportG6, mean_of_draws, slip_chances
 from .calibration import learn_floor
 from .joint import JointDraws, Reading, interval
 from .machines import FLUIDS, Machine, machines
-from .place import Place, PlaceFloor, PlaceShoe, same_shoe
+from .place import Place, PlaceFloor, PlaceShoe, fluid_name, same_shoe
 
 MODEL = ReportG6()
 DECIDED = 0.75
@@ -528,7 +528,7 @@ def chosen(
         shares[shoe.name] = _slips(place, joint, new)
         for (floor_named, fluid), cell in states[shoe.name][shoe.worn_region is not None].items():
             ends = interval(cell.acof)
-            cofs.append((shoe.name, floor_named, fluid, *ends, cell.film_share))
+            cofs.append((shoe.name, floor_named, fluid_name(fluid), *ends, cell.film_share))
         if True in states[shoe.name]:
             worn_slips = _slips(place, joint, states[shoe.name][True])
             worn_rate[shoe.name] = _sum(worn_slips)
@@ -590,7 +590,7 @@ def chosen(
         for key, value in shares[present.name].items()
     }
     sources = tuple(
-        (f"{floor}, {fluid}", value)
+        (f"{floor}, {fluid_name(fluid)}", value)
         for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
     )
     return Choice(
@@ -615,7 +615,7 @@ def _cleaning(
     today = _sum(shares)
     for fluid in place.fluids():
         halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
-        name = f"{fluid} on half the steps, wiped up sooner"
+        name = f"{fluid_name(fluid)} on half the steps, wiped up sooner"
         levers.append(_lever(name, _sum(halved), today))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
@@ -628,7 +628,8 @@ def _cleaning(
             (floor, fluid): washed[floor, WASHED] if fluid in oily else cell
             for (floor, fluid), cell in new.items()
         }
-        name = f"{', '.join(oily)} washed off with {WASHED}, the floor left wet"
+        names = ", ".join(map(fluid_name, oily))
+        name = f"{names} washed off with {WASHED}, the floor left wet"
         after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
         levers.append(_lever(name, after, before))
     return levers

@@ -12,6 +12,7 @@ from underfoot.case import Case
 from underfoot.case import text as toml
 from underfoot.case.surfaces import STEEPEST_RAMP
 from underfoot.core import InputError, RangeError, to_si, unknown_name
+from underfoot.core.catalogue import Catalogue
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
@@ -152,6 +153,12 @@ class Place:
             },
             folder=self.folder,
         )
+
+
+def fluid_name(entry: str) -> str:
+    """Return the title of a fluid of the catalogue as it stands within a sentence."""
+    title = Catalogue.load().entry("fluid", entry).title
+    return title[:1].lower() + title[1:]
 
 
 def read_place(path: Path) -> Place:

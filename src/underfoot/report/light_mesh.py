@@ -19,7 +19,7 @@ SMALL, MOST, LOADED = 1e-3, 24_000, 1e-3
 """m of a triangle's longest side where a pressure is; corners at most, above which it is doubled;
 share of a pressure's peak from which it counts."""
 FINEST = 0.05e-3 / 0.75
-"""m: side of the cells of a small sole. A line passes within 0.75 cells of where cells change."""
+"""m: side of the cells of a small sole. Its rim passes within 0.75 cells of where they end."""
 
 
 @dataclass(frozen=True, slots=True)

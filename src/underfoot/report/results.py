@@ -184,7 +184,9 @@ def designed_surface(case: Case, spacing: float = DESIGNED) -> SurfaceMesh:
         height = np.where(sole.inside, sole.clearance, np.nan)
         while len(_surfaces) >= SURFACES_KEPT:
             del _surfaces[next(iter(_surfaces))]
-        _surfaces[key] = surface_mesh(sole.x, sole.y, height, sole.land)
+        _surfaces[key] = surface_mesh(
+            sole.x, sole.y, height, sole.land, sole.cut if case.shoe.outsole is None else None
+        )
     return _surfaces[key]
 
 

@@ -22,7 +22,7 @@ from .light_mesh import light_mesh, spacing_for
 from .quantities import AREAS, Quantity, quantities, raw, scale, shown
 from .results import designed_surface
 from .sole_mesh import SoleMesh, sole_mesh
-from .surface_mesh import TOLERANCE, SurfaceMesh, surface_mesh
+from .surface_mesh import DRAWN, TOLERANCE, SurfaceMesh, surface_mesh
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -90,16 +90,20 @@ class _Scene:
         return np.repeat(cells[self.mesh.cell], 4, axis=0)
 
     def surface(self) -> tuple[SurfaceMesh, float]:
-        """Return the sole as few triangles, and within what (m) its lines are of the drawing.
+        """Return the sole as few triangles, and within what (m) its lugs are of the drawing.
 
-        A line passes within ``TOLERANCE`` cells of where cells change, half a cell off the drawing.
+        Where no crossings are known, a line passes within ``TOLERANCE`` cells of where cells
+        change, half a cell off the drawing; those of a file are the cells of its height map.
         """
-        sole = self.sole
-        if self.case is None:
+        sole, case = self.sole, self.case
+        if case is None:
             made = surface_mesh(sole.x, sole.y, sole.height, sole.land)
             return made, (TOLERANCE + 0.5) * sole.spacing
         side = spacing_for(sole)
-        return designed_surface(self.case, side), (TOLERANCE + 0.5) * side
+        made = designed_surface(case, side)
+        if case.shoe.outsole is None:
+            return made, DRAWN
+        return made, (TOLERANCE + 0.5) * max(side, case.shoe.outsole.map_spacing)
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""

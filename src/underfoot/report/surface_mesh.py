@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.shoe.cut_cells import CutCells
+
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
@@ -16,6 +18,12 @@ STEEP = 2.0
 TOLERANCE, HELD = 0.75, 0.05
 """Cells by which a line may pass beside the middles between cells that it stands for, and how much
 the place where two lines meet is held where it was, over how much it follows them."""
+EDGE, CORNER, AWAY, WINDOW = 0.02e-3, 0.5, 2, 4
+"""m by which a line may pass beside a drawn edge whose crossings are known. Two lines that turn by
+more (rad) meet in a corner; none of its nearest places is trusted, and so many on either side are
+asked for their direction."""
+DRAWN = 0.05e-3
+"""m within which lines are of drawn edges, corners too, on cells of 0.2 mm or less."""
 LATTICE, NEAR = 4e-3, 1.2e-3
 """m between the points on smooth parts, and how near to an edge none of them is set."""
 ERROR, REFINED, APART = 0.05e-3, 2, 1.5e-3
@@ -44,15 +52,18 @@ class SurfaceMesh:
     sides: Indices
 
 
-def surface_mesh(x: Floats, y: Floats, height: Floats, land: Mask) -> SurfaceMesh:
+def surface_mesh(
+    x: Floats, y: Floats, height: Floats, land: Mask, cut: CutCells | None = None
+) -> SurfaceMesh:
     """Return the surface through the heights (nx, ny; m, nan outside) of square cells.
 
     Lines between levels (land, channels, what a wall parts) pass within a cell of where the cells
-    change; triangles between them are within ``ERROR`` of the cells where they are smooth.
+    change; those of lugs, where ``cut`` has their crossings, within ``DRAWN`` of the drawing.
+    Triangles between lines are within ``ERROR`` of the cells where they are smooth.
     """
     side = float(np.median(np.diff(x)))
     grid = _Grid.of(np.pad(height, 1, constant_values=np.nan), np.pad(land, 1), side)
-    ends, lines = _divided(*_lines(grid.level), LATTICE / side)
+    ends, lines = _divided(*_lines(grid, cut), LATTICE / side)
     inner = _lattice(grid, ends, LATTICE / side, NEAR / side)
     ends, lines, triangles, levels = _triangles(grid, ends, lines, inner)
     for _ in range(REFINED):
@@ -163,12 +174,14 @@ def _beside_another(level: Indices, steep: Mask) -> Mask:
     return np.asarray(binary_dilation(other, iterations=2), bool)
 
 
-def _lines(level: Indices) -> tuple[Floats, Indices]:
+def _lines(grid: _Grid, cut: CutCells | None) -> tuple[Floats, Indices]:
     """Return places (n, 2) and lines (m, 2) between levels, straightened.
 
-    Of the middles between cells that differ, joined around each corner of four cells; where three
-    or four levels meet they are joined in the corner.
+    Of the places between cells that differ, joined around each corner of four cells; where three
+    or four levels meet they are joined in the corner. A place is the middle, of land and channel
+    where ``cut`` has the edge.
     """
+    level = grid.level
     n, m = level.shape
     along, across = level[1:] != level[:-1], level[:, 1:] != level[:, :-1]
     # the four middles at a corner: before and behind it across, then along
@@ -185,9 +198,22 @@ def _lines(level: Indices) -> tuple[Floats, Indices]:
     joined = np.concatenate(links)
     names, nodes = np.unique(joined, return_inverse=True)
     kind, cell = np.divmod(names, n * m)
-    half = np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]])
-    places = np.stack(np.divmod(cell, m), axis=1) + half[kind]
-    lines = [_straightened(places, chain) for chain in _chains(nodes.reshape(-1, 2), len(names))]
+    i, j = np.divmod(cell, m)
+    places = np.stack([i, j], axis=1) + np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]])[kind]
+    drawn = np.zeros(len(names), bool)
+    if cut is not None:
+        for axis, share in enumerate((cut.along, cut.across)):
+            after = (i + (axis == 0)) % n, (j + (axis == 1)) % m
+            edge = (kind == axis) & (level[i, j] > 0) & (level[after] > 0)
+            edge &= grid.is_land[level[i, j]] != grid.is_land[level[after]]
+            places[edge, axis] += np.pad(share, 1, constant_values=0.5)[i[edge], j[edge]] - 0.5
+            drawn |= edge
+    lines = [
+        _along_edge(places, chain, EDGE / grid.side)
+        if drawn[chain[1:-1]].all() and len(chain) > 2
+        else _straightened(places, chain)
+        for chain in _chains(nodes.reshape(-1, 2), len(names))
+    ]
     used, again = np.unique(np.concatenate(lines), return_inverse=True)
     return places[used], again.reshape(-1, 2)
 
@@ -226,19 +252,7 @@ def _straightened(places: Floats, chain: list[int]) -> Indices:
     The places where lines meet move to where the lines through all places between them meet.
     """
     path = places[chain]
-    kept, waiting = {0, len(chain) - 1}, [(0, len(chain) - 1)]
-    while waiting:
-        first, last = waiting.pop()
-        if last - first < 2:
-            continue
-        way, off = path[last] - path[first], path[first + 1 : last] - path[first]
-        length = float(np.hypot(*way))
-        away = np.hypot(*off.T) if length == 0 else np.abs(off @ [-way[1], way[0]]) / length
-        far = int(away.argmax())
-        if away[far] > TOLERANCE:
-            kept.add(first + 1 + far)
-            waiting += [(first, first + 1 + far), (first + 1 + far, last)]
-    at = np.array(sorted(kept))
+    at = _kept(path, TOLERANCE)
     normal, offset = _fitted(path, at)
     ends = np.array(chain)[at]
     before, after = np.arange(len(at) - 2), np.arange(1, len(at) - 1)
@@ -252,6 +266,84 @@ def _straightened(places: Floats, chain: list[int]) -> Indices:
     near = np.hypot(*(met - path[at[after]]).T) < 1.0
     places[ends[after][near]] = met[near]
     return np.stack([ends[:-1], ends[1:]], axis=1)
+
+
+def _along_edge(places: Floats, chain: list[int], tolerance: float) -> Indices:
+    """Return the chain, whose places lie on a drawn edge, as the fewest lines (n, 2).
+
+    Corners of the edge, on which no place lies, move to where its two sides meet, an end at a rim
+    onto its side; the places nearest to them, where the crossing of neither side is known, go.
+    """
+    nodes, path = np.array(chain), places[chain]
+    closed, last = chain[0] == chain[-1], len(chain) - 1
+    at = _kept(path, TOLERANCE)
+    if closed:  # from the middle of its longest side, not from beside a corner
+        longest = int(np.diff(at).argmax())
+        nodes = np.roll(nodes[:-1], -int(at[longest : longest + 2].sum() // 2))
+        nodes = np.append(nodes, nodes[0])
+        path = places[nodes]
+        at = _kept(path, TOLERANCE)
+    inner = at[1:-1]
+    inner = inner[np.diff(at[:-1]) > AWAY]  # a corner cut off between cells has two places
+    at = np.concatenate([at[:1], inner, at[-1:]])
+    gone = np.zeros(len(chain), bool)
+    for number, k in enumerate(at[:-1] if closed else at):
+        low, high = at[number - 1] + 1, at[(number + 1) % len(at)] - 1
+        if closed and k == 0:
+            low, high = at[-2] + 1 - last, at[1] - 1
+        before = np.arange(max(k - AWAY - WINDOW, low), k - AWAY + 1)
+        after = np.arange(k + AWAY, min(k + AWAY + WINDOW, high) + 1)
+        ends = [
+            each[[0, -1]] % (last + (not closed)) for each in (before, after[::-1]) if len(each) > 1
+        ]
+        if closed or 0 < k < last:
+            if len(ends) < 2:
+                continue
+            here = _meeting(path, *ends)
+        elif ends := ends[-1:] if k == 0 else ends[:1]:
+            first, then = path[ends[0]]
+            way = (then - first) / np.hypot(*(then - first))
+            here = first + way * ((path[k] - first) @ way)
+        else:
+            continue
+        if here is not None and np.hypot(*(here - path[k])) < 2.0:
+            near = np.arange(k - AWAY + 1, k + AWAY)
+            near = near % last if closed else near[(near > 0) & (near < last)]
+            gone[near] = True
+            gone[k] = False
+            path[k] = places[nodes[k]] = here
+    rest = np.flatnonzero(~gone[:last] if closed else ~gone)
+    if closed:
+        rest = np.append(rest, rest[0])
+    ends = nodes[rest[_kept(path[rest], tolerance)]]
+    return np.stack([ends[:-1], ends[1:]], axis=1)
+
+
+def _meeting(path: Floats, one: Indices, other: Indices) -> Floats | None:
+    """Return where the lines through two places each meet; None where they hardly turn."""
+    first, then = path[one[1]] - path[one[0]], path[other[0]] - path[other[1]]
+    sine = first[0] * then[1] - first[1] * then[0]
+    if abs(np.arctan2(sine, first @ then)) < CORNER:
+        return None
+    off = path[other[1]] - path[one[1]]
+    return path[one[1]] + first * ((off[0] * then[1] - off[1] * then[0]) / sine)
+
+
+def _kept(path: Floats, tolerance: float) -> Indices:
+    """Return which places stay of a path, by halving at the place farthest off."""
+    kept, waiting = {0, len(path) - 1}, [(0, len(path) - 1)]
+    while waiting:
+        first, last = waiting.pop()
+        if last - first < 2:
+            continue
+        way, off = path[last] - path[first], path[first + 1 : last] - path[first]
+        length = float(np.hypot(*way))
+        away = np.hypot(*off.T) if length == 0 else np.abs(off @ [-way[1], way[0]]) / length
+        far = int(away.argmax())
+        if away[far] > tolerance:
+            kept.add(first + 1 + far)
+            waiting += [(first, first + 1 + far), (first + 1 + far, last)]
+    return np.array(sorted(kept))
 
 
 def _fitted(path: Floats, at: Indices) -> tuple[Floats, Floats]:

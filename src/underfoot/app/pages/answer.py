@@ -167,14 +167,14 @@ class _Answer:
     async def _answer(self, current: bool) -> None:
         answer = await self.session.ask("underfoot.app.work:answer", str(self.folder))
         self.view.show(answer["html"])
-        self._headline(answer)
+        self._headline(answer, current)
         with self.tables:
             self._tables(answer, current)
         if current:  # the march from which previews go on
             path = str(self.session.project.path(self.name))
             await self.session.ask("underfoot.app.work:previewed", path, str(self.folder), {})
 
-    def _headline(self, answer: dict[str, Any]) -> None:
+    def _headline(self, answer: dict[str, Any], current: bool) -> None:
         """Show the verdict, then number and interval, then a shoe that one knows, then why."""
         if not answer["usable"]:
             with self.summary, ui.element("div").classes("answer-card"):
@@ -188,6 +188,8 @@ class _Answer:
                     ui.label(self._risk(answer)).classes("strong")
         with self.summary:
             with ui.element("div").classes("answer-card"):
+                if current:
+                    ui.label(self.text("answer.under", **self._under())).classes("soft")
                 ui.label(self.text("answer.cof")).classes("soft")
                 ui.label(f"{answer['cof']:.3f}").classes("big")
                 if answer["interval"]:
@@ -202,6 +204,15 @@ class _Answer:
             self.beside = ui.element("div")
             self._beside(answer)
             ui.label(answer["limit"]).classes("soft")
+
+    def _under(self) -> dict[str, str]:
+        """Return floor and contaminant of what was computed, which no name of a variant tells."""
+        under = {}
+        for part, (entry, changed) in conditions(self.case).items():
+            shown = entry or self.text("origin.given" if changed else "design.dry")
+            altered = entry and changed
+            under[part] = self.text("answer.changed_entry", title=shown) if altered else shown
+        return under
 
     def _beside(self, answer: dict[str, Any]) -> None:
         """Show the COF on a scale with what walkers need and a shoe that the person knows."""
@@ -315,7 +326,9 @@ class _Answer:
         if self.tried is not None and self.tried.open:
             jobs.cancel(self.tried)
         folder = str(self.session.project.inside("results", TRIED, self.name))
-        named = {**changes, "name": self.session.project.free_name(self.name)}
+        told = [f"{self.text(f'inputs.{path}')} {value}" for path, value in changes.items()]
+        wanted = ", ".join([self.name, *told]).replace("/", " per ")  # a file's name, too
+        named = {**changes, "name": self.session.project.free_name(wanted)}
         arguments = (path, folder, named)
         self.tried = self.session.submit(
             self.text("answer.full"),
@@ -453,6 +466,17 @@ class _Answer:
         new = self.session.project.copy(self.name, wanted, each["values"])
         begin_run(self.session, new)
         self.session.go(ROUTE, variant=new, beside=self.name)
+
+
+def conditions(case: Case) -> dict[str, tuple[str, bool]]:
+    """Return the titles of floor and contaminant of a case, and whether values were changed."""
+    told = {}
+    for part, kind in (("floor", "floor"), ("contaminant", "fluid")):
+        entry = case.entries.get(part)
+        title = "" if entry is None else case.catalogue.entry(kind, entry).title
+        paths = [path for path, origin in case.origins.items() if origin.kind == "given"]
+        told[part] = title, any(path.startswith(f"{part}.") for path in paths)
+    return told
 
 
 def _capital(sentence: str) -> str:

@@ -11,6 +11,7 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
+from underfoot.core.remark import is_assumed
 from underfoot.core.worker import Job
 
 from ..components import SoleView, drop_zone, sentences, table
@@ -150,7 +151,7 @@ class _Inspection:
             sentences(answer["headline"])
             self._uses(answer["shoe"])
             for line in next(iter(answer["remarks"].values()), []):
-                ui.label(line).classes("assumed" if line.startswith("Assumed") else "soft")
+                ui.label(line).classes("assumed" if is_assumed(line) else "soft")
             for shown in answer["tables"]:
                 table(shown)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
+import re
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import tomlkit
@@ -17,10 +19,11 @@ from underfoot.case.parts import paths
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
-from underfoot.core.units import display
+from underfoot.core.typed import split_quantity
+from underfoot.core.units import display, to_si
 
 from ..components import SoleView, sentences, task_line, title
-from ..inputs import read_count
+from ..inputs import read_count, read_field, whole_number
 from ..jobs import Task
 from ..project import NAME
 from ..session import Session, address, problem_parts
@@ -36,6 +39,8 @@ FIELDS = {
     "uncertain": ("kind", "first", "second"),
     "conditions": ("values",),
 }
+SEPARATOR = re.compile(r"\s*(?:;|,(?=\s)|(?<!\d),|,(?!\d))\s*")
+"""Between values: a comma between digits belongs to a number."""
 GOALS = ("maximise", "minimise", "require")
 METHOD = {
     "kind": ("sweep", "sensitivity", "optimise", "robust"),
@@ -411,10 +416,20 @@ class _Rows:
             choice.props("dense outlined options-dense").classes("study-path")
             choice.props(f'label="{self.text("studies.path")}"')
             fields: dict[str, Any] = {}
+            good: list[Any] = [path, value]
 
             def read() -> tuple[str, Any]:
-                given = {key: field.value for key, field in fields.items()}
-                return choice.value or "", _value(self.section, given)
+                at, comma = choice.value or "", self.text.comma
+                given = {key: field.value or "" for key, field in fields.items()}
+                for key in given.keys() - {"kind"}:
+                    fields[key].error = None
+
+                def told(key: str, reader: Callable[[str], Any]) -> Any:
+                    return read_field(fields[key], reader)
+
+                with suppress(InputError):  # its field tells it; the file keeps what it has
+                    good[:] = at, _value(self.section, at, given, comma=comma, read=told)
+                return good[0], good[1]
 
             self._keep(row, read)
             fields |= {key: self._field(key, shown[key]) for key in FIELDS[self.section]}
@@ -471,7 +486,7 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
     """Return what a row shows of a value; None where a row can't."""
     fields = dict.fromkeys(FIELDS[section], "")
     if isinstance(value, list) and "values" in fields:
-        return fields | {"values": ", ".join(map(str, value))}
+        return fields | {"values": "; ".join(map(str, value))}
     if not isinstance(value, Mapping) or (section == "conditions" and value):
         return None
     if section == "uncertain":
@@ -482,24 +497,60 @@ def _fields(section: str, value: Any) -> dict[str, str] | None:
     return fields | {k: str(v) for k, v in value.items()} if set(value) <= set(fields) else None
 
 
-def _value(section: str, fields: Mapping[str, str]) -> Any:
-    """Return what the file says for what a row shows; None while it is not complete."""
-    if values := fields.get("values"):
-        return [_plain(part.strip()) for part in values.split(",") if part.strip()]
-    keys = KINDS[fields["kind"]] if section == "uncertain" else ("from", "to")
-    ends = [fields.get(key) for key in (("first", "second") if section == "uncertain" else keys)]
-    if not all(ends):
+def _value(
+    section: str,
+    path: str,
+    fields: Mapping[str, str],
+    *,
+    comma: bool = False,
+    read: Callable[[str, Callable[[str], Any]], Any] | None = None,
+) -> Any:
+    """Return what the file says for what a row shows; None while it is not complete.
+
+    ``read`` gets the name of a field and what reads its text.
+
+    Raises:
+        InputError: A field holds no such value.
+    """
+    read = read or (lambda key, reader: reader(fields[key]))
+    if fields.get("values", "").strip():
+        each = partial(typed, path=path, comma=comma, words=True)
+        return read(
+            "values", lambda text: [each(part) for part in SEPARATOR.split(text.strip()) if part]
+        )
+    ends = ("first", "second") if section == "uncertain" else ("from", "to")
+    if not all(fields.get(key, "").strip() for key in ends):
         return None
-    steps = {"steps": _plain(fields["steps"])} if fields.get("steps") else {}
-    return dict(zip(keys, map(_plain, map(str, ends)), strict=True)) | steps
+    keys = KINDS[fields["kind"]] if section == "uncertain" else ends
+    value = {
+        key: read(end, partial(typed, path="" if key == "factor" else path, comma=comma))
+        for key, end in zip(keys, ends, strict=True)
+    }
+    if fields.get("steps", "").strip():
+        value["steps"] = read("steps", partial(whole_number, comma=comma))
+    return value
 
 
-def _plain(text: str) -> Any:
-    """Return a number where the text is one; what a file can't hold (1e400, nan) stays text."""
-    for kind in (int, float):
-        try:
-            number = kind(text)
-        except ValueError:
-            continue
-        return number if math.isfinite(number) else text
-    return text
+def typed(text: str, path: str, *, comma: bool, words: bool = False) -> Any:
+    """Return what was typed of a value at a path as a study file writes it: a number, a quantity.
+
+    Parameters:
+        text: What was typed.
+        path: In a case; "" for a number without a unit.
+        comma: The writer's decimal sign is the comma.
+        words: What is no number may stand, as the name of a pattern.
+
+    Raises:
+        InputError: No number, one that can be two, a unit that is missing or of another quantity.
+    """
+    unit = "1"
+    with suppress(InputError):  # a section, a short name, a path that the check of the file refuses
+        unit = unit_at(path)
+    parts = split_quantity(text, comma=comma)
+    if words and unit == "1" and (parts is None or parts[1]):
+        return text
+    value = to_si(text, unit, where="", comma=comma)
+    if unit == "1":
+        return int(value) if value == int(value) else value
+    assert parts is not None  # else it was refused above
+    return f"{repr(parts[0]).removesuffix('.0')} {parts[1]}"

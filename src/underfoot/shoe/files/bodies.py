@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, unknown_name
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import assumed
 
 from .._kernels.components import MOST_FACES, components, extents_of_bodies
 from .carriers import carried
@@ -327,8 +328,8 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     if not plates.any():
         return keep, []
     rest = keep & ~plates
-    return rest, [f"Assumed: {_listed([n for n, p in zip(bodies.names, plates, strict=True) if p])}"
-                  " is a plate under the sole and was left out."]  # fmt: skip
+    named = _listed([n for n, p in zip(bodies.names, plates, strict=True) if p])
+    return rest, [assumed(f"{named} is a plate under the sole and was left out.")]
 
 
 def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:
@@ -407,8 +408,8 @@ def _without_stack(
         else "the lower one of the file; no tread tells"
     )
     taken = _taken(bodies, group, keep, "of a stack of bodies")
-    begin = "" if sure else "Assumed: "
-    return group, down, [f"{begin}{taken[:-1]}. It is {how}."]
+    told = f"{taken[:-1]}. It is {how}."
+    return group, down, [told if sure else assumed(told)]
 
 
 def _level_with(bodies: _Bodies, number: int, axis: int) -> Mask:
@@ -462,7 +463,7 @@ def _beside(outsole: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     shares = _treads(mesh, bodies.axes, axis, unit, float(length))
     towards = shares[0] > shares[1] if offset[axis] > 0 else shares[1] > shares[0]
     if _clear(shares) and towards:
-        told = "Assumed: the ground side is the one with the tread, towards the rest of the file."
+        told = "the ground side is the one with the tread, towards the rest of the file."
         return replace(outsole, down=-away, ground=told, ground_assumed=True)
     return replace(outsole, down=away)
 

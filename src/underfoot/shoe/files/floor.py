@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import assumed
 
 from .._kernels.components import MOST_FACES, components
 from .._kernels.regions import grown, shrunk, without_specks
@@ -72,8 +73,8 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     risen = float(np.median((seen.lowest - level)[rest]))
     towards = risen * float(np.median(seen.facing[beyond])) > 0
     if not settings.cut_floor and (land or not (solid or towards)):
-        return mesh, None, [f"Assumed: a {what} is part of the sole. If it is a floor or a table, "
-                            "cut it with --cut-floor (in a case: cut_floor = true)."]  # fmt: skip
+        told = f"a {what} is part of the sole. If it is a floor or a table, cut it with "
+        return mesh, None, [assumed(told + "--cut-floor (in a case: cut_floor = true).")]
     beside = _within(mesh.triangles.mean(axis=1), seen, ~rest if solid else beyond)
     level_with = np.minimum(np.abs(seen.lowest - level), np.abs(seen.highest - level))[rest] <= half
     if not solid:
@@ -92,8 +93,8 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
             down = axes[2] * np.sign(risen)
     body = None if mesh.body is None else mesh.body[~cut]
     how = "was cut as floor" if settings.cut_floor else "was taken as floor and cut"
-    begin = "A" if settings.cut_floor else "Assumed: a"
-    told = f"{begin} {what} {how} ({np.count_nonzero(cut)} faces).{lost}"
+    told = f"{what} {how} ({np.count_nonzero(cut)} faces).{lost}"
+    told = f"A {told}" if settings.cut_floor else assumed(f"a {told}")
     return replace(mesh, triangles=mesh.triangles[~cut], body=body), down, [told]
 
 

@@ -196,7 +196,7 @@ def _ground_side(seen: View) -> Choice:
         return Choice(1 if turned < 0.5 else -1, remark)
     return Choice(
         1 if _file_side(seen) else -1,
-        "Assumed: the ground side is the lower one of the file; both sides look alike.",
+        "the ground side is the lower one of the file; both sides look alike.",
         assumed=True,
     )
 
@@ -258,11 +258,11 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
         kind = "forepart, cut at its rear" if forepart else "heel piece, cut at its front"
         size = f"{length * 1e3:.0f} x {width * 1e3:.0f} mm"
         return Choice(
-            1 if cut[0] == forepart else -1, f"Assumed: a {kind}, by its size of {size}{remedy}"
+            1 if cut[0] == forepart else -1, f"a {kind}, by its size of {size}{remedy}", True
         )
     if abs(offset) < OFF_CENTRE or all(cut):
         return Choice(
-            1 if offset >= 0 else -1, f"Assumed: which end is the heel; both look alike{remedy}"
+            1 if offset >= 0 else -1, f"which end is the heel; both look alike{remedy}", True
         )
     return Choice(
         1 if offset > 0 else -1,
@@ -381,7 +381,7 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
         return best, Choice(
             1, f"Ground side: the side that stands flat, {shares[order[0]]:.0%} of it on the floor."
         )
-    return best, Choice(1, "Assumed: the ground side is the one that stands flattest.", True)
+    return best, Choice(1, "the ground side is the one that stands flattest.", True)
 
 
 LEVEL = math.radians(0.05)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import assumed
 
 from .._kernels.components import MOST_FACES, components
 from .._kernels.mesh_edges import overlap_lines
@@ -90,8 +91,8 @@ def outsole_from_mesh(
     """Return the outsole that triangles describe.
 
     Bodies, unit, ground side, heel end, foot, resting plane, region and tread are determined in
-    this order; each decision and each repair is a sentence of ``surface.remarks``, guesses begin
-    with "Assumed".
+    this order; each decision and each repair is a sentence of ``surface.remarks``, guesses are
+    remarks about ``ASSUMED``.
 
     Raises:
         InputError: No unit makes it a sole; a region it doesn't have; a grid too fine or too
@@ -242,7 +243,9 @@ def _sides(
         along, across = -along, -across
     turned = np.stack([along, across, thin])
     remarks = [
-        f"{choice.remark[:-1]} ({name} is {orientation.named_direction(axis)} of the file)."
+        (assumed if choice.assumed else str)(
+            f"{choice.remark[:-1]} ({name} is {orientation.named_direction(axis)} of the file)."
+        )
         for choice, name, axis in ((ground, "down", -thin), (toe, "forward", along))
         if choice.remark
     ]

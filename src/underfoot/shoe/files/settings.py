@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.remark import assumed
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
 """Units of length a file may be in, m."""
@@ -142,12 +143,10 @@ def length_unit(
         )
         if metres <= high
     )
-    remark = (
-        f"Assumed: unit {name} (the file states none); length {_length(metres)}, that of a {kind}."
-    )
+    remark = f"unit {name} (the file states none); length {_length(metres)}, that of a {kind}."
     if len(likely) > 1:
         remark += f" It could also be {likely[1]} ({_length(length * UNITS[likely[1]])})."
-    return UNITS[name], remark
+    return UNITS[name], assumed(remark)
 
 
 def _likely(length: float, width: float) -> list[str]:
