@@ -103,8 +103,7 @@ def variance_components(
     data = (mean - middle) / scale, design, [parts[i] for i in kept], free, squares / scale**2
     theta = np.full(len(kept), 1.0 / len(kept))
     state = _State.of(theta, *data)
-    told = np.sqrt(np.diagonal(state.expected)) if state is not None else np.zeros(1)
-    if state is None or told.min() < _ALIKE * told.max() or _singular(state.expected, told):
+    if state is None or _singular(state.expected):
         text = "so few persons leave nothing to estimate a scatter from"
         raise DataError(text, where="mixed model")
     for _ in range(_STEPS):
@@ -122,6 +121,8 @@ def variance_components(
         if np.abs(step * np.sqrt(np.diagonal(state.expected))).max() <= _CLOSE:
             variances = np.full(len(parts), np.nan)
             variances[kept] = scale**2 * theta
+            if _singular(state.expected):  # at the edge of what variances may be
+                break
             uncertainty = np.linalg.inv(state.expected)
             plain = state.covariance
             added = 2.0 * np.einsum("kl,klpq->pq", uncertainty, state.bends)
@@ -136,7 +137,10 @@ def variance_components(
     raise DataError("the variances between persons can't be estimated", where="mixed model")
 
 
-def _singular(information: np.ndarray, told: np.ndarray) -> bool:
+def _singular(information: np.ndarray) -> bool:
+    told = np.sqrt(np.diagonal(information))
+    if told.min() < _ALIKE * told.max():
+        return True
     return bool(np.linalg.eigvalsh(information / np.outer(told, told))[0] < _ALIKE)
 
 
