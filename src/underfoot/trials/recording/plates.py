@@ -1,7 +1,6 @@
 """Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
@@ -9,7 +8,7 @@ from underfoot.core import DataError
 
 from .measurement import Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
-from .trial import REVERSED, Plate, Trial
+from .trial import REVERSED, Plate, Trial, once_a_record
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -83,7 +82,7 @@ def plate_contacts(
     return _contacts(plate, tuple(up.tolist()), threshold)
 
 
-@lru_cache(maxsize=4)  # every check of every step asks
+@once_a_record
 def _contacts(plate: Plate, up: tuple[float, ...], threshold: float) -> tuple[tuple[int, int], ...]:
     return tuple(contacts(plate.force @ np.array(up), plate.rate, threshold))
 

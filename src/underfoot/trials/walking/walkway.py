@@ -24,6 +24,7 @@ from ..recording.plates import plate_named
 from ..recording.trial import Marker, Plate, Trial
 from .belts import Belt, belts_of
 
+_BESIDE = 15.0  # s of a marker's path before and after a step on a belt
 _STILL = 0.5  # s of quiet standing that give body weight
 _STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
 
@@ -115,12 +116,22 @@ class Walkway:
         return np.zeros(3) if belt is None else belt.velocity(time)
 
     def marker(self, name: str, plate: str, time: float) -> Marker:
-        """Return a marker as seen from a plate's surface, in laboratory axes at ``time`` (s)."""
+        """Return a marker as seen from a plate's surface, in laboratory axes at ``time`` (s).
+
+        On a belt the 15 s before and after.
+        """
         marker = self.trial.marker(name)
         if plate not in self.belts:
             return marker
-        way = np.outer(marker.time - time, self.surface_velocity(plate, time))
-        return replace(marker, positions=marker.positions - way)
+        near = marker.frames(time - _BESIDE, time + _BESIDE)
+        moments, places = marker.time[near], marker.positions[near]
+        begin = float(moments[0]) if len(moments) else marker.start
+        return replace(
+            marker,
+            positions=places - np.outer(moments - time, self.surface_velocity(plate, time)),
+            start=begin,
+            times=None if marker.times is None else moments,
+        )
 
     def body_velocity(
         self, plate: str, begin: float, end: float, *, climb: bool = False
