@@ -147,10 +147,10 @@ def finished_plate(
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
 
     ``force``, ``moment`` (about the centre of the surface) and ``centre_of_pressure`` have shape
-    (n, 3), lab axes; ``up`` (3,) is the unit vector out of the floor; ``raw`` (n, k), the channels
-    before any arithmetic, are searched for saturation.
+    (n, 3), lab axes; a force in single precision stays so. ``up`` (3,) is the unit vector out of
+    the floor; ``raw`` (n, k), the channels before any arithmetic, are searched for saturation.
     """
-    force = np.array(force, dtype=float)
+    force = np.array(force, dtype="f4" if force.dtype == np.float32 else float)
     seen = list(flags)
     lost = ~np.isfinite(force @ np.ones(3))  # faster than all()
     if lost.any():
@@ -167,8 +167,8 @@ def finished_plate(
     if not subtract_baseline:
         seen.append(remark("baseline not subtracted: switched off"))
     elif enough(empty):
-        baseline, samples = force[empty].mean(axis=0), int(empty.sum())
-        force = force - baseline
+        baseline, samples = force[empty].mean(axis=0, dtype=float), int(empty.sum())
+        force -= baseline.astype(force.dtype)
         if moment is not None:
             middle = moment[empty].mean(axis=0, dtype=float)
             moment = moment - middle.astype(moment.dtype)

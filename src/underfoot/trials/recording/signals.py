@@ -71,6 +71,9 @@ def saturated(signal: np.ndarray, rate: float) -> bool:
         at_extreme = signal == extreme
         if extreme == 0.0 or np.count_nonzero(at_extreme) < length:
             continue
+        flat = [(start, stop) for start, stop in runs(at_extreme) if stop - start >= length]
+        if not flat:
+            continue
         rest = float(np.median(signal))
         spread = float(np.percentile(np.abs(signal - rest), 90))
         steps = np.abs(np.diff(signal))
@@ -78,10 +81,9 @@ def saturated(signal: np.ndarray, rate: float) -> bool:
         height = abs(extreme - rest)
         if height <= 0.2 * spread:
             continue
-        for start, stop in runs(at_extreme):
-            before = abs(signal[max(start - approach, 0)] - extreme)
-            if stop - start >= length and before > max(0.01 * height, 3.0 * quantum):
-                return True
+        limit = max(0.01 * height, 3.0 * quantum)
+        if any(abs(signal[max(start - approach, 0)] - extreme) > limit for start, _ in flat):
+            return True
     return False
 
 
