@@ -26,7 +26,7 @@ _ENDIAN = {84: "<", 85: "<", 86: ">"}
 _VAX = 85
 _POSSIBLE = 1e30  # no sample of any instrument in any unit is larger
 _READ = 16_000_000  # bytes that are read at a time
-_PLATE_SAMPLES = 500_000  # of a long file's plate that are worked out at a time
+_PLATE_SAMPLES = 100_000  # of a long file's plate that are worked out at a time
 
 
 @dataclass(frozen=True, slots=True)

@@ -193,20 +193,25 @@ def marker_velocity(
     markers don't count. Markers that never move (corners of plates, the frame of a treadmill) are
     no part of a body that does. None with fewer than three markers seen.
     """
-    moving = moving_markers(trial.markers).values()
-    each = [_mean_velocity(marker, float(begin), float(end)) for marker in moving]
-    velocities = [velocity for velocity in each if velocity is not None]
+    clocks: dict[tuple[int, float, float], slice] = {}  # markers share theirs
+    velocities = []
+    for marker in moving_markers(trial.markers).values():
+        if begin == -np.inf and end == np.inf:
+            velocity = _whole_velocity(marker)
+        elif marker.times is None:
+            clock = len(marker.positions), marker.rate, marker.start
+            if clock not in clocks:
+                clocks[clock] = marker.frames(begin, end)
+            velocity = _velocity_in(marker, clocks[clock])
+        else:
+            velocity = _velocity_in(marker, marker.frames(begin, end))
+        if velocity is not None:
+            velocities.append(velocity)
     if len(velocities) < 3:
         return None
     ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
     middle = (ordered[(len(velocities) - 1) // 2] + ordered[len(velocities) // 2]) / 2.0
     return middle if up is None else middle - (middle @ up) * up
-
-
-def _mean_velocity(marker: Marker, begin: float, end: float) -> np.ndarray | None:
-    if begin == -np.inf and end == np.inf:
-        return _whole_velocity(marker)
-    return _velocity_in(marker, marker.frames(begin, end))
 
 
 @once_a_record

@@ -7,7 +7,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from .measurement import Flag, remark
-from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
+from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
 from .trial import REVERSED, Plate, Trial, once_a_record
 
 KINDS = {
@@ -84,7 +84,7 @@ def plate_contacts(
 
 @once_a_record
 def _contacts(plate: Plate, up: tuple[float, ...], threshold: float) -> tuple[tuple[int, int], ...]:
-    return tuple(contacts(plate.force @ np.array(up), plate.rate, threshold))
+    return tuple(contacts(along(plate.force, np.array(up)), plate.rate, threshold))
 
 
 def channel_forces(
@@ -147,15 +147,17 @@ def finished_plate(
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
 
     ``force``, ``moment`` (about the centre of the surface) and ``centre_of_pressure`` have shape
-    (n, 3), lab axes; a force in single precision stays so. ``up`` (3,) is the unit vector out of
-    the floor; ``raw`` (n, k), the channels before any arithmetic, are searched for saturation.
+    (n, 3), lab axes; those in single precision stay so and are written to. ``up`` (3,) is the unit
+    vector out of the floor; ``raw`` (n, k), the channels before any arithmetic, are searched for
+    saturation.
     """
-    force = np.array(force, dtype="f4" if force.dtype == np.float32 else float)
+    long = force.dtype == np.float32
+    force = force if long else np.array(force, dtype=float)
     seen = list(flags)
-    lost = ~np.isfinite(force @ np.ones(3))  # faster than all()
+    lost = ~np.isfinite(along(force, np.ones(3)))  # faster than all()
     if lost.any():
         seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
-    vertical = force @ up
+    vertical = along(force, up)
     with_load = vertical[np.isfinite(vertical)]
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
@@ -171,7 +173,8 @@ def finished_plate(
         force -= baseline.astype(force.dtype)
         if moment is not None:
             middle = moment[empty].mean(axis=0, dtype=float)
-            moment = moment - middle.astype(moment.dtype)
+            less = middle.astype(moment.dtype)
+            moment = np.subtract(moment, less, out=moment if long else None)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
@@ -182,7 +185,7 @@ def finished_plate(
     cut = any(saturated(channel, rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
-    peak = float(np.nanmax(np.abs(force @ up), initial=0.0))
+    peak = float(np.nanmax(np.abs(along(force, up)), initial=0.0))
     if peak > _IMPLAUSIBLE:
         text = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
         seen.append(Flag("size", text, True, peak, _IMPLAUSIBLE, "N"))
@@ -192,7 +195,7 @@ def finished_plate(
     elif peak <= 0.05:
         seen.append(remark("never loaded"))
     if centre_of_pressure is not None:
-        loaded = force @ up > _LOADED
+        loaded = along(force, up) > _LOADED
         centre_of_pressure = np.where(loaded[:, None], centre_of_pressure, np.nan)
     elif moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
@@ -260,7 +263,7 @@ def _centre_of_pressure(
     force: np.ndarray, moment: np.ndarray, up: np.ndarray, centre: np.ndarray
 ) -> np.ndarray:
     """r = up x M / (up . F), from M = r x F + T up with r in the surface."""
-    vertical = force @ up
+    vertical = along(force, up)
     place = np.full(force.shape, np.nan, moment.dtype)
     loaded = vertical > _LOADED
     place[loaded] = moment[loaded] @ _crossing(up).T / vertical[loaded, None] + centre

@@ -15,6 +15,19 @@ CONTACT_FORCE = 20.0  # N of vertical force; above it a plate is stood on
 _LOWEST, _HIGHEST = 8.0, 60.0  # N above the unloaded level at which a plate counts as loaded
 
 
+def along(values: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Return the components (n,) of ``values`` (n, 3) along an axis (3,), in double precision.
+
+    Values in single precision, as those of long records, are not held in double too.
+    """
+    if values.dtype == float:
+        return values @ axis
+    parts = np.zeros(len(values))
+    for column, share in zip(values.T, axis, strict=True):
+        parts += column * share
+    return parts
+
+
 def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
     """Return a mask of the samples in which nothing stood on the plate, shape (n,).
 

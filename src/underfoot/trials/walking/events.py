@@ -10,7 +10,7 @@ from underfoot.core import InputError, unknown_name
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
 from ..recording.plates import plate_axes, plate_contacts, plate_named
-from ..recording.signals import CONTACT_FORCE
+from ..recording.signals import CONTACT_FORCE, along
 from ..recording.trial import Edit, Plate, Trial
 from .walkway import Walkway, walkway_of
 
@@ -192,7 +192,7 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
     detected: list[Stance] = []
     for plate in plates.values():
-        vertical = plate.force @ up
+        vertical = along(plate.force, up)
         for start, stop in plate_contacts(plate, up, threshold):
             time = plate.start + np.array([start, stop]) / plate.rate
             peak = float(np.nanmax(vertical[start:stop]))
@@ -301,7 +301,8 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     if plate.centre_of_pressure is None or way is None:
         return ""
     part = slice(stance.start, stance.stop)
-    carried = np.outer(plate.time[part] - stance.contact, feet.surface(stance))
+    time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
+    carried = np.outer(time - stance.contact, feet.surface(stance))
     place = plate.centre_of_pressure[part] - carried
     inside = place[plate.force[part] @ up > 0.2 * stance.peak]
     inside = inside[np.isfinite(inside).all(axis=1)]

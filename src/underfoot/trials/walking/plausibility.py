@@ -598,10 +598,8 @@ def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> floa
         line = np.linspace(-0.5, 0.5, len(part))[:, None]
         part = part - part.mean(axis=0)
         part = part - line * (line * part).sum(axis=0) / (line**2).sum()
-        parts.append(part - np.outer(part @ up, up))
-    if not parts:
-        return 0.0
-    return float(np.sqrt((np.concatenate(parts) ** 2).sum(axis=1).mean()))
+        parts.append(((part - np.outer(part @ up, up)) ** 2).sum(axis=1))
+    return float(np.sqrt(np.concatenate(parts).mean())) if parts else 0.0
 
 
 def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:

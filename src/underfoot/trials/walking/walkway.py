@@ -25,7 +25,7 @@ from ..recording.trial import Marker, Plate, Trial
 from .belts import Belt, belts_of
 
 _BESIDE = 15.0  # s of a marker's path before and after a step on a belt
-_AT_ONCE = 500_000  # samples of a long record that are looked through for standing
+_AT_ONCE = 200_000  # samples of a long record that are looked through for standing
 _STILL = 0.5  # s of quiet standing that give body weight
 _STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
 
