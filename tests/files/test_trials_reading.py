@@ -12,6 +12,7 @@ from trials_c3d_writing import c3d_bytes
 from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from, read_profile, read_sheet, read_trial, read_trials
 from underfoot.trials.readers import c3d
+from underfoot.trials.recording.trial import Plate, Trial
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
 # ezc3d takes crossed corners (biomdp) as they are.
@@ -493,3 +494,71 @@ def test_steps_of_a_long_record_are_those_of_the_short_one(tmp_path):
     again = [s.measurement.value for s in required_frictions(read_trial(tmp_path / "long.c3d"))]
     assert len(again) > 2 * len(once)
     assert again[: len(once)] == pytest.approx(once, abs=2e-3)
+
+
+def test_what_a_step_asks_of_a_whole_record_is_worked_out_once(monkeypatch):
+    from underfoot.trials import required_frictions, walkway_of
+    from underfoot.trials.walking import plausibility, slips
+
+    trial = read_trial(DATA / "biomechzoo/HC030A05.c3d")
+    counts = {"marker_jumps": 0, "runs": 0}
+
+    def counted(module, name):
+        function = getattr(module, name)
+
+        def count(*args, **kwargs):
+            counts[name] += 1
+            return function(*args, **kwargs)
+
+        monkeypatch.setattr(module, name, count)
+
+    counted(slips, "marker_jumps")  # of each heel
+    counted(plausibility, "runs")  # of the unloaded parts of each plate, and of lines of a step
+    walk = walkway_of(trial)
+    first = required_frictions(walk)
+    once = dict(counts)
+    second = required_frictions(walk)
+    assert counts["marker_jumps"] == once["marker_jumps"] == 2
+    assert [s.measurement.value for s in second] == [s.measurement.value for s in first]
+    assert counts["runs"] - once["runs"] < once["runs"]
+
+
+def test_a_path_on_a_belt_is_the_15_s_around_the_step():
+    from underfoot.trials import walkway_of
+
+    walk = walkway_of(read_trial(DATA / "gaitalytics/treadmill_events.c3d"))
+    (plate, *_), name = walk.belts, walk.heels["left"]
+    whole = walk.trial.marker(name)
+    near = walk.marker(name, plate, 6.0)
+    assert len(near.positions) == len(whole.positions)  # a record of 12 s
+    np.testing.assert_array_equal(near.time, whole.time)
+    early = walk.marker(name, plate, -10.0)
+    assert early.time[-1] == pytest.approx(5.0, abs=0.01)
+    moved = early.positions - whole.positions[: len(early.positions)]
+    speed = walk.belts[plate].velocity(-10.0)
+    np.testing.assert_allclose(moved, -np.outer(early.time + 10.0, speed), atol=1e-9)
+
+
+def test_components_of_single_precision_are_those_of_double():
+    from underfoot.trials.recording.signals import along
+
+    forces = np.random.default_rng(1).normal(size=(50, 3)).astype("f4")
+    axis = np.array([0.6, 0.0, 0.8])
+    found = along(forces, axis)
+    assert found.dtype == float
+    np.testing.assert_allclose(found, forces.astype(float) @ axis, rtol=1e-12)
+
+
+def test_standing_is_found_across_the_parts_of_a_long_record(monkeypatch):
+    from underfoot.trials.walking import walkway
+
+    samples = 5000
+    normal = np.full(samples, 700.0) + 40.0 * np.sin(np.arange(samples))
+    normal[2000:2700] = 690.0  # 0.7 s of standing, over the end of a part
+    force = np.column_stack((np.zeros((samples, 2)), normal))
+    trial = Trial("a", plates=(Plate("plate 1", force, 1000.0),))
+    whole = walkway.body_weight(trial)
+    monkeypatch.setattr(walkway, "_AT_ONCE", 1900)
+    parts = walkway.body_weight(trial)
+    assert whole.newtons == pytest.approx(690.0, abs=3.0)  # the edge may swing by 1.5 %
+    assert parts.newtons == pytest.approx(whole.newtons, rel=1e-9)

@@ -23,7 +23,7 @@ VISCOSITY, HARDNESS, DEPTH = "contaminant.viscosity", "shoe.material.shore_a", "
     ],
 )
 def test_what_is_typed_is_what_the_file_says(text, path, comma, said):
-    assert typed(text, path, comma=comma, words=True) == said
+    assert typed(text, path, comma=comma, names=True) == said
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,7 @@ def test_what_is_typed_is_what_the_file_says(text, path, comma, said):
 )
 def test_what_is_no_viscosity_is_refused(text):
     with pytest.raises(InputError):
-        typed(text, VISCOSITY, comma=False, words=True)
+        typed(text, VISCOSITY, comma=False, names=True)
 
 
 @pytest.mark.parametrize("text", ["", "abc", "62 63", "1e400", "NaN", "3 mm"])

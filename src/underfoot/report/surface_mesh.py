@@ -252,7 +252,7 @@ def _straightened(places: Floats, chain: list[int]) -> Indices:
     The places where lines meet move to where the lines through all places between them meet.
     """
     path = places[chain]
-    at = _kept(path, TOLERANCE)
+    at = _corners_of(path, TOLERANCE)
     normal, offset = _fitted(path, at)
     ends = np.array(chain)[at]
     before, after = np.arange(len(at) - 2), np.arange(1, len(at) - 1)
@@ -276,13 +276,13 @@ def _along_edge(places: Floats, chain: list[int], tolerance: float) -> Indices:
     """
     nodes, path = np.array(chain), places[chain]
     closed, last = chain[0] == chain[-1], len(chain) - 1
-    at = _kept(path, TOLERANCE)
+    at = _corners_of(path, TOLERANCE)
     if closed:  # from the middle of its longest side, not from beside a corner
         longest = int(np.diff(at).argmax())
         nodes = np.roll(nodes[:-1], -int(at[longest : longest + 2].sum() // 2))
         nodes = np.append(nodes, nodes[0])
         path = places[nodes]
-        at = _kept(path, TOLERANCE)
+        at = _corners_of(path, TOLERANCE)
     inner = at[1:-1]
     inner = inner[np.diff(at[:-1]) > AWAY]  # a corner cut off between cells has two places
     at = np.concatenate([at[:1], inner, at[-1:]])
@@ -315,21 +315,21 @@ def _along_edge(places: Floats, chain: list[int], tolerance: float) -> Indices:
     rest = np.flatnonzero(~gone[:last] if closed else ~gone)
     if closed:
         rest = np.append(rest, rest[0])
-    ends = nodes[rest[_kept(path[rest], tolerance)]]
+    ends = nodes[rest[_corners_of(path[rest], tolerance)]]
     return np.stack([ends[:-1], ends[1:]], axis=1)
 
 
-def _meeting(path: Floats, one: Indices, other: Indices) -> Floats | None:
+def _meeting(path: Floats, before: Indices, after: Indices) -> Floats | None:
     """Return where the lines through two places each meet; None where they hardly turn."""
-    first, then = path[one[1]] - path[one[0]], path[other[0]] - path[other[1]]
+    first, then = path[before[1]] - path[before[0]], path[after[0]] - path[after[1]]
     sine = first[0] * then[1] - first[1] * then[0]
     if abs(np.arctan2(sine, first @ then)) < CORNER:
         return None
-    off = path[other[1]] - path[one[1]]
-    return path[one[1]] + first * ((off[0] * then[1] - off[1] * then[0]) / sine)
+    off = path[after[1]] - path[before[1]]
+    return path[before[1]] + first * ((off[0] * then[1] - off[1] * then[0]) / sine)
 
 
-def _kept(path: Floats, tolerance: float) -> Indices:
+def _corners_of(path: Floats, tolerance: float) -> Indices:
     """Return which places stay of a path, by halving at the place farthest off."""
     kept, waiting = {0, len(path) - 1}, [(0, len(path) - 1)]
     while waiting:

@@ -514,7 +514,7 @@ def _value(
     """
     read = read or (lambda key, reader: reader(fields[key]))
     if fields.get("values", "").strip():
-        each = partial(typed, path=path, comma=comma, words=True)
+        each = partial(typed, path=path, comma=comma, names=True)
         return read(
             "values", lambda text: [each(part) for part in SEPARATOR.split(text.strip()) if part]
         )
@@ -531,14 +531,14 @@ def _value(
     return value
 
 
-def typed(text: str, path: str, *, comma: bool, words: bool = False) -> Any:
+def typed(text: str, path: str, *, comma: bool, names: bool = False) -> Any:
     """Return what was typed of a value at a path as a study file writes it: a number, a quantity.
 
     Parameters:
         text: What was typed.
         path: In a case; "" for a number without a unit.
         comma: The writer's decimal sign is the comma.
-        words: What is no number may stand, as the name of a pattern.
+        names: What is no number may stand, as the name of a pattern.
 
     Raises:
         InputError: No number, one that can be two, a unit that is missing or of another quantity.
@@ -547,7 +547,7 @@ def typed(text: str, path: str, *, comma: bool, words: bool = False) -> Any:
     with suppress(InputError):  # a section, a short name, a path that the check of the file refuses
         unit = unit_at(path)
     parts = split_quantity(text, comma=comma)
-    if words and unit == "1" and (parts is None or parts[1]):
+    if names and unit == "1" and (parts is None or parts[1]):
         return text
     value = to_si(text, unit, where="", comma=comma)
     if unit == "1":

@@ -26,6 +26,7 @@ _ENDIAN = {84: "<", 85: "<", 86: ">"}
 _VAX = 85
 _POSSIBLE = 1e30  # no sample of any instrument in any unit is larger
 _READ = 16_000_000  # bytes that are read at a time
+_PLATE_SAMPLES = 100_000  # of a long file's plate that are worked out at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,8 +259,11 @@ def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tup
 def _points(raw: np.ndarray, scale: float, real: bool, positions: np.ndarray) -> None:
     """Fill positions (frames, points, 3) from the file's numbers (frames, points, 4)."""
     positions[:] = raw[:, :, :3] if real else raw[:, :, :3] * scale
-    lost = (raw[:, :, 3] < 0) | (positions == 0.0).all(axis=2)
-    positions[lost | ~(np.abs(positions) < _POSSIBLE).all(axis=2)] = np.nan
+    x, y, z = np.moveaxis(positions, 2, 0)  # numpy's all over three takes several times as long
+    lost = (raw[:, :, 3] < 0) | ((x == 0.0) & (y == 0.0) & (z == 0.0))
+    for one in (x, y, z):
+        lost |= ~(np.abs(one) < _POSSIBLE)
+    positions[lost] = np.nan
 
 
 def _scaled_analog(raw: np.ndarray, shell: C3DFile, real: bool) -> np.ndarray:
@@ -398,9 +402,10 @@ def read_c3d(draft: Draft) -> Trial:
     for i, name in enumerate(draft.names(labels, "marker")):
         if labels[i] not in computed:
             path = raw.points[:, i]
-            draft.marker(
-                name, path * np.float32(scale) if draft.file else path.astype(float) * scale
-            )
+            if draft.file is None:
+                path = path.astype(float)
+            path *= path.dtype.type(scale)
+            draft.marker(name, path)
     draft.rate = raw.rotation_rate
     poses = raw.texts("ROTATION", "LABELS")
     for i in range(raw.rotations.shape[1]):
@@ -479,29 +484,36 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         origin = _of_plate(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN", 1) * scale
         if origin.shape != (3,) or not np.isfinite(origin).all():
             raise DataError("ORIGIN is damaged")
-        signals = raw.analog[:, columns].astype(float)
         notes: list[str] = []
+        matrix, factors = None, np.ones(len(columns))
         if kind == 4:
             matrix = raw.numbers("FORCE_PLATFORM", "CAL_MATRIX")
             matrix = _of_plate(matrix, index, "CAL_MATRIX", 2, (6, 6))
-            force, moment = plates.channel_forces(kind, signals, origin, matrix)
-            # The matrix turns raw counts into N and N times the file's unit of length.
-            lever = np.cross(-origin if origin[2] > 0 else origin, force)
-            moment = (moment + lever) * scale - lever
         else:
-            known = _in_si(signals, columns, units, kind, scale, notes)
-            force, moment = plates.channel_forces(kind, known, origin, None)
-        if not np.isfinite(force).any() or np.abs(force[np.isfinite(force)]).max() > 1e9:
+            factors = _to_si(columns, units, kind, scale, notes)
+        samples, largest = len(raw.analog), -1.0
+        forces, moments = (np.empty((samples, 3), raw.analog.dtype) for _ in range(2))
+        step = _PLATE_SAMPLES if draft.file else max(samples, 1)
+        for part in (slice(at, at + step) for at in range(0, samples, step)):
+            signals = raw.analog[part, columns].astype(float) * factors
+            force, moment = plates.channel_forces(kind, signals, origin, matrix)
+            if kind == 4:  # its matrix gives N and N times the file's unit of length
+                lever = np.cross(-origin if origin[2] > 0 else origin, force)
+                moment = (moment + lever) * scale - lever
+            sizes = np.abs(force[np.isfinite(force)])
+            largest = max(largest, float(sizes.max(initial=-1.0)))
+            forces[part], moments[part] = force @ axes.T, moment @ axes.T
+        if not 0.0 <= largest <= 1e9:
             raise DataError("its forces are not numbers of any possible size")
         zero = raw.numbers("FORCE_PLATFORM", "ZERO").ravel(order="F")
         if zero.size == 2 and zero[1] > zero[0] > 0:
             notes.append(f"ZERO names samples {int(zero[0])} to {int(zero[1])}")
         draft.plate(
-            force @ axes.T,
+            forces,
             name,
-            moment=(moment @ axes.T).astype(raw.analog.dtype),
+            moment=moments,
             corners=corners,
-            raw=signals,
+            raw=_columns(raw.analog, columns),
             kind=text,
             notes=tuple(notes),
             flags=(flag,) if crossed else (),
@@ -530,14 +542,17 @@ _COUNTS = ("adc", "adu", "bit", "bits", "count", "counts", "lsb", "unknown", "no
 """What stands for the unit of a channel before its SCALE: the numbers are in the plate's unit."""
 
 
-def _in_si(
-    signals: np.ndarray,
-    columns: np.ndarray,
-    units: list[str],
-    kind: int,
-    scale: float,
-    notes: list[str],
+def _columns(table: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Columns of a table (n, k): those that stand beside each other without a copy."""
+    first, count = int(columns[0]), len(columns)
+    beside = (columns == np.arange(first, first + count)).all()
+    return table[:, first : first + count] if beside else table[:, columns]
+
+
+def _to_si(
+    columns: np.ndarray, units: list[str], kind: int, scale: float, notes: list[str]
 ) -> np.ndarray:
+    """Factors (k,) that make a plate's channels SI; units that are assumed become a note."""
     wanted = {1: "FFFLLM", 2: "FFFMMM", 3: "FFFFFFFF"}[kind]
     kinds = {"F": ("N", 1.0), "L": ("m", scale), "M": ("N*m", scale)}
     factors = np.ones(len(columns))
@@ -555,7 +570,7 @@ def _in_si(
             assumed.add(f'"{written}" as {si}')
     if assumed:
         notes.append("units assumed: " + ", ".join(sorted(assumed)))
-    return signals * factors
+    return factors
 
 
 def _of_plate(

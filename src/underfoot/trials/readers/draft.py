@@ -140,7 +140,9 @@ class Draft:
             note = "" if unit else "no unit in the file"
             note = f'in "{written}" in the file' if written else note
         if (scale * factor, offset) != (1.0, 0.0):
-            values = values * (scale * factor) + offset
+            # What was read of a long file is not held twice.
+            values = np.multiply(values, scale * factor, out=values if self.file else None)
+            values += offset
         if si == "N" and (lost := coded(values, least=1.0)).any():
             values = np.where(lost, np.nan, values)
             self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
@@ -157,7 +159,7 @@ class Draft:
         """Add a force plate (n, 3), N; ``more`` as ``finished_plate`` takes it but ``up``."""
         more = {"start": self.start, "subtract_baseline": self.subtract_baseline, **more}
         more |= {"name": name or f"plate {len(self.plates) + 1}", "rate": self.rate}
-        force = np.asarray(force, dtype=float)
+        force = np.asarray(force, dtype=float if self.file is None else "f4")
         coded = coded_forces(force)
         if coded.any():
             force = np.where(coded[:, None], np.nan, force)

@@ -7,12 +7,13 @@ marker for whole frames: that is a slower clock, not a loss.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from underfoot.core.missing import coded
 
-from ..recording.signals import runs
+from ..recording.signals import longest_run, runs
 
 HELD, STRAIGHT, SIGN = "held", "straight", "sign"
 KINDS = {
@@ -100,12 +101,14 @@ def unseen(path: np.ndarray, *, every_repeat: bool = False) -> dict[str, np.ndar
 
     ``every_repeat``: every repeated place was lost, as the system that wrote it says.
     """
-    lost = {SIGN: _signs(path)}
-    path = np.where(lost[SIGN][:, None], np.nan, path)
-    lost[HELD] = _held(path, every_repeat)
-    path = np.where(lost[HELD][:, None], np.nan, path)
-    lost[STRAIGHT] = _straight(path)
-    return {kind: mask for kind, mask in lost.items() if mask.any()}
+    lost = {}
+    for kind, mask_of in ((SIGN, _signs), (HELD, partial(_held, every=every_repeat)),
+                          (STRAIGHT, _straight)):  # fmt: skip
+        mask = mask_of(path)
+        if mask.any():
+            lost[kind] = mask
+            path = np.where(mask[:, None], np.nan, path)
+    return lost
 
 
 def coded_forces(force: np.ndarray) -> np.ndarray:
@@ -124,17 +127,24 @@ def coded_forces(force: np.ndarray) -> np.ndarray:
 def _signs(path: np.ndarray) -> np.ndarray:
     """One number three times, or a place far from all others (m)."""
     one = (path[:, 0] == path[:, 1]) & (path[:, 1] == path[:, 2])
-    rest = path[~one & np.isfinite(path).all(axis=1)]
+    usual = ~one & np.isfinite(path @ np.ones(3))
+    rest = path if usual.all() else path[usual]
     if len(rest) < 4:
         return np.asarray(one)
     low, middle, high = np.percentile(rest, (25, 50, 75), axis=0)
-    far = np.abs(path - middle).max(axis=1) > _FAR + _FAR_SPREADS * (high - low).max()
+    far = _largest(path - middle) > _FAR + _FAR_SPREADS * (high - low).max()
     return np.asarray(one | far)
+
+
+def _largest(parts: np.ndarray) -> np.ndarray:
+    """Largest size (n,) of three components (n, 3); NaN with one of them."""
+    x, y, z = np.abs(parts).T  # numpy's max over three takes several times as long
+    return np.maximum(np.maximum(x, y), z)
 
 
 def _steps(path: np.ndarray) -> np.ndarray:
     """Largest component of each step (n - 1,); NaN beside what was not seen."""
-    return np.abs(np.diff(path, axis=0)).max(axis=1) if len(path) > 1 else np.zeros(0)
+    return _largest(np.diff(path, axis=0)) if len(path) > 1 else np.zeros(0)
 
 
 def _digit(path: np.ndarray) -> float:
@@ -150,13 +160,13 @@ def _digit(path: np.ndarray) -> float:
     return digit if (np.abs(count - np.round(count)) < 0.05).all() else single
 
 
-def _held(path: np.ndarray, every_repeat: bool) -> np.ndarray:
+def _held(path: np.ndarray, *, every: bool) -> np.ndarray:
     held = np.zeros(len(path), dtype=bool)
     steps = _steps(path)
     still = steps == 0.0
     if not still.any():
         return held
-    if every_repeat:
+    if every:
         held[1:] = still
         return held
     digit = _digit(path)
@@ -184,9 +194,11 @@ def _straight(path: np.ndarray) -> np.ndarray:
     straight = np.zeros(len(path), dtype=bool)
     if len(path) < 4 * _SHORTEST_LINE:
         return straight
-    bends = np.abs(np.diff(path, 2, axis=0)).max(axis=1)
+    bends = _largest(np.diff(path, 2, axis=0))
     digit = _digit(path)
     allowed = 2.01 * digit  # that much a rounded line bends
+    if longest_run(bends <= allowed) < _SHORTEST_LINE:
+        return straight
     steps = _steps(path)
     moving = np.fmin(steps[1:], steps[:-1]) > _STANDS_OUT * digit
     line = (bends <= allowed) & moving

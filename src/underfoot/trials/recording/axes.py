@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import lru_cache
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from underfoot.core.deprecation import renamed
 from .marker_names import HEEL, PELVIS, TOE, landmark, own_landmarks
 from .plates import plate_normal
 from .signals import CONTACT_FORCE
-from .trial import Marker, Plate, Trial, Vertical
+from .trial import Marker, Plate, Trial, Vertical, once_a_record
 
 PLATE_FRAMES = {
     "surface": "plates that measure normal and tangential to the walking surface",
@@ -97,7 +96,6 @@ _ABOVE = 0.2  # m between the feet and the middle of a body's other markers
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
 _ALONG = 0.7  # cosine of the angle between the way of a foot's pressure and that of the walk
 _NAMES = "xyz"
-_ONES = np.ones(3)
 _LOW = 0.12  # m above the lowest marker; the heel stands lower than a hand or a shin
 
 
@@ -195,23 +193,39 @@ def marker_velocity(
     markers don't count. Markers that never move (corners of plates, the frame of a treadmill) are
     no part of a body that does. None with fewer than three markers seen.
     """
+    clocks: dict[tuple[int, float, float], slice] = {}  # markers share theirs
     velocities = []
     for marker in moving_markers(trial.markers).values():
-        time = marker.time
-        first, stop = time.searchsorted(begin), time.searchsorted(end, "right")
-        path = marker.positions[first:stop]
-        frames = np.flatnonzero(np.isfinite(path @ _ONES))
-        if len(frames) < 3:
-            continue
-        last, begun = frames[-1], frames[0]
-        lasting = time[first + last] - time[first + begun]
-        if lasting >= 0.05:
-            velocities.append((path[last].astype(float) - path[begun]) / lasting)
+        if begin == -np.inf and end == np.inf:
+            velocity = _whole_velocity(marker)
+        elif marker.times is None:
+            clock = len(marker.positions), marker.rate, marker.start
+            if clock not in clocks:
+                clocks[clock] = marker.frames(begin, end)
+            velocity = _velocity_in(marker, clocks[clock])
+        else:
+            velocity = _velocity_in(marker, marker.frames(begin, end))
+        if velocity is not None:
+            velocities.append(velocity)
     if len(velocities) < 3:
         return None
     ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
     middle = (ordered[(len(velocities) - 1) // 2] + ordered[len(velocities) // 2]) / 2.0
     return middle if up is None else middle - (middle @ up) * up
+
+
+@once_a_record
+def _whole_velocity(marker: Marker) -> np.ndarray | None:
+    return _velocity_in(marker, slice(None))
+
+
+def _velocity_in(marker: Marker, frames: slice) -> np.ndarray | None:
+    seen = np.flatnonzero(~marker.missing[frames])
+    if len(seen) < 3:
+        return None
+    time, path, first, last = marker.time[frames], marker.positions[frames], seen[0], seen[-1]
+    lasting = time[last] - time[first]
+    return (path[last].astype(float) - path[first]) / lasting if lasting >= 0.05 else None
 
 
 def moving_markers(markers: Mapping[str, Marker]) -> Mapping[str, Marker]:
@@ -228,7 +242,7 @@ def body_markers(markers: Mapping[str, Marker]) -> Mapping[str, Marker]:
     return {name: marker for name, marker in markers.items() if _span(marker) > _FIXED}
 
 
-@lru_cache(maxsize=4096)
+@once_a_record
 def _span(marker: Marker) -> float:
     """Longest way (m) that a marker goes along an axis, but for a hundredth of its frames."""
     seen = marker.positions[~marker.missing]
@@ -353,7 +367,7 @@ def _low(trial: Trial, name: str, up: np.ndarray | None) -> bool:
     return lowest[name] < np.nanmin(list(lowest.values())) + _LOW
 
 
-@lru_cache(maxsize=1024)
+@once_a_record
 def _lowest(marker: Marker, up: tuple[float, ...]) -> float:
     seen = (marker.positions @ np.array(up))[~marker.missing]
     return float(np.percentile(seen, 1)) if len(seen) else math.nan

@@ -1,15 +1,14 @@
 """Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
 from underfoot.core import DataError
 
 from .measurement import Flag, remark
-from .signals import CONTACT_FORCE, SHEAR_WARNING, contacts, enough, saturated, unloaded
-from .trial import REVERSED, Plate, Trial
+from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
+from .trial import REVERSED, Plate, Trial, once_a_record
 
 KINDS = {
     1: "type 1 (force, centre of pressure, free moment)",
@@ -83,9 +82,9 @@ def plate_contacts(
     return _contacts(plate, tuple(up.tolist()), threshold)
 
 
-@lru_cache(maxsize=4)  # every check of every step asks
+@once_a_record
 def _contacts(plate: Plate, up: tuple[float, ...], threshold: float) -> tuple[tuple[int, int], ...]:
-    return tuple(contacts(plate.force @ np.array(up), plate.rate, threshold))
+    return tuple(contacts(along(plate.force, np.array(up)), plate.rate, threshold))
 
 
 def channel_forces(
@@ -148,15 +147,17 @@ def finished_plate(
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
 
     ``force``, ``moment`` (about the centre of the surface) and ``centre_of_pressure`` have shape
-    (n, 3), lab axes; ``up`` (3,) is the unit vector out of the floor; ``raw`` (n, k), the channels
-    before any arithmetic, are searched for saturation.
+    (n, 3), lab axes; those in single precision stay so and are written to. ``up`` (3,) is the unit
+    vector out of the floor; ``raw`` (n, k), the channels before any arithmetic, are searched for
+    saturation.
     """
-    force = np.array(force, dtype=float)
+    long = force.dtype == np.float32
+    force = force if long else np.array(force, dtype=float)
     seen = list(flags)
-    lost = ~np.isfinite(force @ np.ones(3))  # faster than all()
+    lost = ~np.isfinite(along(force, np.ones(3)))  # faster than all()
     if lost.any():
         seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
-    vertical = force @ up
+    vertical = along(force, up)
     with_load = vertical[np.isfinite(vertical)]
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
@@ -168,11 +169,12 @@ def finished_plate(
     if not subtract_baseline:
         seen.append(remark("baseline not subtracted: switched off"))
     elif enough(empty):
-        baseline, samples = force[empty].mean(axis=0), int(empty.sum())
-        force = force - baseline
+        baseline, samples = force[empty].mean(axis=0, dtype=float), int(empty.sum())
+        force -= baseline.astype(force.dtype)
         if moment is not None:
             middle = moment[empty].mean(axis=0, dtype=float)
-            moment = moment - middle.astype(moment.dtype)
+            less = middle.astype(moment.dtype)
+            moment = np.subtract(moment, less, out=moment if long else None)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
@@ -183,7 +185,7 @@ def finished_plate(
     cut = any(saturated(channel, rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
-    peak = float(np.nanmax(np.abs(force @ up), initial=0.0))
+    peak = float(np.nanmax(np.abs(along(force, up)), initial=0.0))
     if peak > _IMPLAUSIBLE:
         text = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
         seen.append(Flag("size", text, True, peak, _IMPLAUSIBLE, "N"))
@@ -193,7 +195,7 @@ def finished_plate(
     elif peak <= 0.05:
         seen.append(remark("never loaded"))
     if centre_of_pressure is not None:
-        loaded = force @ up > _LOADED
+        loaded = along(force, up) > _LOADED
         centre_of_pressure = np.where(loaded[:, None], centre_of_pressure, np.nan)
     elif moment is not None and corners is not None:
         centre_of_pressure = _centre_of_pressure(force, moment, up, corners.mean(axis=0))
@@ -261,7 +263,7 @@ def _centre_of_pressure(
     force: np.ndarray, moment: np.ndarray, up: np.ndarray, centre: np.ndarray
 ) -> np.ndarray:
     """r = up x M / (up . F), from M = r x F + T up with r in the surface."""
-    vertical = force @ up
+    vertical = along(force, up)
     place = np.full(force.shape, np.nan, moment.dtype)
     loaded = vertical > _LOADED
     place[loaded] = moment[loaded] @ _crossing(up).T / vertical[loaded, None] + centre

@@ -15,6 +15,19 @@ CONTACT_FORCE = 20.0  # N of vertical force; above it a plate is stood on
 _LOWEST, _HIGHEST = 8.0, 60.0  # N above the unloaded level at which a plate counts as loaded
 
 
+def along(values: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Return the components (n,) of ``values`` (n, 3) along an axis (3,), in double precision.
+
+    Values in single precision, as those of long records, are not held in double too.
+    """
+    if values.dtype == float:
+        return values @ axis
+    parts = np.zeros(len(values))
+    for column, share in zip(values.T, axis, strict=True):
+        parts += column * share
+    return parts
+
+
 def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
     """Return a mask of the samples in which nothing stood on the plate, shape (n,).
 
@@ -71,6 +84,9 @@ def saturated(signal: np.ndarray, rate: float) -> bool:
         at_extreme = signal == extreme
         if extreme == 0.0 or np.count_nonzero(at_extreme) < length:
             continue
+        flat = [(start, stop) for start, stop in runs(at_extreme) if stop - start >= length]
+        if not flat:
+            continue
         rest = float(np.median(signal))
         spread = float(np.percentile(np.abs(signal - rest), 90))
         steps = np.abs(np.diff(signal))
@@ -78,10 +94,9 @@ def saturated(signal: np.ndarray, rate: float) -> bool:
         height = abs(extreme - rest)
         if height <= 0.2 * spread:
             continue
-        for start, stop in runs(at_extreme):
-            before = abs(signal[max(start - approach, 0)] - extreme)
-            if stop - start >= length and before > max(0.01 * height, 3.0 * quantum):
-                return True
+        limit = max(0.01 * height, 3.0 * quantum)
+        if any(abs(signal[max(start - approach, 0)] - extreme) > limit for start, _ in flat):
+            return True
     return False
 
 

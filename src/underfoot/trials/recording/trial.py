@@ -1,11 +1,12 @@
 """One recording as read: channels, plates, markers, events, where it came from, its edits."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, wraps
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import Any, Concatenate, ParamSpec, Self, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,6 +16,28 @@ from underfoot.core.presentation import Presentable, Table
 from .measurement import Flag
 
 _T = TypeVar("_T")
+_P = ParamSpec("_P")
+
+
+def once_a_record(
+    function: Callable[Concatenate[Any, _P], _T],
+) -> Callable[Concatenate[Any, _P], _T]:
+    """Return a function of a marker or plate that works each answer out once, as every step asks.
+
+    An answer stays as long as the marker or plate does. ``function``: takes it, then what can be a
+    key of a dictionary; nobody may write to what it returns.
+    """
+    answers: WeakKeyDictionary[Any, dict[Any, _T]] = WeakKeyDictionary()
+
+    @wraps(function)
+    def answer(record: Any, *args: _P.args, **kwargs: _P.kwargs) -> _T:
+        of_record = answers.setdefault(record, {})
+        key = args, tuple(sorted(kwargs.items()))
+        if key not in of_record:
+            of_record[key] = function(record, *args, **kwargs)
+        return of_record[key]
+
+    return answer
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +64,7 @@ class Channel:
         return _time(len(self.values), self.rate, self.start, self.times)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, eq=False)
 class Marker:
     """Path of one motion-capture marker in the laboratory's axes.
 
@@ -61,8 +84,20 @@ class Marker:
 
     @property
     def missing(self) -> np.ndarray:
-        """True where the marker was not seen, shape (n,)."""
-        return np.asarray(~np.isfinite(self.positions @ np.ones(3)))  # faster than all()
+        """True where the marker was not seen, shape (n,); not to be written to."""
+        return _missing(self)
+
+    def frames(self, begin: float, end: float, *, beside: int = 0) -> slice:
+        """Return the frames between two times (s), both included, and ``beside`` on both sides."""
+        first = int(self.time.searchsorted(begin)) - beside
+        return slice(max(first, 0), int(self.time.searchsorted(end, "right")) + beside)
+
+
+@once_a_record
+def _missing(marker: Marker) -> np.ndarray:
+    lost = np.asarray(~np.isfinite(marker.positions @ np.ones(3)))  # faster than all()
+    lost.setflags(write=False)
+    return lost
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +117,7 @@ class PlateAccuracy:
             raise InputError("gain and crosstalk are shares", where="accuracy", allowed="0 to 1")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, eq=False)
 class Plate:
     """One force plate: the force of the floor **on the foot**, in the laboratory's axes.
 

@@ -100,10 +100,11 @@ def _carried(
     begin, end = (plate.start + start / plate.rate + share * duration for share in _STANDS)
     lines = []
     for marker in feet:
-        inside = (marker.time >= begin) & (marker.time <= end) & ~marker.missing
+        near = marker.frames(begin, end)
+        inside = ~marker.missing[near]
         if inside.sum() < max(4, 0.5 * (end - begin) * marker.rate):
             continue
-        time, place = marker.time[inside] - begin, marker.positions[inside]
+        time, place = marker.time[near][inside] - begin, marker.positions[near][inside]
         place = place - np.outer(place @ up, up)
         line = np.polynomial.polynomial.polyfit(time, place, 1)
         stray = place - np.polynomial.polynomial.polyval(time, line).T

@@ -10,8 +10,8 @@ from underfoot.core import InputError, unknown_name
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
 from ..recording.plates import plate_axes, plate_contacts, plate_named
-from ..recording.signals import CONTACT_FORCE
-from ..recording.trial import Edit, Marker, Plate, Trial
+from ..recording.signals import CONTACT_FORCE, along
+from ..recording.trial import Edit, Plate, Trial
 from .walkway import Walkway, walkway_of
 
 _UNKNOWN = Direction()
@@ -148,7 +148,7 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
             where=edit.where,
             allowed=f"contact before toe off, now {stance.contact:.3f} and {stance.toe_off:.3f} s",
         )
-    peak = float(np.nanmax((plate.force @ up)[stance.start : stance.stop], initial=0.0))
+    peak = float(np.nanmax(plate.force[stance.start : stance.stop] @ up, initial=0.0))
     return replace(stance, peak=peak, by_hand=by_hand)
 
 
@@ -192,7 +192,7 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
     detected: list[Stance] = []
     for plate in plates.values():
-        vertical = plate.force @ up
+        vertical = along(plate.force, up)
         for start, stop in plate_contacts(plate, up, threshold):
             time = plate.start + np.array([start, stop]) / plate.rate
             peak = float(np.nanmax(vertical[start:stop]))
@@ -212,22 +212,21 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
     if trial.edits:
         detected = edited_contacts(detected, trial, up)
         detected = [located(s) if s.by_hand and not s.reason else s for s in detected]
-    peaks = [s.peak for s in detected]
+    usual = float(np.median([s.peak for s in detected])) if detected else 0.0
+    # One that the record cuts began at a time nobody knows.
+    begun = [s for s in detected if not s.reason and (s.start or "contact" in s.by_hand)]
+    contacts = np.array([s.contact for s in begun])
     judged = []
     for stance in detected:
-        # One that the record cuts began at a time nobody knows.
-        others = [
-            s
-            for s in detected
-            if s.plate != stance.plate and not s.reason and (s.start or "contact" in s.by_hand)
-        ]
-        reason = stance.reason or _reason(walk, stance, others, peaks, feet[stance.plate])
+        near = np.flatnonzero(np.abs(contacts - stance.contact) < TOGETHER)
+        others = [begun[i] for i in near if begun[i].plate != stance.plate]
+        reason = stance.reason or _reason(walk, stance, others, usual, feet[stance.plate])
         judged.append(replace(stance, reason=reason))
     return judged
 
 
 def _reason(
-    walk: Walkway, stance: Stance, others: list[Stance], peaks: list[float], feet: "_Feet"
+    walk: Walkway, stance: Stance, others: list[Stance], usual_peak: float, feet: "_Feet"
 ) -> str:
     plate, weight = feet.plate, walk.weight
     part = plate.force[stance.start : stance.stop]
@@ -244,11 +243,10 @@ def _reason(
         return f"lasts {1e3 * stance.duration:.0f} ms: too short for a walking step"
     if stance.duration > _LONGEST:
         return f"lasts {stance.duration:.2f} s: standing, or more than one foot"
-    near = [o for o in others if abs(o.contact - stance.contact) < TOGETHER]
-    if near:
-        gap = 1e3 * abs(near[0].contact - stance.contact)
-        return f"begins {gap:.0f} ms from one on {near[0].plate}: one foot on both, or a jump"
-    expected = weight.newtons if weight else 0.9 * float(np.median(peaks))
+    if others:
+        gap = 1e3 * abs(others[0].contact - stance.contact)
+        return f"begins {gap:.0f} ms from one on {others[0].plate}: one foot on both, or a jump"
+    expected = weight.newtons if weight else 0.9 * usual_peak
     if stance.peak < 0.7 * expected:
         of = "body weight" if weight else "the usual peak"
         return f"peak {stance.peak:.0f} N is {100 * stance.peak / expected:.0f} % of {of}: partial"
@@ -303,7 +301,8 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     if plate.centre_of_pressure is None or way is None:
         return ""
     part = slice(stance.start, stance.stop)
-    carried = np.outer(plate.time[part] - stance.contact, feet.surface(stance))
+    time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
+    carried = np.outer(time - stance.contact, feet.surface(stance))
     place = plate.centre_of_pressure[part] - carried
     inside = place[plate.force[part] @ up > 0.2 * stance.peak]
     inside = inside[np.isfinite(inside).all(axis=1)]
@@ -338,12 +337,6 @@ def _lowest(height: np.ndarray) -> float:
     return float(np.nanmin(height)) if np.isfinite(height).any() else np.nan
 
 
-def _between(marker: Marker, begin: float, end: float, *, beside: int = 0) -> slice:
-    """Frames of a marker between two times (s), both included, and some on both sides."""
-    first = int(marker.time.searchsorted(begin)) - beside
-    return slice(max(first, 0), int(marker.time.searchsorted(end, "right")) + beside)
-
-
 class _Feet:
     """The heels of a trial, the best-seen marker of each side, against one plate."""
 
@@ -376,7 +369,7 @@ class _Feet:
             return self.seen.get(span, {})
         frames = self.seen[span] = {}
         for side, marker in self.markers.items():
-            near = _between(marker, stance.contact, stance.toe_off, beside=1)
+            near = marker.frames(stance.contact, stance.toe_off, beside=1)
             time, at = marker.time[near], marker.positions[near]
             if len(at) < 2:
                 continue
@@ -398,7 +391,7 @@ class _Feet:
         early = self.early(stance, max(5, (stance.stop - stance.start) // 5))
         distance, end = 0.15, stance.contact + 0.2 * stance.duration
         for name, marker in self.markers.items() if not side and len(early) else ():
-            at = marker.positions[_between(marker, stance.contact, end)]
+            at = marker.positions[marker.frames(stance.contact, end)]
             at = at[np.isfinite(at).all(axis=1)]
             if len(at):
                 away = self.flat(np.median(at, axis=0), early)
@@ -430,7 +423,7 @@ class _Feet:
             return 0.0
         most = 0.0
         for side, marker in self.markers.items():
-            near = _between(marker, stance.contact, stance.contact + 0.04)
+            near = marker.frames(stance.contact, stance.contact + 0.04)
             time, at = marker.time[near], marker.positions[near]
             inside = np.isfinite(at).all(axis=1)
             if inside.sum() < 2:
@@ -448,7 +441,7 @@ class _Feet:
         best, lowest = "", 0.06
         for side, marker in self.markers.items() if self.edges else ():
             most = max(0.03, 1.0 / marker.rate)
-            near = _between(marker, stance.contact - most, stance.contact + most)
+            near = marker.frames(stance.contact - most, stance.contact + most)
             at = marker.positions[near]
             at = at[
                 (np.abs(marker.time[near] - stance.contact) < most) & np.isfinite(at).all(axis=1)

@@ -96,9 +96,11 @@ def _standing_place(heel: Marker | None, stance: Stance) -> np.ndarray:
     """Median place (3,) of a heel between 10 and 40 % of its stance; NaN where it is not seen."""
     if heel is None:
         return np.full(3, np.nan)
-    share = (heel.time - stance.contact) / max(stance.duration, 1e-9)
-    inside = (share > 0.1) & (share < 0.4) & ~heel.missing
-    return np.median(heel.positions[inside], axis=0) if inside.sum() > 2 else np.full(3, np.nan)
+    near = heel.frames(stance.contact, stance.toe_off)
+    share = (heel.time[near] - stance.contact) / max(stance.duration, 1e-9)
+    inside = (share > 0.1) & (share < 0.4) & ~heel.missing[near]
+    places = heel.positions[near][inside]
+    return np.median(places, axis=0) if len(places) > 2 else np.full(3, np.nan)
 
 
 def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] | None:
@@ -113,9 +115,7 @@ def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.nd
         return None
     if len(heel.positions) != len(toe.positions) or heel.rate != toe.rate or heel.times is not None:
         return None
-    line, _ = bridged(toe.positions - heel.positions, round(0.1 * heel.rate))
-    near = (heel.time > stance.contact - 0.2) & (heel.time < stance.toe_off + 0.2)
-    time, line = heel.time[near], line[near]
+    time, line = _bridged_between(stance.contact - 0.2, stance.toe_off + 0.2, toe, heel)
     if len(line) < 30 or not np.isfinite(line).all():
         return None
     if heel.rate > 2.3 * _FOOT_FILTER.cutoff:
@@ -225,11 +225,13 @@ def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     ]
     if not markers:
         return "", "no marker of the pelvis"
-    time = markers[0].time
-    heights = np.array([m.positions @ walk.up for m in markers if len(m.positions) == len(time)])
-    seen = np.isfinite(heights).any(axis=0)
-    if not seen.any():
+    markers = [m for m in markers if len(m.positions) == len(markers[0].positions)]
+    if all(m.missing.all() for m in markers):
         return "", "no marker of the pelvis is seen"
+    near = markers[0].frames(slip.contact - 0.6, slip.contact + _AFTER)
+    time = markers[0].time[near]
+    heights = np.array([m.positions[near] @ walk.up for m in markers])
+    seen = np.isfinite(heights).any(axis=0)
     height = np.full(len(time), np.nan)
     height[seen] = np.nanmean(heights[:, seen], axis=0)
     before = height[(time > slip.contact - 0.6) & (time < slip.contact)]
@@ -255,12 +257,13 @@ def _toe_way(walk: Walkway, stance: Stance) -> float | None:
 
 def _lifts(marker: Marker, begin: float, end: float, walk: Walkway) -> float:
     """Return when a toe is 30 mm above its lowest place between two times, or the second (s)."""
-    height = marker.positions @ walk.up
-    inside = (marker.time >= begin) & (marker.time <= end) & np.isfinite(height)
+    near = marker.frames(begin, end)
+    height = marker.positions[near] @ walk.up
+    inside = np.isfinite(height)
     if inside.sum() < 3:
         return end
     up = inside & (height > height[inside].min() + 0.03)
-    return float(marker.time[up][0]) if up.any() else end
+    return float(marker.time[near][up][0]) if up.any() else end
 
 
 def _toe(walk: Walkway, side: str, stance: Stance) -> Marker | None:
@@ -273,8 +276,7 @@ def _trailing_way(walk: Walkway, stance: Stance, slip: Slip) -> float | None:
     if marker is None or not np.isfinite(slip.end):
         return None
     # The trailing foot stands on its toe until it lifts.
-    inside = (marker.time >= stance.contact) & (marker.time <= slip.end)
-    if (inside & ~marker.missing).sum() < 3:
+    if (~marker.missing[marker.frames(stance.contact, slip.end)]).sum() < 3:
         return None
     end = _lifts(marker, stance.contact, slip.end, walk)
     return _way(marker, stance.contact, end, walk.up)
@@ -284,9 +286,7 @@ def _way(marker: Marker, begin: float, end: float, up: np.ndarray) -> float | No
     """Largest displacement (m) in the floor's plane from ``begin`` until ``end``."""
     if marker.times is not None:
         return None
-    path, _ = bridged(marker.positions, round(0.1 * marker.rate))
-    near = (marker.time > begin - 0.3) & (marker.time < end + 0.3)
-    path, time = path[near], marker.time[near]
+    time, path = _bridged_between(begin - 0.3, end + 0.3, marker)
     if len(path) < 30 or not np.isfinite(path).all() or marker.rate < 2.3 * MARKER_FILTER.cutoff:
         return None
     path = low_passed(path, marker.rate, MARKER_FILTER)
@@ -295,6 +295,21 @@ def _way(marker: Marker, begin: float, end: float, up: np.ndarray) -> float | No
     if inside.sum() < 2:
         return None
     return float(np.linalg.norm(flat[inside] - flat[inside][0], axis=1).max())
+
+
+def _bridged_between(
+    begin: float, end: float, marker: Marker, base: Marker | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return times (n,) between two and a marker's place there, from ``base`` or the laboratory.
+
+    Gaps of up to 0.1 s are bridged, also those that reach out of it.
+    """
+    gap = round(0.1 * marker.rate)
+    near = marker.frames(begin, end, beside=gap + 3)
+    path = marker.positions[near] - (0.0 if base is None else base.positions[near])
+    time = marker.time[near]
+    inside = (time > begin) & (time < end)
+    return time[inside], bridged(path, gap)[0][inside]
 
 
 def _misstep(walk: Walkway, stance: Stance) -> str:

@@ -7,7 +7,6 @@ named, they are assumed. A flag that matters makes a step "caution".
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from ..recording.signals import (
     low_passed_part,
     runs,
 )
-from ..recording.trial import MADE_UP, Plate
+from ..recording.trial import MADE_UP, Marker, Plate, once_a_record
 from .events import Stance
 from .likelihood import unlikely_flags
 from .processed import averaged, dead_time
@@ -306,11 +305,9 @@ def other_foot_flags(
 
 def _pace(walk: Walkway, stance: Stance, speed: float | None) -> float | None:
     """Stance time made free of size and speed by the height of the pelvis (see ``LONG_PACE``)."""
-    heights = [
-        float(np.nanmedian(marker.positions @ walk.up))
-        for marker in map(walk.trial.marker, walk.pelvis)
-        if not marker.missing.all()
-    ]
+    up, markers = tuple(walk.up.tolist()), map(walk.trial.marker, walk.pelvis)
+    usual = [_usual_height(marker, up) for marker in markers]
+    heights = [height for height in usual if height is not None]
     corners = walk.plate(stance.plate).corners
     if speed is None or not heights or corners is None:
         return None
@@ -319,6 +316,13 @@ def _pace(walk: Walkway, stance: Stance, speed: float | None) -> float | None:
         return None
     swing = math.sqrt(GRAVITY / height)
     return stance.duration * swing * math.sqrt(speed / (height * swing))
+
+
+@once_a_record
+def _usual_height(marker: Marker, up: tuple[float, ...]) -> float | None:
+    if marker.missing.all():
+        return None
+    return float(np.nanmedian(marker.positions @ np.array(up)))
 
 
 def walking_speed(walk: Walkway, stance: Stance) -> float | None:
@@ -373,7 +377,7 @@ def _force_flags(
             text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
             yield limit.flag(mean, text)
     own = weight.newtons if weight else 0.9 * stance.peak
-    step = float(normal[0] - (plate.force @ up)[max(stance.start - 1, 0)]) / own
+    step = float(normal[0] - plate.force[max(stance.start - 1, 0)] @ up) / own
     if stance.start and step > REST_JUMP.value + 100.0 / rate:
         text = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
         yield REST_JUMP.flag(step, text)
@@ -504,7 +508,7 @@ def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
     return _free(plate, tuple(up.tolist()), margin)
 
 
-@lru_cache(maxsize=8)  # every step of a long record asks
+@once_a_record
 def _free(plate: Plate, up: tuple[float, ...], margin: int) -> np.ndarray:
     free = np.ones(len(plate.force), dtype=bool)
     for start, stop in plate_contacts(plate, np.array(up)):
@@ -580,7 +584,7 @@ def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
     return _noise(plate, tuple(up.tolist()), low_pass)
 
 
-@lru_cache(maxsize=8)
+@once_a_record
 def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> float:
     parts, up = [], np.array(vertical)
     for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
@@ -594,10 +598,8 @@ def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> floa
         line = np.linspace(-0.5, 0.5, len(part))[:, None]
         part = part - part.mean(axis=0)
         part = part - line * (line * part).sum(axis=0) / (line**2).sum()
-        parts.append(part - np.outer(part @ up, up))
-    if not parts:
-        return 0.0
-    return float(np.sqrt((np.concatenate(parts) ** 2).sum(axis=1).mean()))
+        parts.append(((part - np.outer(part @ up, up)) ** 2).sum(axis=1))
+    return float(np.sqrt(np.concatenate(parts).mean())) if parts else 0.0
 
 
 def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
@@ -699,8 +701,9 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
         slowness = max(stance.duration / _USUAL_DURATION, 1.0)
         yield from replace(LATE, value=LATE.value * slowness).above(gap, text)
-    near = (heel.time > stance.contact - 0.1) & (heel.time < stance.toe_off)
-    leaps = int(jumps[near].sum())
+    near = heel.frames(stance.contact - 0.1, stance.toe_off)
+    inside = (heel.time[near] > stance.contact - 0.1) & (heel.time[near] < stance.toe_off)
+    leaps = int(jumps[near][inside].sum())
     if leaps:
         text = f"the heel marker leaps off its path in {leaps} frames"
         yield Flag("marker jumps", text, True, leaps, 0.0, "1")

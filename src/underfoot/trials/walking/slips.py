@@ -11,7 +11,7 @@ from underfoot.core import InputError, unknown_name
 
 from ..recording.measurement import Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
-from ..recording.trial import Marker, Trial
+from ..recording.trial import Marker, Trial, once_a_record
 from .events import Stance
 from .walkway import Walkway, walkway_of
 
@@ -123,7 +123,7 @@ def heel_motion(
     return _motion(marker, tuple(up.tolist()), definition or SlipDefinition())
 
 
-@lru_cache(maxsize=4)  # several questions about a step ask for the motion of the same heel
+@once_a_record
 def _motion(marker: Marker, up: tuple[float, ...], definition: SlipDefinition) -> HeelMotion:
     if marker.times is not None:
         raise InputError("frames are not equally spaced", where="marker")
@@ -167,7 +167,7 @@ def contact_from_heel(
     return list(_landings(marker, tuple(up.tolist()), definition or SlipDefinition()))
 
 
-@lru_cache(maxsize=4)  # every step asks for those of the whole recording
+@once_a_record
 def _landings(
     marker: Marker, up: tuple[float, ...], definition: SlipDefinition
 ) -> tuple[float, ...]:

@@ -120,8 +120,8 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     begin, end = (stance.start + round(s * (stance.stop - stance.start)) for s in _LOADED)
     if len(markers) < 2 or stance.walking is None or markers[0].rate < 40.0:
         return {}
-    time = plate.time[begin:end]
-    near = (markers[0].time > time[0] - 0.3) & (markers[0].time < time[-1] + 0.3)
+    time = plate.start + np.arange(begin, end) / plate.rate
+    near = markers[0].frames(time[0] - 0.3, time[-1] + 0.3)
     paths = np.array([one.positions[near] for one in markers])
     seen = np.flatnonzero(np.isfinite(paths).all(axis=(1, 2)))
     whole = paths[seen]

@@ -24,6 +24,8 @@ from ..recording.plates import plate_named
 from ..recording.trial import Marker, Plate, Trial
 from .belts import Belt, belts_of
 
+_BESIDE = 15.0  # s of a marker's path before and after a step on a belt
+_AT_ONCE = 200_000  # samples of a long record that are looked through for standing
 _STILL = 0.5  # s of quiet standing that give body weight
 _STILL_SD, _STILL_SHEAR = 0.015, 0.03  # of the weight; walking varies by 20 % and pushes by 15 %
 
@@ -62,10 +64,21 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
     usable = [plate for plate in trial.plates if plate.usable]
     if not usable or len({(p.rate, len(p.force), p.start) for p in usable}) > 1:
         return None
-    force = np.nan_to_num(np.sum([plate.force for plate in usable], axis=0))
-    count = round(_STILL * usable[0].rate)
-    if count < 5 or len(force) < 2 * count:
+    count, samples = round(_STILL * usable[0].rate), len(usable[0].force)
+    if count < 5 or samples < 2 * count:
         return None
+    heaviest = 0.0
+    for begin in range(0, samples - count + 1, _AT_ONCE):
+        part = slice(begin, begin + _AT_ONCE + count - 1)
+        force = np.nan_to_num(np.sum([plate.force[part] for plate in usable], axis=0, dtype=float))
+        heaviest = max(heaviest, _heaviest_still(force, count, up, math.tan(tilt)))
+    if not heaviest:
+        return None
+    return BodyWeight(heaviest / math.cos(tilt), "standing in this record", standing=True)
+
+
+def _heaviest_still(force: np.ndarray, count: int, up: np.ndarray, slope: float) -> float:
+    """Largest mean normal force (N) of ``count`` samples (n, 3) of quiet standing; 0 without."""
     normal = force @ up
     across = force - np.outer(normal, up)
     values = np.column_stack((normal, normal**2, across))
@@ -73,12 +86,9 @@ def body_weight(trial: Trial, axes: Axes | None = None) -> BodyWeight | None:
     rolling = (total[count:] - total[:-count]) / count
     mean, squares = rolling[:, 0], rolling[:, 1]
     spread = np.sqrt(np.maximum(squares - mean**2, 0.0))
-    push = np.abs(np.linalg.norm(rolling[:, 2:], axis=1) - mean * math.tan(tilt))
+    push = np.abs(np.linalg.norm(rolling[:, 2:], axis=1) - mean * slope)
     still = (mean > 200.0) & (spread < _STILL_SD * mean) & (push < _STILL_SHEAR * mean)
-    if not still.any():
-        return None
-    newtons = float(mean[still].max()) / math.cos(tilt)
-    return BodyWeight(newtons, "standing in this record", standing=True)
+    return float(mean[still].max(initial=0.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,12 +125,22 @@ class Walkway:
         return np.zeros(3) if belt is None else belt.velocity(time)
 
     def marker(self, name: str, plate: str, time: float) -> Marker:
-        """Return a marker as seen from a plate's surface, in laboratory axes at ``time`` (s)."""
+        """Return a marker as seen from a plate's surface, in laboratory axes at ``time`` (s).
+
+        On a belt the 15 s before and after.
+        """
         marker = self.trial.marker(name)
         if plate not in self.belts:
             return marker
-        way = np.outer(marker.time - time, self.surface_velocity(plate, time))
-        return replace(marker, positions=marker.positions - way)
+        near = marker.frames(time - _BESIDE, time + _BESIDE)
+        moments, places = marker.time[near], marker.positions[near]
+        begin = float(moments[0]) if len(moments) else marker.start
+        return replace(
+            marker,
+            positions=places - np.outer(moments - time, self.surface_velocity(plate, time)),
+            start=begin,
+            times=None if marker.times is None else moments,
+        )
 
     def body_velocity(
         self, plate: str, begin: float, end: float, *, climb: bool = False
