@@ -48,7 +48,7 @@ neighbours:  ## what other programs do with the rows of docs/reference/other_pro
 	out/neighbours/bin/python benchmarks/neighbours/rows.py docs/reference/other_programs.md $(WRITE)
 
 test-slow: $(READY)  ## the slow tests
-	$(PYTEST) loadfile -n 3 -m $(SLOW) || $(BIN)/pytest $(AGAIN) -m $(SLOW)
+	$(PYTEST) loadfile $(ORDER) -n 3 -m $(SLOW) || $(BIN)/pytest $(AGAIN) -m $(SLOW)
 
 test-studies: $(READY)  ## tests of a minute and more: the corpus, treads that none can tell apart
 	$(PYTEST) loadfile -n 2 -m study

@@ -1,8 +1,10 @@
 """What several tests share."""
 
+import hashlib
 import os
 import shutil
 import signal
+import time
 
 import pytest
 from hypothesis import settings
@@ -13,6 +15,8 @@ CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "chrome")
 QUICK = "not slow and not study"
 LONG = 3  # s of CPU, above which a test should be marked slow
 CPU = pytest.StashKey[list[float]]()
+UNTIL = float(os.environ.get("SLOW_TESTS_UNTIL") or "inf")  # Unix time
+OUT_OF_TIME = "slow, and the time of this run is over (make test-slow runs all)"
 NO_BROWSER = "no Chromium on this machine (Debian, Ubuntu: apt-get install chromium)"
 
 # the same examples in every run, on every machine; make fuzz draws others
@@ -32,12 +36,22 @@ def no_page_has_a_positive_quantity_below_zero(tmp_path_factory):
     assert not found, found
 
 
+def pytest_collection_modifyitems(config, items):
+    """Where a run may leave slow tests out, each version of the code begins with other files."""
+    seed = os.environ.get("SLOW_TESTS_SEED", "")
+    if seed and config.option.markexpr.startswith("slow"):
+        items.sort(key=lambda item: hashlib.sha256(f"{seed} {item.path.name}".encode()).digest())
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
     """Tests in a browser fail in CI where there is none; on a desk they are skipped, and say so."""
     if item.get_closest_marker("browser") and not any(map(shutil.which, CHROMIUM)):
         # a desk without a browser can run all other tests; CI installs one (make chromium)
         (pytest.fail if os.environ.get("CI") == "true" else pytest.skip)(NO_BROWSER)
+    if item.get_closest_marker("slow") and time.time() > UNTIL:
+        # a machine at a third of the usual speed needs two hours for all of them
+        pytest.skip(OUT_OF_TIME)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -76,14 +90,11 @@ def pytest_terminal_summary(terminalreporter, config):
         for cpu, name in long:
             if cpu > LONG:
                 terminalreporter.line(f"{cpu:5.0f} s {name}")
-    skipped = [
-        report
-        for report in terminalreporter.stats.get("skipped", [])
-        if NO_BROWSER in str(report.longrepr)
-    ]
-    if skipped:
-        terminalreporter.section("BROWSER TESTS DID NOT RUN", sep="!", yellow=True, bold=True)
-        terminalreporter.line(f"{len(skipped)} tests of the pages: {NO_BROWSER}", yellow=True)
+    skipped = terminalreporter.stats.get("skipped", [])
+    for head, reason in (("BROWSER", NO_BROWSER), ("SLOW", OUT_OF_TIME)):
+        if count := sum(reason in str(report.longrepr) for report in skipped):
+            terminalreporter.section(f"{head} TESTS DID NOT RUN", sep="!", yellow=True, bold=True)
+            terminalreporter.line(f"{count} tests: {reason}", yellow=True)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -160,7 +160,8 @@ def old_names():
 def test_every_option_that_a_page_names_belongs_to_a_command():
     known = set().union(*map(generated.option_names, generated.command_tree().values()))
     known |= {"--version", "--units", *old_names()}
-    elsewhere = {"--mend", "--count", "--with", "--array", "--wrap", "--sizes"}  # of other programs
+    # of other programs
+    elsewhere = {"--mend", "--count", "--with", "--array", "--wrap", "--sizes", "--peers"}
     count = 0
     for page in PAGES:
         for span in spans(page):
