@@ -590,7 +590,8 @@ def main() -> None:
         dead = [one for one in of_room if one.killer is not None and one.killer not in false]
         if of_room:
             own = sum(one.own for one in dead)
-            print(f"{room or 'all':14} {len(of_room):6} {own:4} {len(dead):6}")
+            quick = "-" if given.own else len(dead)
+            print(f"{room or 'all':14} {len(of_room):6} {own:4} {quick:>6}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import pytest
 
 from underfoot.case import Case, CaseError, assumptions
+from underfoot.case.parts import unit_at
 from underfoot.case.text import Places, key_lines
 from underfoot.core import InputError, RangeError
 
@@ -255,3 +256,8 @@ def test_a_key_that_stands_in_another_section_is_named_with_its_path(tmp_path):
         Case.load(file)
     meant = [error.nearest for error in caught.value.errors]
     assert meant == ["floor.roughness.rq", "motion.normal_force"]
+
+
+def test_a_section_in_place_of_a_value_is_no_unknown_path():
+    with pytest.raises(InputError, match=r'"contaminant" is a section.*contaminant.viscosity'):
+        unit_at("contaminant")

@@ -193,6 +193,10 @@ def nearest_path(path: str) -> str | None:
 def unknown_path(path: str) -> InputError:
     """Return the error for a path that is none: the nearest one, or the package that can't load."""
     known, (*sections, _) = paths(), path.split(".")
+    if path in known:
+        return InputError(
+            f'"{path}" is a section, not a value', allowed=", ".join(_below(path, known))
+        )
     above = [".".join(sections[:depth]) for depth in range(len(sections), 0, -1)]
     beside = next((near for at in above if (near := _below(at, known))), known)
     error = unknown_name("path", path, beside)
