@@ -35,3 +35,15 @@ def test_zeros_that_are_off_move_neither_force_nor_centre_of_pressure(force, mom
     np.testing.assert_allclose(
         plate.centre_of_pressure[loaded], np.tile(PLACE, (600, 1)), atol=1e-9
     )
+
+
+@pytest.mark.parametrize("kind", ["f4", "f8"])
+def test_what_a_caller_gives_is_not_written_to(kind):
+    force, moment = np.ones((2000, 3), kind), np.ones((2000, 3), kind)
+    force[700:1700, 2] = 700.0
+    given = force.copy(), moment.copy()
+    plate = finished_plate("P1", force, moment=moment, rate=1000.0, up=UP, corners=CORNERS)
+    assert plate.force.dtype == float
+    assert plate.force[1200, 2] == pytest.approx(699.0)
+    np.testing.assert_array_equal(force, given[0])
+    np.testing.assert_array_equal(moment, given[1])

@@ -483,3 +483,9 @@ def test_an_object_is_checked_before_anything_is_computed(smooth):
     assert set(objects) == {"friction"}
     assert case_hash(given, objects) != given.hash
     assert case_hash(given, {}) == given.hash
+
+
+def test_code_of_no_module_has_a_hash():
+    made = type("Made", (), {"__module__": ""})
+    assert content_hash(made()) == content_hash(made())
+    assert content_hash(made()) != content_hash(type("Other", (), {"__module__": ""})())

@@ -297,7 +297,7 @@ def _text_hash(paths: Iterable[Path]) -> str:
 @cache
 def _distributions(top: str) -> Sequence[str]:
     """Return the packages that bring a module; that of its name alone, found at once, if any."""
-    if package_version(top) != UNKNOWN:
+    if top and package_version(top) != UNKNOWN:
         return (top,)
     return sorted(set(_all_distributions().get(top, ())))
 

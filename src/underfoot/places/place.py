@@ -158,7 +158,7 @@ class Place:
 def fluid_name(entry: str) -> str:
     """Return the title of a fluid of the catalogue as it stands within a sentence."""
     title = Catalogue.load().entry("fluid", entry).title
-    return title[:1].lower() + title[1:]
+    return title if title[1:2].isupper() else title[:1].lower() + title[1:]  # SAE stays SAE
 
 
 def read_place(path: Path) -> Place:

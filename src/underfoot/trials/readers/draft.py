@@ -209,7 +209,9 @@ class Draft:
         for i, one in enumerate(self.plates):  # the raw ones go as they are done
             if isinstance(one, _RawPlate):
                 out = plate_up(one.corners, np.array(up.axis))
-                self.plates[i] = finished_plate(force=one.force, up=out, **one.more)
+                self.plates[i] = finished_plate(
+                    force=one.force, up=out, in_place=self.file is not None, **one.more
+                )
         return Trial(
             self.name,
             self.channels,

@@ -143,16 +143,16 @@ def finished_plate(
     notes: tuple[str, ...] = (),
     flags: tuple[Flag, ...] = (),
     subtract_baseline: bool = True,
+    in_place: bool = False,
 ) -> Plate:
     """Return the plate with sign checked, baseline subtracted and centre of pressure worked out.
 
     ``force``, ``moment`` (about the centre of the surface) and ``centre_of_pressure`` have shape
-    (n, 3), lab axes; those in single precision stay so and are written to. ``up`` (3,) is the unit
-    vector out of the floor; ``raw`` (n, k), the channels before any arithmetic, are searched for
-    saturation.
+    (n, 3), lab axes; ``up`` (3,) is the unit vector out of the floor; ``raw`` (n, k), the channels
+    before any arithmetic, are searched for saturation. With ``in_place`` force and moment, those of
+    a long record, are written to and keep their precision.
     """
-    long = force.dtype == np.float32
-    force = force if long else np.array(force, dtype=float)
+    force = force if in_place else np.array(force, dtype=float)
     seen = list(flags)
     lost = ~np.isfinite(along(force, np.ones(3)))  # faster than all()
     if lost.any():
@@ -174,7 +174,7 @@ def finished_plate(
         if moment is not None:
             middle = moment[empty].mean(axis=0, dtype=float)
             less = middle.astype(moment.dtype)
-            moment = np.subtract(moment, less, out=moment if long else None)
+            moment = np.subtract(moment, less, out=moment if in_place else None)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
             seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
