@@ -167,6 +167,18 @@ def test_outline_distance_against_a_fine_polygon(side):
     assert sole.plan_area == pytest.approx(polygon.area, rel=1e-6)
 
 
+def test_outline_distance_is_the_same_in_blocks():
+    """Far-off arcs are left out of a block; none of them is the nearest of any of its points."""
+    from underfoot.shoe._kernels.arcs import BLOCK
+
+    sole = WholeSole(ShoeOutline(0.29, 0.068, 0.058, 0.1, "right"), 0.012)
+    x, y = np.meshgrid(np.linspace(-0.02, 0.31, 401), np.linspace(-0.07, 0.06, 301))
+    whole = sole.inward_distance(x, y)
+    assert x.size > 3 * BLOCK
+    rows = [sole.inward_distance(*row) for row in zip(x, y, strict=True)]
+    assert np.array_equal(whole, rows)
+
+
 def test_left_and_right_are_mirror_images():
     left, right = (
         WholeSole(ShoeOutline(0.29, 0.068, 0.058, 0.1, side), 0.012) for side in ("left", "right")

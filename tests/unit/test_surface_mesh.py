@@ -5,10 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from underfoot.report.surface_mesh import surface_mesh
+from underfoot import load
+from underfoot.compute.sole import drawn_map
+from underfoot.report.surface_mesh import _noded, surface_mesh
 from underfoot.shoe import Facet, Heel, Rocker, Tread, heel_map, heel_surface
 
 FINE = 0.3e-3
+WHOLE = {
+    "plan": "sole", "side": "right", "length": "290 mm", "width": "68 mm",
+    "waist_width": "58 mm", "ball_width": "102 mm", "edge_radius": "2 mm",
+}  # fmt: skip
 
 
 def heel(pattern, **tread):
@@ -121,3 +127,23 @@ def test_a_step_within_the_land_is_a_wall_and_mirrored_soles_have_mirrored_areas
             for m in (mesh, turned)]  # fmt: skip
     assert high[0] == pytest.approx(0.012 * 0.01, rel=0.03)
     assert high[1] == pytest.approx(high[0], rel=0.02)
+
+
+def test_lines_that_come_back_on_themselves_leave_few_triangles():
+    """A whole sole's rim cuts lugs to slivers, whose corners lie beyond their next place."""
+    case = load("examples/work_shoe_full_tread_glycerol.toml").replace(
+        {"shoe.heel": WHOLE, "shoe.tread.pattern": "hexagons"}
+    )
+    sole = drawn_map(case.replace("motion.shoe_angle", "0 deg"), 0.4e-3)
+    sole = sole.whole or sole
+    height = np.where(sole.inside, sole.clearance, np.nan)
+    mesh = surface_mesh(sole.x, sole.y, height, sole.land, sole.cut)
+    assert len(mesh.points) < 20_000
+    assert area_of(mesh, mesh.triangles) == pytest.approx(sole.inside.sum() * 0.4e-3**2, rel=2e-3)
+
+
+def test_lines_are_cut_where_they_meet():
+    places, lines = _noded(np.array([[[0, 0], [3, 0]], [[3, 0], [1, 0]], [[2, -1], [2, 1]]]) * 1.0)
+    parts = {tuple(sorted(map(tuple, places[line].tolist()))) for line in lines}
+    straight = [((x, 0.0), (x + 1.0, 0.0)) for x in (0.0, 1.0, 2.0)]
+    assert parts == {*straight, ((2.0, -1.0), (2.0, 0.0)), ((2.0, 0.0), (2.0, 1.0))}

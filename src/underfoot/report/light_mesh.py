@@ -13,8 +13,9 @@ from .sole_mesh import BODY
 from .surface_mesh import LATTICE, SurfaceMesh
 
 Floats = NDArray[np.float64]
-CELLS = 1_200_000
-"""Cells at most from which a surface is made."""
+CELLS, DESIGNED_CELLS = 1_200_000, 8_000_000
+"""Cells at most from which the surface of a file is made, and of a design: that of a whole sole
+has ``FINEST`` with them, and takes 1.3 GB."""
 SMALL, MOST, LOADED = 1e-3, 24_000, 1e-3
 """m of a triangle's longest side where a pressure is; corners at most, above which it is doubled;
 share of a pressure's peak from which it counts."""
@@ -77,10 +78,10 @@ def light_mesh(
     )
 
 
-def spacing_for(sole: DrawnSole) -> float:
+def spacing_for(sole: DrawnSole, *, designed: bool = True) -> float:
     """Return the side (m) of the cells from which the surface of a sole is made."""
     plan = np.ptp(sole.x) * np.ptp(sole.y)
-    return max(FINEST, float(np.sqrt(plan / CELLS)))
+    return max(FINEST, float(np.sqrt(plan / (DESIGNED_CELLS if designed else CELLS))))
 
 
 def _refined(

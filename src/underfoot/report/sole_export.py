@@ -99,11 +99,12 @@ class _Scene:
         if case is None:
             made = surface_mesh(sole.x, sole.y, sole.height, sole.land)
             return made, (TOLERANCE + 0.5) * sole.spacing
-        side = spacing_for(sole)
+        outsole = case.shoe.outsole
+        side = spacing_for(sole, designed=outsole is None)
         made = designed_surface(case, side)
-        if case.shoe.outsole is None:
-            return made, DRAWN
-        return made, (TOLERANCE + 0.5) * max(side, case.shoe.outsole.map_spacing)
+        if outsole is None:
+            return made, max(DRAWN, TOLERANCE * side)
+        return made, (TOLERANCE + 0.5) * max(side, outsole.map_spacing)
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""

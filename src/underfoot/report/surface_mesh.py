@@ -23,15 +23,17 @@ EDGE, CORNER, AWAY, WINDOW = 0.02e-3, 0.5, 2, 4
 more (rad) meet in a corner; none of its nearest places is trusted, and so many on either side are
 asked for their direction."""
 DRAWN = 0.05e-3
-"""m within which lines are of drawn edges, corners too, on cells of 0.2 mm or less."""
+"""m within which lines are of drawn edges, corners too, on cells of 0.2 mm or less; ``TOLERANCE``
+where the rim leaves a sliver of a lug, too short to tell its sides."""
 LATTICE, NEAR = 4e-3, 1.2e-3
 """m between the points on smooth parts, and how near to an edge none of them is set."""
 ERROR, REFINED, APART = 0.05e-3, 2, 1.5e-3
 """m by which a triangle may miss its cells, how often points are set for that, and how close."""
 CELL_ERROR = 0.15
 """The same in cells, where these are coarse."""
-ROUNDS = 10
-"""Times that lines are halved until each is an edge of triangles."""
+NODED, ROUNDS = 1e-3, 10
+"""Cells by which places are told apart; times that lines are halved until each is an edge of
+triangles."""
 SURE = 0.8
 """Share of an area parted off by lines that one level must have to be all of that level."""
 
@@ -214,8 +216,22 @@ def _lines(grid: _Grid, cut: CutCells | None) -> tuple[Floats, Indices]:
         else _straightened(places, chain)
         for chain in _chains(nodes.reshape(-1, 2), len(names))
     ]
-    used, again = np.unique(np.concatenate(lines), return_inverse=True)
-    return places[used], again.reshape(-1, 2)
+    return _noded(places[np.concatenate(lines)])
+
+
+def _noded(lines: Floats) -> tuple[Floats, Indices]:
+    """Return the places (n, 2) and lines (m, 2) of lines (k, 2, 2) cut where they meet.
+
+    A corner that moved may lie beyond the place after it: its line comes back on itself, and no
+    triangles have both as edges.
+    """
+    import shapely
+
+    parts = shapely.get_parts(shapely.union_all(shapely.linestrings(lines), grid_size=NODED))
+    at, number = shapely.get_coordinates(parts, return_index=True)
+    ahead = np.flatnonzero(number[1:] == number[:-1])
+    places, again = np.unique(at, axis=0, return_inverse=True)
+    return places, again.ravel()[np.stack([ahead, ahead + 1], axis=1)]
 
 
 def _chains(links: Indices, count: int) -> list[list[int]]:
