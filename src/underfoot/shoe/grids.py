@@ -19,7 +19,7 @@ from .tread import Sipes
 
 HALF, NARROW = 50.0, 10.0
 """Percentiles of the local width by area: what is refused, and what is listed."""
-_BISECTIONS = 48
+_EXACT = 1e-15  # m
 _FAR = 1.0
 """m: the distance to a channel where there is none."""
 
@@ -157,14 +157,16 @@ def _few_cells(quantity: str, cells: float) -> list[Breach]:
 def _solved(
     along: Callable[[Array, Array], Array], target: Array, y: Array, low: float, high: float
 ) -> Array:
-    """Return the x of the sole whose place on the floor is ``target``, by bisection."""
-    below, above = np.full_like(target, low), np.full_like(target, high)
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (below + above)
-        short = along(middle, y) < target
-        below = np.where(short, middle, below)
-        above = np.where(short, above, middle)
-    return 0.5 * (below + above)
+    """Return the x of the sole whose place on the floor is ``target``, between two x."""
+    from scipy.optimize.elementwise import find_root
+
+    found = find_root(
+        lambda x, place, across: along(x, across) - place,
+        (np.full_like(target, low), np.full_like(target, high)),
+        args=(target, y),
+        tolerances={"xatol": _EXACT, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
+    )
+    return found.x
 
 
 def cut_heel(
