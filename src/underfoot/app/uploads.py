@@ -9,7 +9,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from underfoot.core import InputError
-from underfoot.core.files import checksum
+from underfoot.core.files import checksum, named_for
 
 from .gate import too_large
 from .project import Project
@@ -91,6 +91,8 @@ async def received(project: Project, place: str, stream: AsyncIterator[bytes]) -
             first, newest = revision(present[-1])
             path = first.with_name(f"{first.stem}, revision {newest + 1}{first.suffix}")
         part.replace(path)
+    except OSError as error:
+        raise named_for(error, path) from error
     finally:
         part.unlink(missing_ok=True)
     return path

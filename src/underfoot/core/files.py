@@ -76,8 +76,17 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         yield part
         part.replace(path)
+    except OSError as error:
+        raise named_for(error, path) from error
     finally:
         part.unlink(missing_ok=True)
+
+
+def named_for(error: OSError, path: Path) -> OSError:
+    """Return an error of a part of a file with the name of the whole: people know no other."""
+    named = type(error)(error.errno, error.strerror)
+    named.filename = str(path)
+    return named
 
 
 def _guard(staging: Path, path: Path) -> subprocess.Popen[bytes] | None:
