@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from uuid import uuid4
@@ -94,5 +95,6 @@ async def received(project: Project, place: str, stream: AsyncIterator[bytes]) -
     except OSError as error:
         raise named_for(error, path) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # a disk that can only be read refuses even what is not there
+            part.unlink(missing_ok=True)
     return path

@@ -7,7 +7,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -79,7 +79,8 @@ def whole_file(path: Path) -> Iterator[Path]:
     except OSError as error:
         raise named_for(error, path) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # a disk that can only be read refuses even what is not there
+            part.unlink(missing_ok=True)
 
 
 def named_for(error: OSError, path: Path) -> OSError:
