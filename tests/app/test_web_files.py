@@ -71,7 +71,7 @@ def test_a_full_disk_leaves_no_part_of_a_file(tmp_path, monkeypatch):
         return Full(stream) if mode == "wb" else stream
 
     monkeypatch.setattr(Path, "open", limited)
-    with pytest.raises(OSError, match="No space left"):
+    with pytest.raises(OSError, match=r"No space left.*soles.big\.stl"):
         asyncio.run(received(project, "soles/big.stl", pieces(bytes(9000))))
     assert list((project.folder / "soles").iterdir()) == []
     asyncio.run(received(project, "soles/small.stl", pieces(bytes(3000))))
@@ -139,6 +139,71 @@ def test_a_person_on_a_full_disk_reads_so_and_goes_on_with_room(small_disk, tmp_
         page.get_by_role("button", name="Compute friction").click()
         page.get_by_text("report.html could not be written").wait_for(state="detached")
         page.wait_for_selector(".big")
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_project_that_can_only_be_read_says_so_and_goes_on(small_disk, tmp_path):
+    project = project_of(small_disk / "project", "heel")
+    sole = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
+    before = project.path("heel").read_bytes()
+
+    def mount(kind):
+        again = ["mount", "-o", f"remount,{kind}", str(small_disk)]
+        subprocess.run(again, check=True, capture_output=True)
+
+    mount("ro")
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.set_default_timeout(30_000)
+        said = page.locator(".problem", has_text="the disk is read-only")
+        page.goto(app.base + "design?variant=heel")
+        drawn(page)
+        page.locator("input[name='shoe.tread.depth']").press("ArrowRight")
+        page.locator("[data-part=problem]", has_text="the disk is read-only").wait_for()
+        page.locator(SOLES).set_input_files(sole)
+        page.locator(".drop-state", has_text="sole.stl can't be written").wait_for()
+        page.get_by_role("tab", name="Spill").click()
+        field = page.get_by_label("Viscosity", exact=True)
+        field.fill("55")
+        field.press("Enter")
+        said.first.wait_for()
+        assert field.input_value() == "55"
+        page.get_by_role("button", name="More for this variant").click()
+        page.locator(".q-menu .q-item", has_text="Copy").click()
+        said.nth(1).wait_for()
+        page.get_by_role("button", name="Compute friction").click()
+        page.get_by_text("nothing can be written").wait_for()
+        page.get_by_text("has not been computed yet").wait_for()
+        assert project.path("heel").read_bytes() == before
+        mount("rw")
+        page.get_by_role("button", name="Compute friction").click()
+        page.wait_for_selector(".big")
+        assert app.process.poll() is None
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_sole_that_vanishes_while_it_is_used_is_told_and_comes_back(tmp_path):
+    project = project_of(tmp_path / "project", "heel")
+    sole = write_stl(tmp_path / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
+    with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
+        page.goto(app.base + "design?variant=heel")
+        drawn(page)
+        page.locator(SOLES).set_input_files(sole)
+        page.get_by_role("button", name="Use this sole").click()
+        page.get_by_text("The sole comes from sole.stl").wait_for()
+        kept = project.folder / "soles" / "sole.stl"
+        page.get_by_role("button", name="Compute friction").click()
+        page.get_by_role("button", name="Stop").first.wait_for()
+        kept.rename(tmp_path / "away.stl")  # in the run or before it: said, or the run is done
+        page.get_by_text("can't be read").or_(page.locator(".problem")).first.wait_for()
+        page.goto(app.base + "design?variant=heel")
+        page.get_by_text("This variant can't be read").wait_for()
+        (tmp_path / "away.stl").rename(kept)
+        page.goto(app.base + "design?variant=heel")
+        page.get_by_text("The sole comes from sole.stl").wait_for()
+        drawn(page)
+        assert app.process.poll() is None
 
 
 @pytest.mark.browser

@@ -94,6 +94,22 @@ def test_channels_are_widened_by_a_number_typed_at_a_lug_and_undone(app, page):
         field.fill("4")
         field.press("Enter")
         until(lambda: value(app, "shoe.tread.channel_width") == pytest.approx(4e-3))
+    for typed in ("", "abc", "4 N", "1,234", "4 5", "-4", "1e400", "NaN", "40"):
+        field.fill(typed)
+        field.press("Enter")
+        page.locator("[name='lug shoe.tread.channel_width'][aria-invalid=true]").wait_for()
+        assert value(app, "shoe.tread.channel_width") == pytest.approx(4e-3), typed
+        field.fill("4")
+        field.press("Enter")
+        page.locator("[name='lug shoe.tread.channel_width'][aria-invalid=false]").wait_for()
+    for typed, length in (("5/32 in", 3.96875e-3), ("4,15", 4.15e-3), ("0.4123 cm", 4.123e-3)):
+        field.fill(typed)
+        field.press("Enter")  # as it is typed, not at the slider's next step
+        until(lambda to=length: value(app, "shoe.tread.channel_width") == pytest.approx(to, 1e-9))
+    for _ in range(3):
+        before_undo = value(app, "shoe.tread.channel_width")
+        page.locator("[data-step=undo]").click()
+        until(lambda old=before_undo: value(app, "shoe.tread.channel_width") != old)
     with Task(page, "take it back") as task:
         task.click(page.locator("[data-step=undo]"))
         until(lambda: value(app, "shoe.tread.channel_width") == before)

@@ -48,7 +48,19 @@ def test_ranges_have_one_figure():
 def test_a_pair_is_read_from_text():
     assert worn_pair("1.2 mm after 300 km") == WornPair(pytest.approx(1.2e-3), pytest.approx(3e5))
     assert worn_pair(None) is None
-    for text in ("1.2 mm", "300 km after 1 mm", "0 mm after 300 km", "old"):
+    for text in ("1,2 mm in 300km", "1 1/5 mm after 300 km"):
+        assert worn_pair(text) == WornPair(pytest.approx(1.2e-3), pytest.approx(3e5))
+    assert worn_pair("0.05 in after 1 year").months == pytest.approx(12)
+    for text in (
+        "1.2 mm",
+        "300 km after 1 mm",
+        "0 mm after 300 km",
+        "old",
+        "1 mm after 1,200 km",
+        "NaN mm after 5 km",
+        "1 mm after 5",
+        "1 mm after 5 kg",
+    ):
         with pytest.raises(InputError, match="worn-pair"):
             worn_pair(text)
 

@@ -106,7 +106,7 @@ def table(
                         line.props(f"data-{shown['shows']}={place} tabindex=0")
                     for number, cell in enumerate(row):
                         with ui.element("td" if number else "th") as made_cell:
-                            ui.label(cell.strip())
+                            ui.label(cell.strip().replace(" %", "\u00a0%"))  # no % alone on a line
                         if not number:
                             made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
                         if action and place in rows and number == len(row) - 1:

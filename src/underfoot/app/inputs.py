@@ -17,7 +17,7 @@ from underfoot.case import Case, unit_at
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.typed import split_quantity
-from underfoot.core.units import to_si
+from underfoot.core.units import si_unit, to_si
 
 from .session import Session
 
@@ -82,7 +82,7 @@ class Input:
 
     def written(self, value: float) -> str | float:
         """Return where a slider stands as a case takes it."""
-        return f"{value:.6g} {self.unit}" if self.unit else float(f"{value:.6g}")
+        return f"{value:.9g} {self.unit}" if self.unit else float(f"{value:.9g}")
 
 
 def changes(inputs: Sequence[Input], values: Mapping[str, Any]) -> dict[str, Any]:
@@ -164,6 +164,16 @@ def _row(session: Session, each: Input, value: float, origin: str) -> str:
         f'max="{high:.6g}" step="{step:g}" value="{shown:.6g}" {marks}>'
         f'<output for="{key}"></output>'
     )
+
+
+def read_in_unit(typed: str, unit: str, *, comma: bool) -> float:
+    """Return the number in a unit that was typed with that unit, with another one or with none.
+
+    Raises:
+        InputError: No such quantity, or a number that can be two.
+    """
+    si = si_unit(f"1 {unit}", where="")
+    return to_si(typed, si, where="", usual=unit, comma=comma) / to_si(f"1 {unit}", si, where="")
 
 
 def read_field(field: ui.input, read: Callable[[str], Read]) -> Read:

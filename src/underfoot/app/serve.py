@@ -20,10 +20,10 @@ from platformdirs import user_state_path
 
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
-from underfoot.core.units import si_unit, to_si
 
 from .frame import framed, open_session
 from .gate import UPLOADS, Gate, own_name
+from .inputs import read_in_unit
 from .jobs import Jobs
 from .pages import PAGES
 from .project import Project
@@ -137,11 +137,9 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
     async def quantity(request: Request) -> Any:
         """Read what was typed into a field of a script: ``text``, ``unit``, ``comma``."""
         asked = await request.json()
-        unit = str(asked["unit"])
         try:
-            si = si_unit(f"1 {unit}", where="")
-            value = to_si(str(asked["text"]), si, where="", usual=unit, comma=bool(asked["comma"]))
-            return {"value": value / to_si(f"1 {unit}", si, where="")}
+            text, unit = str(asked["text"]), str(asked["unit"])
+            return {"value": read_in_unit(text, unit, comma=bool(asked["comma"]))}
         except InputError as error:
             return {"problem": str(error)}
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from uuid import uuid4
 
 from underfoot.core import InputError
-from underfoot.core.files import checksum
+from underfoot.core.files import checksum, named_for
 
 from .gate import too_large
 from .project import Project
@@ -91,6 +92,9 @@ async def received(project: Project, place: str, stream: AsyncIterator[bytes]) -
             first, newest = revision(present[-1])
             path = first.with_name(f"{first.stem}, revision {newest + 1}{first.suffix}")
         part.replace(path)
+    except OSError as error:
+        raise named_for(error, path) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # a disk that can only be read refuses even what is not there
+            part.unlink(missing_ok=True)
     return path

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from underfoot.core import InputError, RangeError, display
+from underfoot.core import InputError, RangeError, display, to_si
 
 from .quantity import Angle, Depth, Force, Length, Quantity, Rounding, default, optional
 from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
@@ -27,9 +27,7 @@ DIN_FORCE, DIN_WAY = 10.0, 40.0
 """N and m: load and way of the abrasion test, ISO 4649 (DIN 53516)."""
 USUAL_WEAR_RATE = 3.7500000000000005e-10
 """m^2/N: the float that "0.375 mm^3/(N*m)" becomes, one rounding above 3.75e-10."""
-_ABRASION = re.compile(
-    r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d+(?:\.\d+)?)\s*mm(?:\^?3|³)\s*"
-)
+_ABRASION = re.compile(r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d.*)")
 WearRate = Annotated[float, Quantity("m^2/N", 1e-20, 1e-6)]
 
 
@@ -164,9 +162,9 @@ class ArchardWear(Wear):
             if match is None:
                 example = 'the volume lost, as "DIN 150 mm3"'
                 raise InputError(f"{leaf.given!r} is no abrasion", allowed=example)
+            volume = 1e9 * to_si(match["volume"], "m^3", where="")
         except InputError as error:
             raise refused_at(cls, ("abrasion",), error, leaf.given) from error
-        volume = float(match["volume"])
         rate = f"{volume / (DIN_FORCE * DIN_WAY):.6g} mm^3/(N*m)"
         source = f"{volume:g} mm^3 lost on the abrasive sheet of ISO 4649; floors are far gentler"
         leaf = replace(leaf, given=rate, source=source)

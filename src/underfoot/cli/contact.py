@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Shared, optional, sharing
+from .options import Shared, number, optional, sharing
 
 if TYPE_CHECKING:
     from underfoot.rough_contact import ContactTable
@@ -34,7 +34,8 @@ def contact(
         str | None, typer.Option("--modulus", help='Young\'s modulus, as "5 MPa": elastic.')
     ] = None,
     shore: Annotated[
-        float | None, typer.Option("--shore", help="Shore A hardness: elastic, by Gent.")
+        float | None,
+        typer.Option("--shore", parser=number, help="Shore A hardness: elastic, by Gent."),
     ] = None,
     spectrum: Annotated[
         Path | None, typer.Option("--spectrum", help="Prony series or dynamic sweep: viscoelastic.")
@@ -42,11 +43,15 @@ def contact(
     material: Annotated[
         str | None, typer.Option("--material", help="Measured material: neolite or rubber.")
     ] = None,
-    poisson: Annotated[float, typer.Option("--poisson", help="Poisson's ratio.")] = 0.5,
+    poisson: Annotated[
+        float, typer.Option("--poisson", parser=number, help="Poisson's ratio.")
+    ] = 0.5,
     rms: Annotated[
         str | None, typer.Option("--rms", help='Random surface of this rms height, as "5 um".')
     ] = None,
-    hurst: Annotated[float, typer.Option("--hurst", help="Its Hurst exponent.")] = 0.8,
+    hurst: Annotated[
+        float, typer.Option("--hurst", parser=number, help="Its Hurst exponent.")
+    ] = 0.8,
     longest: Annotated[
         str | None, typer.Option("--longest", help="Its longest wave; 0.5 mm by default.")
     ] = None,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from .options import Shared, optional, sharing
+from .options import Shared, number, optional, sharing
 
 
 @sharing(without=("quick", "set_", "processes", "catalogue", "out"))
@@ -35,7 +35,9 @@ def material(
     shear: Annotated[
         bool | None, typer.Option("--shear/--young", help="Moduli are of shear, else as headed.")
     ] = None,
-    poisson: Annotated[float, typer.Option("--poisson", help="Poisson's ratio.")] = 0.49,
+    poisson: Annotated[
+        float, typer.Option("--poisson", parser=number, help="Poisson's ratio.")
+    ] = 0.49,
     polymer: Annotated[str | None, optional("TPU, PU, SBR, NBR, ...")] = None,
     unit: Annotated[str | None, optional("Of moduli, where a file has none: MPa.")] = None,
     at_once: Annotated[

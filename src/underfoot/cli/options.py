@@ -93,6 +93,20 @@ On = Annotated[
 ]
 
 
+def number(text: str | float) -> float:
+    """Return the number of an option, read as ``underfoot.core.typed`` says: "0,5", "50 %".
+
+    Raises:
+        typer.BadParameter: No number, or one that can be two.
+    """
+    from underfoot.core import InputError, to_si
+
+    try:
+        return to_si(text, "1", where="")
+    except InputError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
 def optional(text: str, *names: str) -> Any:
     """Return an option with its help text, whose default is not shown."""
     return typer.Option(*names, help=text, show_default=False)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .options import Shared, optional, sharing
+from .options import Shared, number, optional, sharing
 
 
 @sharing(quick=True, without=("set_", "processes", "catalogue"))
@@ -71,7 +71,9 @@ def calibrate_machine(
     case: Annotated[Path, typer.Argument(help="Case whose floor was read (TOML).")],
     out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).")],
     name: Annotated[str, optional("Machine that read it.", "--machine")] = "pendulum-96",
-    reading: Annotated[float, typer.Option("--reading", help="What it read, in its unit.")] = 0.0,
+    reading: Annotated[
+        float, typer.Option("--reading", parser=number, help="What it read, in its unit.")
+    ] = 0.0,
     kind: Annotated[str, typer.Option("--kind", help="value, lower or upper.")] = "value",
     fluid: Annotated[str, optional("By default that of the machine's standard.")] = "",
 ) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from .guard import say
-from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optional
+from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, number, optional
 
 _REASONS = 3  # printed for a file; all stand in the report
 
@@ -45,7 +45,11 @@ def analyse(
     plate_frame: PlateFrame = None,
     equivalence: Annotated[
         float | None,
-        optional("Test pairs for equivalence within this difference of RCOF or COF, as 0.02."),
+        typer.Option(
+            parser=number,
+            help="Test pairs for equivalence within this difference of RCOF or COF, as 0.02.",
+            show_default=False,
+        ),
     ] = None,
     details: Annotated[int, typer.Option(help="Number of single trials drawn in detail.")] = 4,
     processes: Annotated[
@@ -122,13 +126,17 @@ def persons(
         str, typer.Argument(help="paired, groups, repeated, slips or slips_equivalent.")
     ],
     difference: Annotated[
-        float, typer.Option(help="Difference of means to be found; margin (slips_equivalent).")
+        float,
+        typer.Option(
+            parser=number, help="Difference of means to be found; margin (slips_equivalent)."
+        ),
     ] = 0.0,
     sd: Annotated[
         float,
         typer.Option(
+            parser=number,
             help="SD of differences within persons (paired), of a person's mean in one condition "
-            "(repeated), between persons (groups)."
+            "(repeated), between persons (groups).",
         ),
     ] = 1.0,
     shares: Annotated[tuple[float, float], typer.Option(help="Shares of slips in both groups.")] = (
@@ -136,7 +144,7 @@ def persons(
         0.0,
     ),
     conditions: Annotated[int, typer.Option(help="Number of conditions (repeated).")] = 2,
-    power: Annotated[float, typer.Option(help="Chance to find it.")] = 0.8,
+    power: Annotated[float, typer.Option(parser=number, help="Chance to find it.")] = 0.8,
 ) -> None:
     """Print how many persons a study needs (in each group, for groups and slips)."""
     from underfoot.trials import statistics

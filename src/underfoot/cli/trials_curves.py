@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from .guard import say
-from .options import AsJson
+from .options import AsJson, number
 
 
 def curves(
@@ -20,7 +20,9 @@ def curves(
     component: Annotated[
         int, typer.Option(help="Of curves of vectors: 1, 2, ...", show_default=False)
     ] = 0,
-    alpha: Annotated[float, typer.Option(help="Chance of a false alarm on a whole curve.")] = 0.05,
+    alpha: Annotated[
+        float, typer.Option(parser=number, help="Chance of a false alarm on a whole curve.")
+    ] = 0.05,
     json: AsJson = False,
 ) -> None:
     """Test curves of two conditions as a whole (SPM, paired t): a row a person, a column a node.

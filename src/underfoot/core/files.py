@@ -7,7 +7,7 @@ import sys
 import tempfile
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -76,8 +76,18 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         yield part
         part.replace(path)
+    except OSError as error:
+        raise named_for(error, path) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # a disk that can only be read refuses even what is not there
+            part.unlink(missing_ok=True)
+
+
+def named_for(error: OSError, path: Path) -> OSError:
+    """Return an error of a part of a file with the name of the whole: people know no other."""
+    named = type(error)(error.errno, error.strerror)
+    named.filename = str(path)
+    return named
 
 
 def _guard(staging: Path, path: Path) -> subprocess.Popen[bytes] | None:

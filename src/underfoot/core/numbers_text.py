@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from .errors import DataError
 from .text import MISSING
+from .typed import plain_signs
 
-BLANKS = " \u00a0\u2007\u2009\u202f"
-"""Blanks that stand between thousands; so do apostrophes."""
-_GAP = re.compile(rf"(?<=\d)['’{BLANKS}](?=\d{{3}}(?!\d))")
-_NUMBER = re.compile(r"([+\-−]?)([\d.,]*\d[\d.,]*)([eEdD][+\-−]?\d+)?")
+_GAP = re.compile(r"(?<=\d)['’ ](?=\d{3}(?!\d))")
+_NO_GROUP = re.compile(r"[+-]?0+['’ ]")
+"""Begin of what has no thousands: "0 500" is no number."""
+_NUMBER = re.compile(r"([+-]?)([\d.,]*\d[\d.,]*)([eEdD][+-]?\d+)?")
 _PLAIN = re.compile(r"\d+|\d*[.,]\d+|\d+[.,]")
 _GROUPED = {mark: re.compile(rf"[1-9]\d{{0,2}}([{mark}]\d{{3}})+") for mark in ".,"}
 _OTHER = {",": ".", ".": ","}
@@ -20,6 +21,11 @@ _WITH_UNIT = re.compile(
 )
 FEWEST = 3
 """Numbers with three digits behind a point that make it one of thousands beside whole numbers."""
+
+
+def _closed(cell: str) -> str:
+    """Return a cell without the gaps between thousands."""
+    return cell if _NO_GROUP.match(cell) else _GAP.sub("", cell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +42,7 @@ class NumberForm:
         '1075.5'
         """
         cell = cell.strip()
-        found = _NUMBER.fullmatch(_GAP.sub("", cell))
+        found = _NUMBER.fullmatch(_closed(plain_signs(cell)))
         if found is None:
             return cell
         sign, body, exponent = found.group(1), found.group(2), found.group(3) or ""
@@ -47,7 +53,7 @@ class NumberForm:
         if mark in whole or not (rest.isdigit() or not rest):
             return cell
         text = f"{sign}{whole}{'.' if self.decimal in body else ''}{rest}{exponent}"
-        return text.replace("−", "-").replace("d", "e").replace("D", "e")
+        return text.replace("d", "e").replace("D", "e")
 
     def number(self, cell: str) -> float:
         """Return the number in a cell; a ValueError where it holds none."""
@@ -71,11 +77,11 @@ class _Evidence:
     def of(cls, cells: Iterable[str]) -> "_Evidence":
         found = cls(set(), set(), {})
         for cell in cells:
-            found._add(cell.strip())
+            found._add(plain_signs(cell).strip())
         return found
 
     def _add(self, cell: str) -> None:
-        closed = _GAP.sub("", cell)
+        closed = _closed(cell)
         match = _NUMBER.fullmatch(closed)
         if match is None:
             return

@@ -10,8 +10,9 @@ import unicodedata
 
 from .errors import InputError
 
-_SPACES = dict.fromkeys(map(ord, "\u00a0\u2007\u2009\u202f\t"), " ")
-_MINUS = dict.fromkeys(map(ord, "\u2212\u2012\u2013\ufe63\uff0d"), "-")
+MINUS = "-\u2212\u2012\u2013\u2010\u2011\ufe63\uff0d"
+"""Signs that people write for a minus: those of keyboards, of typesetting, of spreadsheets."""
+_MINUS = dict.fromkeys(map(ord, MINUS), "-")
 _FRACTION = re.compile(
     r"([+-]?)\s*(?:(\d+)[ -])?(\d+)\s*[/\u2044]\s*(\d+)(?![\d.,/])(.*)", re.DOTALL
 )
@@ -22,6 +23,19 @@ _DIGITS = re.compile(
 )
 
 
+def plain_signs(text: str) -> str:
+    """Return a text with one kind of space and of minus, without signs that nobody sees.
+
+    >>> plain_signs("\u22121\u2009234\u200b mm")
+    '-1 234 mm'
+    """
+    if text.isascii():
+        return text.replace("\t", " ")
+    signs = {"Zs": " ", "Cf": ""}
+    plain = "".join(signs.get(unicodedata.category(sign), sign) for sign in text)
+    return plain.translate(_MINUS).replace("\t", " ")
+
+
 def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | None:
     """Return number and unit of a text such as "41,5 cP" or "3/8 in"; None where it has no number.
 
@@ -30,12 +44,12 @@ def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | Non
         comma: The writer's decimal sign is the comma: "1,234" is then 1.234, and "1.234" is asked.
 
     Raises:
-        InputError: It can be read as two numbers, with both.
+        InputError: It can be read as two numbers, with both; it is not 0 and too small to be held.
 
     >>> split_quantity("1.234,5 N"), split_quantity("1 1/2 in"), split_quantity("\u22123 mm")
     ((1234.5, 'N'), (1.5, 'in'), (-3.0, 'mm'))
     """
-    text = _vulgar(text.translate(_SPACES).translate(_MINUS)).strip()
+    text = _vulgar(plain_signs(text)).strip()
     if (match := _FRACTION.fullmatch(text)) and int(match[4]):
         sign, whole, above, below, unit = match.groups()
         size = int(whole or 0) + int(above) / int(below)
@@ -47,7 +61,10 @@ def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | Non
     plain = _decimal(digits, text, "," if comma else ".")
     if plain is None:
         return None
-    return float(f"{sign}{plain}e{exponent or 0}"), unit.strip()
+    number = float(f"{sign}{plain}e{exponent or 0}")
+    if number == 0.0 and re.search("[1-9]", plain):
+        raise InputError(f"{text} is too small to be told from 0", allowed="0, or a larger number")
+    return number, unit.strip()
 
 
 def _vulgar(text: str) -> str:
@@ -87,4 +104,4 @@ def _decimal(digits: str, text: str, usual: str) -> str | None:
 
 def _grouped(digits: str, sign: str) -> bool:
     """Return whether digits stand in thousands."""
-    return re.fullmatch(rf"\d{{1,3}}(?:{re.escape(sign)}\d{{3}})+", digits) is not None
+    return re.fullmatch(rf"[1-9]\d{{0,2}}(?:{re.escape(sign)}\d{{3}})+", digits) is not None

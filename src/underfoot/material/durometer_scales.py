@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from underfoot.core import InputError
+from underfoot.core.typed import split_quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +46,7 @@ _NAMES = {
     "d": SCALES[1], "shd": SCALES[1], "shored": SCALES[1],
     "c": SCALES[2], "askerc": SCALES[2], "asker": SCALES[2], "jisc": SCALES[2],
 }  # fmt: skip
-_READING = re.compile(
-    r"\s*(?P<before>[a-z ]*?)\s*(?P<number>\d+(?:\.\d+)?)\s*(?P<after>[a-z ]*)\s*"
-)
+_WORDS = re.compile(r"[a-z]+(?:[ -]+[a-z]+)*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,21 +75,26 @@ def durometer_reading(text: str, *, where: str = "") -> DurometerReading:
     """Return the reading in a text such as "62 A", "55 Asker C" or "Shore D 40".
 
     Raises:
-        InputError: No number, a scale that is not known, or a reading beyond those that the
-            scale's conversion was given for.
+        InputError: No number or one that can be two, a scale that is not known, or a reading beyond
+            those that the scale's conversion was given for.
     """
-    found = _READING.fullmatch(text.lower().strip().replace("°", " ").replace("-", " "))
-    words = "" if found is None else (found["before"] + found["after"]).replace(" ", "")
-    scale = None if found is None else _NAMES.get(words)
+    plain = text.lower().replace("°", " ").strip()
+    first = _WORDS.match(plain)
+    before = "" if first is None else first[0]
+    try:
+        reading = split_quantity(plain.removeprefix(before))
+    except InputError as error:
+        error.where = where
+        raise
+    value, after = reading or (0.0, "")
+    scale = _NAMES.get(re.sub("[ -]", "", before + after))
     names = ", ".join(f'"62 {each.name}"' for each in SCALES)
-    if found is None or scale is None:
+    if reading is None or scale is None:
         raise InputError(
             f'"{text}" is no hardness on a known scale',
             where=where,
             allowed=f'62, "62 A", {names}',
-            nearest=text.replace(",", ".") if "," in text else None,
         )
-    value = float(found["number"])
     if not scale.low <= value <= scale.high:
         raise InputError(
             f"{value:g} {scale.name} is outside the readings that convert to Shore A",

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from underfoot.core import InputError, to_si
+from underfoot.core.units import metres, si_unit
 
 LANDING_LOAD = 180.0
 """N on a shoe that slides at heel contact (Iraqi et al. 2018, doi 10.1016/j.jbiomech.2018.04.018,
@@ -28,9 +29,9 @@ SOURCES = (
     "2018), s 2 to 13 mm (McGorry et al. 2008), steps of 0.5 to 0.75 m (30 to 43 % of 1.7 m), "
     "4,000 to 18,000 steps a day, every day in these shoes (Tudor-Locke et al. 2011)"
 )
-_PAIR = re.compile(
-    r"\s*(?P<lost>\S+\s*\S*m)\s+(?:after|in)\s+(?P<walked>\S+\s*(?:km|months?|weeks?))\s*"
-)
+THICKEST = 0.1
+"""m: no sole loses as much."""
+_PAIR = re.compile(r"(?P<lost>.+?)\s+(?:after|in)\s+(?P<walked>[^a-zA-Z].*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,17 +108,18 @@ def worn_pair(text: str | None) -> WornPair | None:
     """Return a measured pair from text, as "1.2 mm after 300 km" or "after 5 months"."""
     if text is None:
         return None
-    match = _PAIR.fullmatch(text)
-    if match is None:
+    match = _PAIR.fullmatch(text.strip())
+    unit = "" if match is None else si_unit(match["walked"], where="--worn-pair")
+    if match is None or unit not in ("m", "s"):
         raise InputError(
             f'"{text}"', where="--worn-pair", allowed='"1.2 mm after 300 km" or "after 5 months"'
         )
-    length = match["walked"].endswith("km")
     lost = to_si(match["lost"], "m", where="--worn-pair")
-    walked = to_si(match["walked"], "m" if length else "s", where="--worn-pair")
-    if not (lost > 0 and walked > 0):
-        raise InputError(f'"{text}"', where="--worn-pair", allowed="both above 0")
-    return WornPair(lost, walked) if length else WornPair(lost, None, walked / MONTH)
+    walked = to_si(match["walked"], unit, where="--worn-pair")
+    if not (0 < lost < THICKEST and walked > 0):
+        allowed = f"both above 0, a sole thinner than {metres(THICKEST)}"
+        raise InputError(f'"{text}"', where="--worn-pair", allowed=allowed)
+    return WornPair(lost, walked) if unit == "m" else WornPair(lost, None, walked / MONTH)
 
 
 def _volume_at(depth: float, volumes: Sequence[float], lost: Sequence[float]) -> float:

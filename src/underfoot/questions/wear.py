@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -502,16 +501,17 @@ def wear_mode(mode: str | None, case: Case) -> str:
 
 def limit_load(text: str, normal_force: float) -> float:
     """Return a limit in N from a force ("5 N") or a share of the normal force ("20 %")."""
-    try:
-        if text.strip().endswith("%"):
-            return float(text.strip()[:-1]) / 100 * normal_force
-        return to_si(re.sub(r"(?<=\d)(?=[A-Za-z])", " ", text.strip()), "N", where="--limit")
-    except ValueError:
+    if text.strip().endswith("%"):
+        load = to_si(text, "1", where="--limit") * normal_force
+    else:
+        load = to_si(text, "N", where="--limit")
+    if load < 0:
         raise InputError(
             f'"{text}" is not a load',
             where="--limit",
             allowed='a force or a share, as "5 N" or "20 %"',
-        ) from None
+        )
+    return load
 
 
 def deepest_wear(text: str | None, mode: str) -> float | None:

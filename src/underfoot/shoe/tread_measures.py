@@ -51,6 +51,8 @@ MOST_OPEN = 1 / 3
 """Share of a slit's walls that may be the outline of the sole: half of them is a channel's rest."""
 SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
+_SMOOTHED = 1e-3
+"""m between the cells that the usual height of lugs is taken of."""
 LUG_REACH = 10e-3
 """Land farther than this from every channel is untreaded, m."""
 
@@ -131,7 +133,30 @@ def tread_map(
     window = 1 + 2 * max(1, round(BESIDE_A_WALL / spacing))
     floor = maximum_filter(floor_depth(depth, channel), window)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
+    # what falls away at the rim is no floor of a channel where another is within reach
+    if (floors := channel & ~steep).any():
+        near = land & (distance_to(floors) * spacing <= LUG_REACH)
+        lugs = np.where(near, floor[nearest_true(floors)], lugs)
+    treaded = land & (lugs > 0)
+    lugs = np.where(treaded, _without_ends(lugs, treaded, inside, spacing), lugs)
     return TreadMap(land, lugs, base, level, noise)
+
+
+def _without_ends(lugs: Array, treaded: Mask, inside: Mask, spacing: float) -> Array:
+    """Return lug heights (m) with those near the rim as most of them are within a lug's reach.
+
+    Where a channel runs out over the rim the land that it is measured from is a guess.
+    """
+    from scipy.ndimage import median_filter
+
+    if not treaded.any():
+        return lugs
+    step = max(1, round(_SMOOTHED / spacing))
+    coarse = lugs[nearest_true(treaded)][::step, ::step]
+    window = 1 + 2 * round(LUG_REACH / (step * spacing))
+    usual = median_filter(coarse, window, mode="nearest")
+    i, j = (np.arange(n) // step for n in lugs.shape)
+    return np.where(rim(inside, round(LUG_REACH / spacing)), usual[np.ix_(i, j)], lugs)
 
 
 def _bare_ends(height: Array, land: Mask, spacing: float) -> Mask:

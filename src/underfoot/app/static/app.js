@@ -101,10 +101,17 @@ async function readQuantity(text, unit) {
 }
 const LENGTHS = ["lug_width", "lug_length", "channel_width", "depth", "edge_chamfer"].map((name) => `shoe.tread.${name}`);
 const lengthSlider = (name) => document.querySelector(`.sliders input[name="${name}"]`);
-function setSlider(slider, shown, done) {
+function sliderValue(slider) {
+  const { moved, typed, given, log } = slider.dataset;
+  if (!moved) return Number(given);
+  if (typed) return Number(typed);
+  return log ? Number((10 ** Number(slider.value)).toPrecision(3)) : Number(slider.value);
+}
+// The thumb goes to the nearest step; a value that is typed stays as it is typed.
+function setSlider(slider, shown, done, typed) {
   const step = Number(slider.step), low = Number(slider.min);
   slider.value = String(low + Math.round((shown - low) / step) * step);
-  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  slider.dispatchEvent(new CustomEvent("input", { bubbles: true, detail: typed ? String(shown) : "" }));
   if (done) slider.dispatchEvent(new Event("change", { bubbles: true }));
 }
 addEventListener("lug", ({ target: viewer }) => {
@@ -117,14 +124,14 @@ addEventListener("lug", ({ target: viewer }) => {
     const label = document.createElement("label"), field = Object.assign(document.createElement("input"), { inputMode: "decimal" });
     const size = Number(slider.dataset.size), unit = slider.dataset.unit;
     field.name = `lug ${slider.name}`;
-    field.value = numberText((slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given)) / size);
+    field.value = numberText(sliderValue(slider) / size);
     field.addEventListener("change", async () => {
       const { value, problem } = await readQuantity(field.value, unit), low = Number(slider.min) / size, high = Number(slider.max) / size;
       const outside = value < low || value > high ? `${numberText(low)} - ${numberText(high)} ${unit}` : "";
       field.setAttribute("aria-invalid", String(Boolean(problem || outside)));
       note.textContent = problem || outside || place.dataset.lugs;
       note.role = problem || outside ? "alert" : "";
-      if (!problem && !outside) setSlider(slider, value * size, true);
+      if (!problem && !outside) setSlider(slider, value * size, true, true);
     });
     label.append(document.querySelector(`label[for="${slider.id}"]`).firstChild.data, field, slider.dataset.unit);
     card.append(label);
@@ -136,7 +143,7 @@ let dragged = null;
 addEventListener("edge", ({ target: viewer, detail: { out, normal, done } }) => {
   const long = lengthSlider("shoe.tread.lug_length"), slider = long && Math.abs(normal[0]) > Math.abs(normal[1]) ? long : lengthSlider("shoe.tread.lug_width");
   if (!slider) return;
-  dragged ??= slider.dataset.moved ? Number(slider.value) : Number(slider.dataset.given);
+  dragged ??= sliderValue(slider);
   setSlider(slider, dragged + 2e3 * out, done); // mm; it grows to both sides
   const field = viewer.querySelector(`[name="lug ${slider.name}"]`);
   if (field) field.value = numberText(Number(slider.value) / Number(slider.dataset.size));
@@ -159,14 +166,10 @@ function askLive(id, address, soleId, keep) {
   if (!root) { unopened.set(id, () => askLive(id, address, soleId, keep)); return; }
   const inputs = [...root.querySelectorAll("input[type=range]")];
   let asked = "{}", settled = "{}", busy = false, telling = false, held = false, resting = 0;
-  const value = (input) => {
-    if (!input.dataset.moved) return Number(input.dataset.given);
-    return input.dataset.log ? Number((10 ** Number(input.value)).toPrecision(3)) : Number(input.value);
-  };
   const values = () => JSON.stringify(Object.fromEntries(inputs.filter((i) => i.dataset.moved)
-    .map((i) => [i.name, value(i)])));
+    .map((i) => [i.name, sliderValue(i)])));
   const show = (input) => {
-    const words = `${numberText(value(input) / Number(input.dataset.size))} ${input.dataset.unit}`.trim();
+    const words = `${numberText(sliderValue(input) / Number(input.dataset.size))} ${input.dataset.unit}`.trim();
     root.querySelector(`output[for="${input.id}"]`).textContent = words;
     input.setAttribute("aria-valuetext", words);
   };
@@ -216,7 +219,7 @@ function askLive(id, address, soleId, keep) {
   if (keep) addEventListener("pagehide", () => { if (values() !== settled) send(values(), true); });
   for (const input of inputs) {
     show(input);
-    input.addEventListener("input", () => { input.dataset.moved = "yes"; input.labels[0].querySelector("small").textContent = root.dataset.own; held = true; clearTimeout(resting); show(input); ask(); });
+    input.addEventListener("input", (e) => { input.dataset.moved = "yes"; input.dataset.typed = e instanceof CustomEvent ? e.detail : ""; input.labels[0].querySelector("small").textContent = root.dataset.own; held = true; clearTimeout(resting); show(input); ask(); });
     input.addEventListener("change", () => { held = false; if (keep) rest(); else later(); });
   }
 }

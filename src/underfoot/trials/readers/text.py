@@ -10,6 +10,7 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.numbers_text import NumberForm, number_forms
 from underfoot.core.text import cells_of
+from underfoot.core.typed import MINUS
 
 _WITH_UNIT = re.compile(r"^(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]$")
 _BEHIND = re.compile(
@@ -24,7 +25,9 @@ _CLOCK = re.compile(
     r" ?(?P<half>[ap]m)?(?:Z|[+-]\d\d:?\d\d)?",
     re.IGNORECASE,
 )
-_WRITTEN = re.compile(r"[+\-−]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+\-−]?\d+)?")
+_WRITTEN = re.compile(
+    rf"[+{re.escape(MINUS)}]?[.,]?\d(?:[\d.,]|['’\s](?=\d))*(?:[eEdD][+{re.escape(MINUS)}]?\d+)?"
+)
 
 
 def lines_of(text: str) -> list[str]:

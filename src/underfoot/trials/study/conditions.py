@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
+from underfoot.core.numbers_text import NumberForm, number_forms
 from underfoot.core.text import decoded
 
 from ..readers import Profile, read_profile, trial_suffixes
 from ..readers.sheet import is_workbook, workbook_rows
-from ..readers.text import is_number, name_and_unit, si_unit
+from ..readers.text import is_number, is_written_number, name_and_unit, si_unit
 from .file_result import FileResult
 
 NAMES = ("conditions.csv", "conditions.xlsx")
@@ -367,9 +368,17 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
             allowed=", ".join(cells) or "headings in the first line",
             nearest=nearest_match("file", cells),
         )
+    numeric = [
+        name for name, (_, own) in cells.items() if all(map(is_written_number, filter(None, own)))
+    ]
+    try:
+        read = number_forms([cells[name][1] for name in numeric], path.name)
+    except DataError as error:
+        raise InputError(error.what, where=path.name, remedy=error.remedy) from error
+    forms = dict(zip(numeric, read, strict=True))
     # A person called 1, 2, 3 is a name, not a number.
     columns = {
-        name: own if name in PERSON else _column(own, unit, lines, path.name, name)
+        name: own if name in PERSON else _column(own, unit, lines, path.name, name, forms.get(name))
         for name, (unit, own) in cells.items()
         if name != files
     }
@@ -444,10 +453,22 @@ def table_delimiter(text: str) -> str:
     return max(",;\t", key=text.split("\n", 1)[0].count)
 
 
-def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name: str) -> list[Any]:
-    plain = [cell.replace(",", ".") if cell.count(",") == 1 else cell for cell in cells]
-    bad = [i for i, cell in enumerate(plain) if cell and not is_number(cell)]
-    if bad and (name in MASS or si_unit(unit)):
+def _column(
+    cells: list[str],
+    unit: str,
+    lines: Sequence[int],
+    where: str,
+    name: str,
+    form: NumberForm | None,
+) -> list[Any]:
+    """Return a column in SI, or as text where not every cell is a number (no ``form``)."""
+    plain = cells if form is None else [form.plain(cell) for cell in cells]
+    bad = [
+        i
+        for i, cell in enumerate(plain)
+        if cell and not (is_number(cell) and math.isfinite(float(cell)))
+    ]
+    if bad and (name in MASS or si_unit(unit) or _is_si(unit)):
         raise InputError(
             f'line {lines[bad[0]]}: {name} is "{cells[bad[0]]}"',
             where=where,
@@ -475,6 +496,13 @@ def _column(cells: list[str], unit: str, lines: Sequence[int], where: str, name:
 def body_mass_noted(noted: Mapping[str, Any]) -> float | None:
     """Return the person's mass (kg) among the conditions of a file, or None."""
     return next((float(noted[k]) for k in MASS if isinstance(noted.get(k), float)), None)
+
+
+def _is_si(unit: str) -> bool:
+    try:
+        return units.si_unit(f"1 {unit}", where="") != "1"
+    except InputError:  # of a scale, or no unit but a word of the heading
+        return False
 
 
 def _to_si(unit: str, where: str) -> tuple[float, float]:
