@@ -41,7 +41,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from mutants_map import digest, known_map
+from mutants_map import digest, known_map, write_map
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
@@ -440,16 +440,23 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
         time.sleep(0.02)
 
 
-def record(tests: Iterable[str]) -> None:
+def record(tests: Iterable[str], jobs: int) -> None:
     """Run the quick tests, of these files, whose lines are not known yet."""
     if not (files := [file for file in tests if known_map(file) is None]):
         return
     print(f"recording the lines that the tests of {len(files)} files run", flush=True)
-    subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "mutants_map", "--dist", "loadfile", "-n", "2", "-q",
-         "-m", QUICK, *files],
+    spread = ["--dist", "loadfile", "-n", str(jobs)] if jobs > 1 else ["-n", "0"]
+    run = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "mutants_map", *spread, "-q", "-m", QUICK, *files],
         cwd=REPOSITORY, env={**os.environ, "PYTHONPATH": str(REPOSITORY / "tests")}, check=False,
     )  # fmt: skip
+    without = [file for file in files if known_map(file) is None]
+    if run.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED,
+                              pytest.ExitCode.NO_TESTS_COLLECTED):  # fmt: skip
+        raise SystemExit(f"The recording ended ({run.returncode}) before: {', '.join(without)}")
+    for file in without:
+        print(f"no quick test: {file}")
+        write_map(file, [], {})
 
 
 class Deaths:
@@ -520,7 +527,8 @@ def main() -> None:
         chosen += faults
     if not given.known:
         of_rooms = {test for one in chosen for test in tests_of(one.file)}
-        record(test for test, _ in test_texts() if not given.own or test in of_rooms)
+        wanted = [test for test, _ in test_texts() if not given.own or test in of_rooms]
+        record(wanted, given.jobs)
     lines = Lines()
     if lines.red:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
