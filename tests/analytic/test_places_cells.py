@@ -117,7 +117,9 @@ def test_the_mean_ratio_of_slips_lies_between_its_ends(before, after):
     assert high == pytest.approx(after / before * np.exp(0.196), rel=0.02)
 
 
-@pytest.mark.parametrize(("cof", "right"), [(0.02, True), (1.9, True), (0.009, False), (2.1, False)])
+@pytest.mark.parametrize(
+    ("cof", "right"), [(0.02, True), (1.9, True), (0.009, False), (2.1, False)]
+)
 def test_a_reading_of_a_shoe_is_a_friction_that_a_machine_can_show(cof, right):
     test = next(iter(slip_tests()))
     shoe = {**TABLE["shoe"][0], "reading": [{"test": test, "cof": cof}]}
