@@ -8,10 +8,12 @@ from underfoot.friction.shoe_class import slip_tests
 from underfoot.places import choice
 from underfoot.places.choice import _Solver, film_odds_over_positions, tread_place
 from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
+from underfoot.places.machines import FLUIDS, predicted_reading
 from underfoot.places.place import place_of
 
+THICK = "glycerol_90pct"
 TABLE = {
-    "fluids": {"dry": 0.9, "glycerol_90pct": 0.1},
+    "fluids": {"dry": 0.8, THICK: 0.1, "water": 0.1},
     "floor": [{"name": "hall", "roughness": {"rq": "2 um"}}],
     "shoe": [{"name": "smooth", "from": "work_shoe_untreaded"}],
 }
@@ -23,11 +25,12 @@ def cell():
     place = place_of(TABLE)
     joint = JointDraws()
     shoe, floor = place.shoes[0], place.floors[0]
-    case = place.case(shoe, floor, "glycerol_90pct")
-    pair, tread = choice._law(case).pair, tread_place(case)
+    cases = {fluid: place.case(shoe, floor, fluid) for fluid in (THICK, "water")}
     solver = _Solver(place, joint, True, {})
 
-    def made(cof, film=0.0, viscous=0.0):
+    def made(cof, film=0.0, viscous=0.0, fluid=THICK):
+        case = cases[fluid]
+        pair, tread = choice._law(case).pair, tread_place(case)
         values = {
             "cof": cof,
             "cof_viscous": viscous,
@@ -38,10 +41,11 @@ def cell():
     return made
 
 
+@pytest.mark.parametrize("fluid", [THICK, "water"])
 @pytest.mark.parametrize("film", [0.0, 0.3, 0.7])
 @pytest.mark.parametrize("cof", [0.05, 0.2])
-def test_the_middle_of_the_draws_is_the_cof_that_was_solved(cell, cof, film):
-    one = cell(cof, film)
+def test_the_middle_of_the_draws_is_the_cof_that_was_solved(cell, cof, film, fluid):
+    one = cell(cof, film, fluid=fluid)
     assert one.solved == cof
     assert one.film_share == pytest.approx(film)
     assert np.median(one.acof) == pytest.approx(cof, rel=0.15)  # of the law's own medians
@@ -71,7 +75,7 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
     """Shares of 1/2, 2/3 and 1/3 of the load are odds of 1, 2 and 1/2."""
     treaded = {"shoe": [{"name": "treaded", "from": "work_shoe_full_tread"}]}
     place = place_of(TABLE | treaded)
-    case = place.case(place.shoes[0], place.floors[0], "glycerol_90pct")
+    case = place.case(place.shoes[0], place.floors[0], THICK)
     loads = iter(np.array([1 / 2, 2 / 3, 1 / 3]) * case.motion.normal_force)
     monkeypatch.setattr(choice, "prepared", lambda *_: None)
     monkeypatch.setattr(choice, "places", lambda *_: [0, 1, 2])
@@ -79,7 +83,7 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
     monkeypatch.setattr(choice, "place_numbers", lambda: {"fluid_load": next(loads)})
     np.testing.assert_allclose(film_odds_over_positions(case), np.log([1, 2, 0.5]), atol=1e-12)
     smooth = place_of(TABLE)
-    case = smooth.case(smooth.shoes[0], smooth.floors[0], "glycerol_90pct")
+    case = smooth.case(smooth.shoes[0], smooth.floors[0], THICK)
     assert film_odds_over_positions(case).tolist() == [0.0]
 
 
@@ -106,6 +110,24 @@ def test_an_upper_bound_takes_away_what_is_above_it_and_a_lower_one_what_is_belo
     assert upper[0] > 0.99 > 0.01 > upper[-1]
     value = joint.log_likelihood(cof, Reading(0.2))
     assert cof[value.argmax()] == pytest.approx(0.2, rel=0.05)  # repeats vary a little by draw
+
+
+def test_fluids_of_machines_are_as_thick_as_their_names_say():
+    ends = {name: fluid.viscosity for name, fluid in FLUIDS.items() if fluid.viscosity}
+    for name, (low, high) in ends.items():
+        assert low <= high, name
+    assert ends["water"] == pytest.approx((1.002e-3, 1.002e-3), rel=0.01)  # at 20 C
+    # a drop of a detergent in water; a lubricating oil is a hundred times as thick
+    assert all(0.9e-3 < each < 1.1e-3 for each in ends["detergent"])
+    assert all(0.1 < each < 0.3 for each in ends["ramp oil"])
+
+
+def test_settings_that_nobody_read_in_the_source_are_counted():
+    told = predicted_reading("pendulum-96", (5e-6, 5e-6))
+    settings = told.machine.entry.values.values()
+    sure = [one for one in settings if one.verified and not one.assumed]
+    line = next(each for each in told.cautions() if "settings of the set-up" in each)
+    assert int(line.split()[0]) == len(settings) - len(sure)
 
 
 @pytest.mark.parametrize(("before", "after"), [(0.1, 0.05), (0.1, 0.2)])
