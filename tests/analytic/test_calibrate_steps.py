@@ -74,7 +74,7 @@ def test_the_factor_of_an_interval_is_the_root_of_its_ends():
     rows = np.array([[0.1, 0.2, 0.4], [0.2, 0.21, 0.22]])
     reading = PairReading(cast(Any, SimpleNamespace(name="a case")), 0.21)
     told = PairCalibration(
-        (cast(Any, None),) * 2,
+        (reading, reading),
         cast(Any, None),
         rows,
         np.sqrt(rows),
