@@ -11,10 +11,11 @@ known yet. A fault meets the tests that run its line, in a copy of the repositor
 process that holds the libraries, until the first that fails: first those of its room (they import
 its module, or are called ``test_<room>_``), then the others; each test once before one comes again
 with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
-meets the tests that run anything of its file; one that no test runs in this process (compiled, or
-in a process of its own) meets those of its room. What survives is printed with its place: mend the
-tests, or say why it may live. A test that fails without a fault kills nothing; a fault that its
-room's test killed counts as dead while that test and the source stand. Not part of ``make test``.
+meets the tests that run anything of its file; one that no test runs in this process meets those of
+its room if it is compiled, else those that start a process. What survives is printed with its
+place: mend the tests, or say why it may live. A test that fails without a fault kills nothing; a
+fault that its room's test killed counts as dead while that test and the source stand. Not part of
+``make test``.
 """
 
 import ast
@@ -48,6 +49,8 @@ SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
+CACHE = "__pycache__"
+PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")
 LEAST_TIME = 60  # s of CPU, below which no fault is called endless
 MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
 # what a fork finds imported
@@ -302,7 +305,17 @@ class Lines:
             return list(near)
         if begin < 0:  # runs at import
             return list({one for tests in of_file.values() for one in tests})
-        return [one for file in tests_of(mutant.file) for one in self.tests.get(file, ())]
+        files = tests_of(mutant.file)
+        if not compiled(mutant.file):
+            apart = {file for file, text in test_texts() if any(one in text for one in PROCESSES)}
+            files = tuple(file for file in files if file in apart)
+        return [one for file in files for one in self.tests.get(file, ())]
+
+
+@cache
+def compiled(file: str) -> bool:
+    """Return whether a file of the source has kernels, whose lines leave no trace."""
+    return "@njit" in (REPOSITORY / SOURCE / file).read_text(encoding="utf-8")
 
 
 @cache
@@ -351,7 +364,11 @@ def copied(folder: Path) -> Path:
     )
     for name in filter(None, listed.stdout.split("\0")):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(REPOSITORY / name, folder / name)
+        shutil.copy2(REPOSITORY / name, folder / name)
+    # bytecode and kernels hold while the time of their file does
+    for part in ("src", "tests"):
+        for made in (REPOSITORY / part).rglob(CACHE):
+            shutil.copytree(made, folder / made.relative_to(REPOSITORY))
     return folder
 
 
@@ -403,6 +420,9 @@ def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, 
         sys.path[:0] = paths
         os.environ |= {"PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
         sys.dont_write_bytecode = True
+        if mutant and compiled(mutant.file):  # kernels of other files hold those of this one
+            shutil.rmtree(folder / "kernels", ignore_errors=True)
+            os.environ["NUMBA_CACHE_DIR"] = str(folder / "kernels")
         silent = os.open(folder / "log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(silent, 1)
         os.dup2(silent, 2)
@@ -433,7 +453,7 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
                 os.killpg(number, signal.SIGKILL)
             if run.mutant:
                 file = SOURCE / run.mutant.file
-                shutil.copy(REPOSITORY / file, run.folder / file)
+                shutil.copy2(REPOSITORY / file, run.folder / file)
             if status == 0:
                 return run, None
             return run, (run.folder / "runs").read_text(encoding="utf-8")
