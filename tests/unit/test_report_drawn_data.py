@@ -1,0 +1,90 @@
+"""Figures hold the numbers that they were given: along which axis, how wide, of which design."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from underfoot.report.design_study import _centre, slices_figure
+from underfoot.report.question_figures import wear_figure
+
+
+def made_up_surrogate():
+    """Return a surrogate that is 3 times its first input, with an error of 0.5."""
+    dimensions = [
+        SimpleNamespace(path="shoe.material.shore_a", value=lambda share: 40 + 30 * share),
+        SimpleNamespace(path="motion.speed", value=lambda share: 0.1 + share),
+    ]
+    made = SimpleNamespace(
+        dimensions=dimensions,
+        name="cof",
+        unit="1",
+        q2=0.9,
+        runs=SimpleNamespace(values=np.array([1.0, 3.0])),
+        predicted=lambda points: (3 * points[:, 0], np.full(len(points), 0.5)),
+    )
+    return cast(Any, made)
+
+
+def test_slices_go_through_the_centre_with_one_deviation_each_way():
+    first, second = slices_figure([made_up_surrogate()], np.array([0.2, 0.6])).axes
+    line, marked = first.lines
+    x, y = line.get_data()
+    assert (x[0], x[-1]) == pytest.approx((40, 70))
+    np.testing.assert_allclose(y, 3 * (x - 40) / 30, atol=1e-12)
+    assert marked.get_xdata()[0] == pytest.approx(40 + 30 * 0.2, abs=0.6)
+    _, still = second.lines[0].get_data()
+    np.testing.assert_allclose(still, 0.6)  # 3 times the 0.2 of the centre
+    for axes, line in ((first, first.lines[0]), (second, second.lines[0])):
+        (band,) = axes.collections
+        ends = band.get_paths()[0].vertices[:, 1]
+        middle = line.get_ydata()
+        assert ends.min() == pytest.approx(np.min(middle) - 0.5)
+        assert ends.max() == pytest.approx(np.max(middle) + 0.5)
+
+
+def test_slices_go_through_the_best_design_or_the_first_with_numbers():
+    first, second, failed = (
+        SimpleNamespace(point=(place, 0.5), usable=usable)
+        for place, usable in ((0.1, True), (0.9, True), (0.4, False))
+    )
+
+    def centre(best):
+        return _centre(
+            cast(Any, SimpleNamespace(designs=[failed, first, second], best=lambda count: best))
+        )
+
+    assert centre([second]).tolist() == [0.9, 0.5]
+    assert centre([]).tolist() == [0.1, 0.5]
+
+
+@pytest.mark.parametrize("mode", ["patch", "thickness"])
+def test_wear_is_drawn_over_what_wore_off(mode):
+    count = 5
+    measured = {
+        "worn_patch_area": 1e-6 * np.array([100.0, 200, 300, 400, 500]),
+        "removed_depth": 1e-3 * np.arange(count),
+        "tread_left": 1e-3 * np.arange(count)[::-1],
+    }
+    numbers = {
+        name: scale * np.arange(1.0, count + 1)
+        for name, scale in (
+            ("fluid_load", 20.0), ("fluid_load_sensor", 10.0), ("peak_fluid_pressure", 5e4),
+            ("peak_fluid_pressure_sensor", 3e4), ("cof", 0.05),
+        )
+    }  # fmt: skip
+    series = SimpleNamespace(
+        mode=mode, measured=measured.__getitem__, values=numbers.__getitem__, untreaded=None,
+        limit=75.0, ends=lambda name: (0.9 * numbers[name], 1.1 * numbers[name]),
+    )  # fmt: skip
+    load, peak, friction = wear_figure(cast(Any, series)).axes[:3]
+    worn = np.arange(100.0, 600, 100) if mode == "patch" else np.arange(5.0)
+    for axes, name, scale in (
+        (load, "fluid_load", 1.0), (peak, "peak_fluid_pressure", 1e-3), (friction, "cof", 1.0),
+    ):  # fmt: skip
+        x, y = axes.lines[0].get_data()
+        np.testing.assert_allclose(x, worn)
+        np.testing.assert_allclose(y, numbers[name] * scale)
+        ends = axes.collections[0].get_paths()[0].vertices[:, 1]
+        assert ends.max() == pytest.approx(1.1 * scale * numbers[name].max())
