@@ -36,3 +36,20 @@ def test_a_surface_of_waves_has_at_least_four_points_a_side(shape):
 
 def test_four_points_a_side_are_enough():
     assert self_affine(4, 1e-6, 1e-6, 0.8, 4e-6, 2e-6, 1).heights.std() == pytest.approx(1e-6)
+
+
+def test_the_density_of_a_scan_is_as_measured_and_goes_on_with_its_power_law(tmp_path):
+    made = self_affine(128, 4e-6, 2e-6, 0.7, 512e-6, 32e-6, 4)
+    write_surface(made, tmp_path / "map.sdf")
+    scan = read_scan(tmp_path / "map.sdf", cutoff=0.08e-3)
+    known = scan.spectrum
+    low, high = known.reliable
+    inside = (known.wavenumber > low) & (known.wavenumber < high)
+    np.testing.assert_allclose(
+        scan.density(known.wavenumber[inside]), known.density[inside], rtol=1e-9
+    )
+    beyond = scan.density(high * np.array([2.0, 4.0]))
+    assert beyond[1] / beyond[0] == pytest.approx(2 ** (-2 * (1 + scan.hurst.value)))
+    longer = scan.density(low / np.array([2.0, 4.0]))
+    steep = 2 ** (2 * (1 + scan.hurst.value))
+    assert longer[1] / longer[0] == pytest.approx(1.0 if scan.roll_off else steep)
