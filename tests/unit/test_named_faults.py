@@ -1,4 +1,4 @@
-"""Each fault of mutants.toml stands in the source: where a line moved on, its fault goes with it."""
+"""Each fault of mutants.toml stands in the source: where its line moves on, it goes with it."""
 
 from mutants import named_faults
 
