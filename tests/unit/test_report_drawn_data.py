@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from underfoot.report import design_study
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
 
@@ -88,3 +89,20 @@ def test_wear_is_drawn_over_what_wore_off(mode):
         np.testing.assert_allclose(y, numbers[name] * scale)
         ends = axes.collections[0].get_paths()[0].vertices[:, 1]
         assert ends.max() == pytest.approx(1.1 * scale * numbers[name].max())
+
+
+def test_soles_of_the_best_designs_are_made_once_each_and_told_as_they_are(monkeypatch):
+    shares = []
+    monkeypatch.setattr(design_study, "design_sole", lambda study, result, number: number)
+    front = [SimpleNamespace(number=number) for number in (4, 2, 4, 7)]
+    result = SimpleNamespace(front=front, designs=[SimpleNamespace(number=9)])
+
+    def progress(stage, share, residual=None):
+        shares.append(share)
+        assert stage == "Soles"
+
+    soles = design_study._soles(cast(Any, None), cast(Any, result), progress)
+    assert list(soles) == [4, 2, 7]
+    assert shares == pytest.approx([1 / 3, 2 / 3, 1.0])
+    result.front = []
+    assert list(design_study._soles(cast(Any, None), cast(Any, result), progress)) == [9]
