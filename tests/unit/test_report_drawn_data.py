@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.report import design_study
+from underfoot.report import design_study, live_study
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
 
@@ -106,3 +106,34 @@ def test_soles_of_the_best_designs_are_made_once_each_and_told_as_they_are(monke
     assert shares == pytest.approx([1 / 3, 2 / 3, 1.0])
     result.front = []
     assert list(design_study._soles(cast(Any, None), cast(Any, result), progress)) == [9]
+
+
+@pytest.mark.parametrize(
+    ("page", "ended", "written"),
+    [(True, [10.0, 20.0], 1), (True, [10.0, None], 0), (False, [10.0], 0), (False, [None], 0)],
+)
+def test_who_ends_last_writes_the_live_page_again_where_there_is_one(
+    monkeypatch, tmp_path, page, ended, written
+):
+    times = []
+
+    class Writer:
+        def __init__(self, study, workers):
+            pass
+
+        def write(self):
+            times.append("end")
+
+        def write_if_due(self):
+            times.append("due")
+
+    monkeypatch.setattr(live_study, "_Writer", Writer)
+    if page:
+        (tmp_path / live_study.PAGE).touch()
+    store = SimpleNamespace(folder=tmp_path, sessions=lambda: [{"ended": one} for one in ended])
+    told = []
+    study = cast(Any, SimpleNamespace(store=store))
+    with live_study.with_live_page(study, lambda *parts: told.append(parts), 2) as progress:
+        progress("Cases", 0.5)
+    assert told == [("Cases", 0.5, None)]
+    assert times == ["due"] + ["end"] * written
