@@ -51,7 +51,7 @@ NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 CACHE = "__pycache__"
 PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")
-LEAST_TIME = 30  # s of CPU, below which no fault is called endless
+LEAST_TIME = 60  # s of CPU, below which no fault is called endless
 MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
 # what a fork finds imported
 LIBRARIES = (
@@ -409,7 +409,7 @@ def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, 
         path = folder / SOURCE / mutant.file
         data = path.read_bytes()
         path.write_bytes(data[: mutant.start] + mutant.new.encode() + data[mutant.end :])
-    limit = int(LEAST_TIME + 2 * seconds)  # the record is slower than a run
+    limit = int(LEAST_TIME + 4 * seconds)
     if number := os.fork():
         return number, Run(folder, time.monotonic() + 8 * limit, mutant, names)
     try:
