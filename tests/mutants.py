@@ -11,8 +11,8 @@ known yet. A fault meets the tests that run its line, in a copy of the repositor
 process that holds the libraries, until the first that fails: first those of its room (they import
 its module, or are called ``test_<room>_``), then the others; each test once before one comes again
 with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
-meets the tests that run anything of its file; one that no test runs in this process meets those of
-its room if it is compiled, else those that start a process. What survives is printed with its
+meets the tests that run anything of its file or are of its room; one that no test runs in this
+process meets those of its room if it is compiled, else those that start a process. What survives is printed with its
 place: mend the tests, or say why it may live. A test that fails without a fault kills nothing; a
 fault that its room's test killed counts as dead while that test and the source stand. Not part of
 ``make test``.
@@ -303,9 +303,10 @@ class Lines:
             return head
         if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
             return list(near)
-        if begin < 0:  # runs at import
-            return list({one for tests in of_file.values() for one in tests})
         files = tests_of(mutant.file)
+        if begin < 0:  # runs at import: what it makes is read elsewhere
+            every = {one for tests in of_file.values() for one in tests}
+            return list(every | {one for file in files for one in self.tests.get(file, ())})
         if not compiled(mutant.file):
             apart = {file for file, text in test_texts() if any(one in text for one in PROCESSES)}
             files = tuple(file for file in files if file in apart)

@@ -9,16 +9,78 @@ import pytest
 
 from underfoot.case import load
 from underfoot.case.describe import assumptions
-from underfoot.case.explanation import _equation_text, _summary
+from underfoot.case.explanation import _documented, _equation_text, _summary
+from underfoot.case.motion import AnySpeed
+from underfoot.case.people import Transfer
+from underfoot.case.quantity import Quantity, default_of
+from underfoot.case.section import Section
+from underfoot.case.template import _remark
 from underfoot.compute.resolve import resolved
-from underfoot.core import InputError
+from underfoot.core import InputError, to_si
 
+
+def every_kind(kind=Section):
+    """Yield each section and option of a case that the package has."""
+    for one in kind.__subclasses__():
+        if one.__module__.startswith("underfoot."):
+            yield one
+        yield from every_kind(one)
+
+
+FIELDS = {
+    f"{section.__name__}.{name}": field
+    for section in set(every_kind())
+    for name, field in section.model_fields.items()
+}
 HEEL = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 
 
 @pytest.fixture(scope="module")
 def heel():
     return load(HEEL)
+
+
+def of_unit(number, unit):
+    return f"{number:g}" if unit == "1" else f"{number:g} {unit}"
+
+
+def test_a_default_is_what_its_text_says_in_si_and_within_its_range():
+    checked = 0
+    for path, field in FIELDS.items():
+        ranges = [one for one in field.metadata if isinstance(one, Quantity)]
+        said = default_of(field)
+        if said is None or not ranges:
+            continue
+        (kind,) = ranges
+        text = said.text if isinstance(said.text, str) else of_unit(said.text, kind.unit)
+        assert to_si(text, kind.unit, where=path) == pytest.approx(field.default, abs=1e-30), path
+        assert kind.low <= field.default <= kind.high, path
+        checked += 1
+    assert checked > 150
+
+
+def test_a_range_has_a_unit_and_two_ends_in_their_order():
+    for path, field in FIELDS.items():
+        for kind in (one for one in field.metadata if isinstance(one, Quantity)):
+            assert kind.low < kind.high, path
+            assert to_si(of_unit(2, kind.unit), kind.unit, where=path) == 2.0, path
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "low", "high"), [("Speed", "m/s", -20, 20), ("Transfer", "1", 0, 1)]
+)
+def test_what_walks_or_slides_may_stand_still(name, unit, low, high):
+    """Speeds of a history go both ways; none or all of the weight may be on one foot."""
+    kind = {"Speed": AnySpeed, "Transfer": Transfer}[name].__metadata__[0]
+    assert (kind.unit, kind.low, kind.high) == (unit, low, high)
+
+
+def test_a_remark_beside_a_value_says_what_it_is_and_that_it_is_assumed():
+    field = FIELDS["ConstantOption.cof"]
+    assert _remark(field, assumed=False) == "# measured coefficient of friction, all parts"
+    assert _remark(field, assumed=True).endswith("all parts; assumed")
+    assert _remark(None, assumed=True) == "# assumed"
+    assert _remark(None, assumed=False) == ""
 
 
 def test_the_spread_of_two_roughnesses_is_that_of_their_root_sum(heel):
@@ -71,3 +133,21 @@ def test_equations_and_summaries_are_said_in_short():
     cut = _summary(told, 20)
     assert len(cut) <= 20
     assert cut.endswith(" …")
+
+
+def test_what_is_cut_off_after_a_colon_is_marked():
+    def shortened():
+        """Return the first of three, in this order:
+
+        Source: A paper of 1999.
+        """
+
+    def whole():
+        """Return the first of three.
+
+        Source: A paper of 1999.
+        """
+
+    text = _documented("shortened", shortened, full=False)
+    assert "in this order: …" in text
+    assert " …" not in _documented("whole", whole, full=False)
