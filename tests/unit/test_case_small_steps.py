@@ -14,9 +14,9 @@ from underfoot.case.motion import AnySpeed
 from underfoot.case.people import Transfer
 from underfoot.case.quantity import Quantity, default_of
 from underfoot.case.section import Section
-from underfoot.case.template import _remark
+from underfoot.case.template import _overrides, _remark
 from underfoot.compute.resolve import resolved
-from underfoot.core import InputError, to_si
+from underfoot.core import InputError, UnderfootError, to_si
 
 
 def every_kind(kind=Section):
@@ -151,3 +151,31 @@ def test_what_is_cut_off_after_a_colon_is_marked():
     text = _documented("shortened", shortened, full=False)
     assert "in this order: …" in text
     assert " …" not in _documented("whole", whole, full=False)
+
+
+def test_a_template_names_keys_of_an_old_entry_as_a_case_has_them_now():
+    leaf = SimpleNamespace(given="round", assumed=False)
+    entry = SimpleNamespace(values={"heel.profile": leaf, "heel.length": leaf})
+    catalogue = cast(Any, SimpleNamespace(entry=lambda kind, name: entry))
+    first, second = _overrides("shoe", "own", catalogue)
+    assert first.startswith("# heel.profile.model = ")
+    assert second.startswith("# heel.length = ")
+
+
+@pytest.mark.parametrize(
+    ("length", "width", "refused"),
+    [("20 mm", "20 mm", ""), ("400 mm", "20 mm", "patch_length"), ("20 mm", "200 mm", "width")],
+)
+def test_a_worn_patch_is_no_larger_than_its_heel(length, width, refused):
+    case = load(HEEL)
+    changes = {
+        "shoe.wear.mode": "patch",
+        "shoe.wear.depth": "1 mm",
+        "shoe.wear.patch_length": length,
+        "shoe.wear.patch_width": width,
+    }
+    if refused:
+        with pytest.raises(UnderfootError, match=f"{refused}.*larger than the shoe"):
+            case.replace(changes)
+    else:
+        assert case.replace(changes).shoe.wear.patch_length == pytest.approx(0.02)
