@@ -295,18 +295,15 @@ class Lines:
 
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
-        of_file = self._lines.get(mutant.file, {})
-        if exact := of_file.get(mutant.line):
-            return exact
+        of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
-        if head := of_file.get(begin):
-            return head
-        if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
-            return list(near)
-        files = tests_of(mutant.file)
-        if begin < 0:  # runs at import: what it makes is read elsewhere
+        if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
             every = {one for tests in of_file.values() for one in tests}
             return list(every | {one for file in files for one in self.tests.get(file, ())})
+        if met := of_file.get(mutant.line) or of_file.get(begin):
+            return met
+        if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
+            return list(near)
         if not compiled(mutant.file):
             apart = {file for file, text in test_texts() if any(one in text for one in PROCESSES)}
             files = tuple(file for file in files if file in apart)
