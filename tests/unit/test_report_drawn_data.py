@@ -1,14 +1,20 @@
 """Figures hold the numbers that they were given: along which axis, how wide, of which design."""
 
+import re
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from underfoot.report import design_study, live_study
+from underfoot.case import load
+from underfoot.report import design_study, live_study, sole_mesh
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
+from underfoot.report.thumbnail import _drawn
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def made_up_surrogate():
@@ -137,3 +143,36 @@ def test_who_ends_last_writes_the_live_page_again_where_there_is_one(
         progress("Cases", 0.5)
     assert told == [("Cases", 0.5, None)]
     assert times == ["due"] + ["end"] * written
+
+
+def test_a_picture_of_a_heel_is_as_long_as_wide_as_the_heel_and_darker_where_it_has_land():
+    case = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
+    picture = _drawn(case)
+    wide, high = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', picture).groups())
+    heel = case.shoe.heel
+    assert wide / high == pytest.approx(heel.length / heel.widest, rel=0.05)
+    plan, land = re.findall(r' d="([^"]*)"', picture)
+    cells = [sum(int(length) for length in re.findall(r"h(\d+)", path)) for path in (plan, land)]
+    assert 0.1 < cells[1] / cells[0] < 0.9  # channels are left out
+    assert cells[0] <= wide * high
+
+
+def test_corners_of_drawn_cells_lie_on_the_plane_of_their_middles_and_no_step_is_smeared():
+    x, y = np.meshgrid(np.arange(8.0), np.arange(6.0), indexing="ij")
+    height = 1e-5 * (2 * x - y)
+    land = np.ones((8, 6), bool)
+
+    def corners(land):
+        sole = SimpleNamespace(land=land, height=height, spacing=1e-3)
+        return sole_mesh._corner_heights(cast(Any, sole), height)
+
+    inner = (slice(1, -1), slice(1, -1))
+    for number, (step_x, step_y) in enumerate(sole_mesh._CORNERS):
+        exact = 1e-5 * (2 * (x + step_x - 0.5) - (y + step_y - 0.5))
+        np.testing.assert_allclose(corners(land)[..., number][inner], exact[inner], atol=1e-12)
+    land[4:] = False  # a channel's cells are no neighbours of the land's
+    apart = corners(land)
+    for number, (step_x, step_y) in enumerate(sole_mesh._CORNERS):
+        beside = 3 if step_x else 4  # the last of the land, the first of the channel
+        exact = 1e-5 * (2 * beside - (y[0] + step_y - 0.5))
+        np.testing.assert_allclose(apart[beside, 1:-1, number], exact[1:-1], atol=1e-12)
