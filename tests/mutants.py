@@ -11,10 +11,11 @@ known yet. A fault meets the tests that run its line, in a copy of the repositor
 process that holds the libraries, until the first that fails: first those of its room (they import
 its module, or are called ``test_<room>_``), then the others; each test once before one comes again
 with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
-meets the tests that run anything of its file; one that no test runs in this process (compiled, or
-in a process of its own) meets those of its room. What survives is printed with its place: mend the
-tests, or say why it may live. A test that fails without a fault kills nothing; a fault that its
-room's test killed counts as dead while that test and the source stand. Not part of ``make test``.
+meets the tests that run anything of its file or are of its room; one that no test runs in this
+process meets those of its room if it is compiled, else those that start a process. What survives is
+printed with its place: mend the tests, or say why it may live. A test that fails without a fault
+kills nothing; a fault that its room's test killed counts as dead while that test and the source
+stand. Not part of ``make test``.
 """
 
 import ast
@@ -41,13 +42,15 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from mutants_map import digest, known_map
+from mutants_map import digest, known_map, write_map
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
+CACHE = "__pycache__"
+PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")
 LEAST_TIME = 60  # s of CPU, below which no fault is called endless
 MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
 # what a fork finds imported
@@ -292,17 +295,25 @@ class Lines:
 
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
-        of_file = self._lines.get(mutant.file, {})
-        if exact := of_file.get(mutant.line):
-            return exact
+        of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
-        if head := of_file.get(begin):
-            return head
+        if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
+            every = {one for tests in of_file.values() for one in tests}
+            return list(every | {one for file in files for one in self.tests.get(file, ())})
+        if met := of_file.get(mutant.line) or of_file.get(begin):
+            return met
         if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
             return list(near)
-        if begin < 0:  # runs at import
-            return list({one for tests in of_file.values() for one in tests})
-        return [one for file in tests_of(mutant.file) for one in self.tests.get(file, ())]
+        if not compiled(mutant.file):
+            apart = {file for file, text in test_texts() if any(one in text for one in PROCESSES)}
+            files = tuple(file for file in files if file in apart)
+        return [one for file in files for one in self.tests.get(file, ())]
+
+
+@cache
+def compiled(file: str) -> bool:
+    """Return whether a file of the source has kernels, whose lines leave no trace."""
+    return "@njit" in (REPOSITORY / SOURCE / file).read_text(encoding="utf-8")
 
 
 @cache
@@ -351,7 +362,11 @@ def copied(folder: Path) -> Path:
     )
     for name in filter(None, listed.stdout.split("\0")):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(REPOSITORY / name, folder / name)
+        shutil.copy2(REPOSITORY / name, folder / name)
+    # bytecode and kernels hold while the time of their file does
+    for part in ("src", "tests"):
+        for made in (REPOSITORY / part).rglob(CACHE):
+            shutil.copytree(made, folder / made.relative_to(REPOSITORY))
     return folder
 
 
@@ -403,6 +418,9 @@ def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, 
         sys.path[:0] = paths
         os.environ |= {"PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1"}
         sys.dont_write_bytecode = True
+        if mutant and compiled(mutant.file):  # kernels of other files hold those of this one
+            shutil.rmtree(folder / "kernels", ignore_errors=True)
+            os.environ["NUMBA_CACHE_DIR"] = str(folder / "kernels")
         silent = os.open(folder / "log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(silent, 1)
         os.dup2(silent, 2)
@@ -433,23 +451,30 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
                 os.killpg(number, signal.SIGKILL)
             if run.mutant:
                 file = SOURCE / run.mutant.file
-                shutil.copy(REPOSITORY / file, run.folder / file)
+                shutil.copy2(REPOSITORY / file, run.folder / file)
             if status == 0:
                 return run, None
             return run, (run.folder / "runs").read_text(encoding="utf-8")
         time.sleep(0.02)
 
 
-def record(tests: Iterable[str]) -> None:
+def record(tests: Iterable[str], jobs: int) -> None:
     """Run the quick tests, of these files, whose lines are not known yet."""
     if not (files := [file for file in tests if known_map(file) is None]):
         return
     print(f"recording the lines that the tests of {len(files)} files run", flush=True)
-    subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "mutants_map", "--dist", "loadfile", "-n", "2", "-q",
-         "-m", QUICK, *files],
+    spread = ["--dist", "loadfile", "-n", str(jobs)] if jobs > 1 else ["-n", "0"]
+    run = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "mutants_map", *spread, "-q", "-m", QUICK, *files],
         cwd=REPOSITORY, env={**os.environ, "PYTHONPATH": str(REPOSITORY / "tests")}, check=False,
     )  # fmt: skip
+    without = [file for file in files if known_map(file) is None]
+    if run.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED,
+                              pytest.ExitCode.NO_TESTS_COLLECTED):  # fmt: skip
+        raise SystemExit(f"The recording ended ({run.returncode}) before: {', '.join(without)}")
+    for file in without:
+        print(f"no quick test: {file}")
+        write_map(file, [], {})
 
 
 class Deaths:
@@ -520,7 +545,8 @@ def main() -> None:
         chosen += faults
     if not given.known:
         of_rooms = {test for one in chosen for test in tests_of(one.file)}
-        record(test for test, _ in test_texts() if not given.own or test in of_rooms)
+        wanted = [test for test, _ in test_texts() if not given.own or test in of_rooms]
+        record(wanted, given.jobs)
     lines = Lines()
     if lines.red:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")

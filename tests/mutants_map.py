@@ -41,6 +41,14 @@ def known_map(tests: str) -> dict | None:
     return found if alike else None
 
 
+def write_map(file: str, tests: list[dict], lines: dict[str, dict[int, list[int]]]) -> None:
+    """Write the tests of a file, and the numbers of those that run each line of the source."""
+    MAPS.mkdir(parents=True, exist_ok=True)
+    sources = {path: digest(SOURCE / path) for path in lines}
+    entry = {"of": digest(REPOSITORY / file), "sources": sources, "tests": tests, "lines": lines}
+    map_path(file).write_text(json.dumps(entry), encoding="utf-8")
+
+
 class Recorder:
     """Traces the source, one context a test; writes a map when the last test of a file is done."""
 
@@ -82,18 +90,7 @@ class Recorder:
                 for line in data.lines(path) or ():
                     of_file.setdefault(line, []).append(number)
         lines = {path: of_file for path, of_file in lines.items() if of_file}
-        MAPS.mkdir(parents=True, exist_ok=True)
-        map_path(file).write_text(
-            json.dumps(
-                {
-                    "of": digest(REPOSITORY / file),
-                    "sources": {path: digest(SOURCE / path) for path in lines},
-                    "tests": [{"name": name, **self.tests[name]} for name in names],
-                    "lines": lines,
-                }
-            ),
-            encoding="utf-8",
-        )
+        write_map(file, [{"name": name, **self.tests[name]} for name in names], lines)
         self.tests = {}
         self.tracer.erase()
         self.tracer.start()

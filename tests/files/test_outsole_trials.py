@@ -180,7 +180,9 @@ def test_print_supports_are_named_and_carry_nothing():
         for x, y in ((60, 5), (150, -10), (220, 12))
     ]
     found = read(np.concatenate([sole, *pillars]))
-    assert "3 slender bodies (print supports)" in said(found)
+    assert "3 slender bodies (print supports), up to 1.6 thick, the first at (60, 5, -5.5) in" in (
+        said(found)
+    )
     land = read(sole).surface.land_ratio
     assert found.surface.land_ratio == pytest.approx(land, abs=0.005)
 

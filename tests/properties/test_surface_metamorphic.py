@@ -265,10 +265,15 @@ def test_a_scan_finds_the_power_law_that_its_surface_was_made_of(tmp_path):
 
 
 def test_only_oblong_cells_are_said_to_show_more_along_one_side(tmp_path):
-    notes = {}
-    for name, across in (("square", None), ("oblong", 6e-6)):
-        made = self_affine(128, 4e-6, 2e-6, 0.8, 512e-6, 32e-6, 4)
-        path = tmp_path / f"{name}.sdf"
-        write_surface(replace(made, periodic=False, spacing_y=across), path)
-        notes[name] = len(read_scan(path, cutoff=0.08e-3).notes)
-    assert notes["oblong"] > notes["square"]
+    made = replace(self_affine(128, 4e-6, 2e-6, 0.8, 512e-6, 32e-6, 4), periodic=False)
+    forms = {
+        "": made,
+        "along x": replace(made, heights=made.heights[:, ::2].copy(), spacing_y=8e-6),
+        "along y": replace(made, heights=made.heights[::2].copy(), spacing=8e-6, spacing_y=4e-6),
+    }
+    for finer, surface in forms.items():
+        path = tmp_path / f"{finer or 'square'}.sdf"
+        write_surface(surface, path)
+        said = [note for note in read_scan(path, cutoff=0.08e-3).notes if "cells of" in note]
+        assert len(said) == bool(finer)
+        assert all(finer in note for note in said)

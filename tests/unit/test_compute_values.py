@@ -1,15 +1,23 @@
 """Small steps of a run by their values: rates beyond a compound's test, what is cut off a sole."""
 
 import math
+from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from underfoot.case import load
+from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import _untested_rates
 from underfoot.compute.sole import trimmed
+from underfoot.film import NewtonianFilm
+from underfoot.friction.film_shear import FilmShearLaw
 from underfoot.shoe import SoleMap
+
+HEEL = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 
 
 def with_compound(speed: float, slowest: float | None, fastest: float | None) -> Any:
@@ -61,3 +69,35 @@ def test_a_sole_that_rolls_keeps_what_any_angle_brings_down():
     assert trimmed(sole, 5.5e-4, flat).x.size == 20
     assert trimmed(sole, 5.5e-4, cast(Any, [0.0, flat])).x.size == 20
     assert trimmed(sole, 5.5e-4, 0.0).x.size == 10  # 6 rows and 4 of padding
+
+
+@dataclass(frozen=True)
+class HalfSheared:
+    """A film that shears its walls half as much as a Newtonian one."""
+
+    viscosity: float
+    name: str = "half_sheared"
+    source: str = "made for this test"
+
+    def flow_factor(self, gap, speed):
+        return np.ones_like(gap), np.zeros_like(gap)
+
+    def shear(self, speed, film_thickness):
+        return 0.5 * self.viscosity * np.asarray(speed) / np.asarray(film_thickness)
+
+
+def test_only_a_film_of_another_shear_takes_the_place_of_eta_v_over_h():
+    case = load(HEEL)
+    viscosity, at = 0.2, ([1e5], 0.5, [2e-5])
+
+    first = prepared(case, 4e-3, {"film": NewtonianFilm(viscosity)})
+
+    def law_with(film):
+        return prepared(case, 4e-3, {"film": film}, geometry=(first.sole, first.compliance)).law
+
+    plain = first.law
+    assert not isinstance(plain, FilmShearLaw)
+    assert not isinstance(law_with(None), FilmShearLaw)
+    halved = law_with(HalfSheared(viscosity))
+    assert halved(*at).viscous == pytest.approx(0.5 * viscosity * 0.5 / 2e-5)
+    assert halved(*at).adhesion == pytest.approx(plain(*at).adhesion)

@@ -14,6 +14,7 @@ from underfoot.explore.engines import _threads
 from underfoot.explore.proposals import FEWEST, FIRST, first_points
 from underfoot.explore.record import Ending
 from underfoot.explore.status import StudyStatus
+from underfoot.explore.study import Study
 
 
 def size_of_first_batch(kind, designs, dimensions=2, **method):
@@ -150,3 +151,22 @@ def test_who_waits_for_a_cluster_is_told_only_after_the_time_that_it_has(monkeyp
     assert _threads(workers_after(engines.PATIENCE + 0.5), "tcp://x", lines.append) == 5
     assert lines
     assert set(lines) == {"No worker: start dask worker tcp://x"}
+
+
+@pytest.mark.parametrize(
+    ("leads", "over", "begun"),
+    [(True, True, 1), (True, False, 0), (False, True, 0), (False, False, 0)],
+)
+def test_only_who_leads_gives_out_more_and_only_when_a_round_is_over(leads, over, begun):
+    asked, given = [], []
+
+    def end_round():
+        asked.append(True)
+        return over
+
+    one = object.__new__(Study)
+    one.store = cast(Any, SimpleNamespace(end_round=end_round, stopped=True))
+    one._begin_next = lambda: bool(given.append(True)) or True
+    assert list(one._claimed(leads, lambda text: None)) == []
+    assert len(asked) == leads
+    assert len(given) == begun

@@ -1,0 +1,133 @@
+"""Steps of the micro models with a value of their own; no block is solved."""
+
+import numpy as np
+import pytest
+
+from underfoot.block.assembly import impact_friction
+from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
+from underfoot.block.march import loaded_state, saved_state
+from underfoot.block.one_term_fit import fit_single_exponential
+from underfoot.block.result import EDGE_EXCESS, EnergyLedger, edge_excess_area
+from underfoot.core import DataError
+from underfoot.material import single_exponential_spectrum
+from underfoot.surface import HeightMap
+
+WAVE = 0.4e-3
+
+
+def waves_map():
+    """Return a periodic map of 0.8 by 0.6 mm with a wave along x and another along y."""
+    x, y = 0.8e-3 * np.arange(64) / 64, 0.6e-3 * np.arange(40) / 40
+    heights = 3e-6 * np.sin(2 * np.pi * x / 0.8e-3)[:, None] + 2e-6 * np.cos(2 * np.pi * y / 0.3e-3)
+    return HeightMap(heights, 0.8e-3 / 64, True, spacing_y=0.6e-3 / 40)
+
+
+FLOORS = {
+    "cosine": MicroSurface.checkerboard(20e-6, WAVE, offset=(0.07e-3, 0.02e-3)),
+    "triangular": MicroSurface.checkerboard(20e-6, WAVE, form="triangular"),
+    "wave": MicroSurface("wave", 20e-6, WAVE),
+    "paraboloid": MicroSurface("paraboloid", radius=1e-3),
+    "map": MicroSurface.of_map(waves_map()),
+}
+
+
+@pytest.mark.parametrize("form", FLOORS)
+def test_the_slope_of_a_floor_is_how_its_height_changes(form):
+    floor, step = FLOORS[form], 1e-10
+    x, y = np.random.default_rng(1).uniform(0.01e-3, 0.5e-3, (2, 60))
+    _, slope_x, slope_y = floor.height_and_slope(x, y)
+    along = (floor.height(x + step, y) - floor.height(x - step, y)) / (2 * step)
+    across = (floor.height(x, y + step) - floor.height(x, y - step)) / (2 * step)
+    steepest = max(np.abs(slope_x).max(), np.abs(slope_y).max())
+    np.testing.assert_allclose(slope_x, along, atol=1e-3 * steepest)
+    np.testing.assert_allclose(slope_y, across, atol=1e-3 * steepest)
+
+
+def test_heights_of_floors_are_those_of_their_names():
+    place = np.array([0.0, WAVE / 4, WAVE / 2])
+    assert FLOORS["wave"].height(place, 0.3e-3) == pytest.approx([10e-6, 0, -10e-6], abs=1e-12)
+    straight = FLOORS["triangular"].height(WAVE * np.array([0, 1 / 8, 1 / 4, 1 / 2]), 0.0)
+    assert straight == pytest.approx([10e-6, 5e-6, 0, -10e-6], abs=1e-12)
+    ball = FLOORS["paraboloid"].height(0.1e-3, 0.2e-3)
+    assert ball == pytest.approx(-(0.1e-3**2 + 0.2e-3**2) / 2e-3)
+    made, points = waves_map(), FLOORS["map"]
+    x, y = made.spacings[0] * np.arange(64), made.spacings[1] * np.arange(40)
+    np.testing.assert_allclose(
+        points.height(x[:, None], y), made.heights - made.heights.mean(), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.45, 0.499])
+def test_a_material_of_a_poisson_ratio_has_it(ratio):
+    shear = single_exponential_spectrum(3e6, 1e6, 100.0, source="made up")
+    made = MicroMaterial.from_poisson(shear, ratio, at="instantaneous")
+    assert made.poisson_ratio == pytest.approx(ratio)
+    fast = shear.instantaneous_modulus
+    assert made.bulk_modulus == pytest.approx(2 * fast * (1 + ratio) / (3 * (1 - 2 * ratio)))
+
+
+def test_energy_that_comes_in_is_stored_moves_or_is_lost():
+    stored = {"kinetic": 1.0, "strain": 2.0, "hourglass": 3.0, "contact": 4.0}
+    lost = {"material_loss": 5.0, "hourglass_loss": 6.0, "contact_loss": 7.0, "damping_loss": 8.0}
+
+    def residual(floor_work, top_work, **more):
+        parts = {**stored, **lost, **more, "floor_work": floor_work, "top_work": top_work}
+        arrays = {name: np.array([value]) for name, value in parts.items()}
+        return float(EnergyLedger(time=np.zeros(1), **arrays).residual[0])
+
+    assert residual(30.0, 6.0) == 0.0
+    assert residual(36.0, 6.0) == residual(30.0, 12.0) == 6.0
+    for name in (*stored, *lost):
+        assert residual(30.0, 6.0, **{name: 0.0}) == (stored | lost)[name]
+
+
+def test_the_area_at_the_rim_of_contact_is_its_length_times_a_share_of_an_element():
+    touching = np.zeros((8, 8), bool)
+    touching[2:5, 2:6] = True  # 3 rows across of 4 along
+    dx, dy = 2e-5, 1e-5
+    length = 2 * 3 * dy + 2 * 4 * dx
+    expected = EDGE_EXCESS * length * np.sqrt(dx * dy)
+    for periodic in (True, False):
+        assert edge_excess_area(touching, dx, dy, periodic=periodic) == pytest.approx(expected)
+    whole = np.ones((8, 8), bool)
+    assert edge_excess_area(whole, dx, dy, periodic=True) == 0.0
+    # a strip over the side is one strip where sides join, and ends at the side where they are free
+    strip = np.zeros((8, 8), bool)
+    strip[:, [0, 7]] = True
+    for periodic in (True, False):
+        rim = edge_excess_area(strip, dx, dy, periodic=periodic)
+        assert rim == pytest.approx(EDGE_EXCESS * 2 * 8 * dy * np.sqrt(dx * dy))
+
+
+def test_friction_by_impacts_grows_as_the_speed_squared_and_falls_with_pressure():
+    block, floor = MicroBlock(size=(0.8e-3, 0.8e-3, 0.5e-3)), FLOORS["cosine"]
+
+    def bound(speed, pressure, **more):
+        loading = MicroLoading(mean_pressure=pressure, speed=speed)
+        return impact_friction(block, more.get("floor", floor), 1150.0, loading)
+
+    assert bound(0.5, 1e5) > 0
+    assert bound(1.0, 1e5) == pytest.approx(4 * bound(0.5, 1e5))
+    assert bound(0.5, 2e5) == pytest.approx(0.5 * bound(0.5, 1e5))
+    assert bound(0.5, 1e5, floor=MicroSurface()) == 0.0
+    # rho h (v s)^2 / (p w) with the slope s = pi Rz / w of a checkerboard's flank
+    slope = np.pi * 20e-6 / WAVE
+    expected = 1150.0 * 31.25e-6 * (0.5 * slope) ** 2 / (1e5 * WAVE)
+    assert bound(0.5, 1e5) == pytest.approx(expected, rel=0.02)
+
+
+def test_a_decay_of_one_term_is_found_whatever_its_time():
+    t = np.geomspace(0.01, 100.0, 30)
+    for tau in (0.05, 1.0, 40.0):
+        fit = fit_single_exponential(t, 2e6 + 3e6 * np.exp(-t / tau))
+        assert fit.decay_rate.value == pytest.approx(1 / tau, rel=1e-4)
+        assert fit.equilibrium_modulus.value == pytest.approx(2e6, rel=1e-4)
+        assert fit.instantaneous_modulus.value == pytest.approx(5e6, rel=1e-4)
+        assert fit.spectrum.relaxation_modulus(tau) == pytest.approx(2e6 + 3e6 / np.e, rel=1e-4)
+
+
+def test_a_run_goes_on_from_its_own_file_and_from_no_other(tmp_path):
+    path = saved_state(tmp_path / "state.npz", {"key": np.array("this one"), "u": np.arange(3.0)})
+    assert loaded_state(path, "this one")["u"].tolist() == [0, 1, 2]
+    with pytest.raises(DataError, match="belongs to another"):
+        loaded_state(path, "another")

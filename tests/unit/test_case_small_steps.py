@@ -1,0 +1,181 @@
+"""Steps of a case by their values: what two roughnesses make, what counts as an assumption."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from underfoot.case import load
+from underfoot.case.describe import assumptions
+from underfoot.case.explanation import _documented, _equation_text, _summary
+from underfoot.case.motion import AnySpeed
+from underfoot.case.people import Transfer
+from underfoot.case.quantity import Quantity, default_of
+from underfoot.case.section import Section
+from underfoot.case.template import _overrides, _remark
+from underfoot.compute.resolve import resolved
+from underfoot.core import InputError, UnderfootError, to_si
+
+
+def every_kind(kind=Section):
+    """Yield each section and option of a case that the package has."""
+    for one in kind.__subclasses__():
+        if one.__module__.startswith("underfoot."):
+            yield one
+        yield from every_kind(one)
+
+
+FIELDS = {
+    f"{section.__name__}.{name}": field
+    for section in set(every_kind())
+    for name, field in section.model_fields.items()
+}
+HEEL = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
+
+
+@pytest.fixture(scope="module")
+def heel():
+    return load(HEEL)
+
+
+def of_unit(number, unit):
+    return f"{number:g}" if unit == "1" else f"{number:g} {unit}"
+
+
+def test_a_default_is_what_its_text_says_in_si_and_within_its_range():
+    checked = 0
+    for path, field in FIELDS.items():
+        ranges = [one for one in field.metadata if isinstance(one, Quantity)]
+        said = default_of(field)
+        if said is None or not ranges:
+            continue
+        (kind,) = ranges
+        text = said.text if isinstance(said.text, str) else of_unit(said.text, kind.unit)
+        assert to_si(text, kind.unit, where=path) == pytest.approx(field.default, abs=1e-30), path
+        assert kind.low <= field.default <= kind.high, path
+        checked += 1
+    assert checked > 150
+
+
+def test_a_range_has_a_unit_and_two_ends_in_their_order():
+    for path, field in FIELDS.items():
+        for kind in (one for one in field.metadata if isinstance(one, Quantity)):
+            assert kind.low < kind.high, path
+            assert to_si(of_unit(2, kind.unit), kind.unit, where=path) == 2.0, path
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "low", "high"), [("Speed", "m/s", -20, 20), ("Transfer", "1", 0, 1)]
+)
+def test_what_walks_or_slides_may_stand_still(name, unit, low, high):
+    """Speeds of a history go both ways; none or all of the weight may be on one foot."""
+    kind = {"Speed": AnySpeed, "Transfer": Transfer}[name].__metadata__[0]
+    assert (kind.unit, kind.low, kind.high) == (unit, low, high)
+
+
+def test_a_remark_beside_a_value_says_what_it_is_and_that_it_is_assumed():
+    field = FIELDS["ConstantOption.cof"]
+    assert _remark(field, assumed=False) == "# measured coefficient of friction, all parts"
+    assert _remark(field, assumed=True).endswith("all parts; assumed")
+    assert _remark(None, assumed=True) == "# assumed"
+    assert _remark(None, assumed=False) == ""
+
+
+def test_the_spread_of_two_roughnesses_is_that_of_their_root_sum(heel):
+    def part(rq, spread):
+        return cast(Any, SimpleNamespace(rq_or_estimate=rq, rq_uncertainty=spread))
+
+    told = heel.interface.rq_deviation(part(3e-6, 0.3e-6), part(4e-6, 0.2e-6))
+    drawn = np.random.default_rng(2).normal((3, 4), (0.3, 0.2), (200_000, 2))
+    whole = np.hypot(*drawn.T)
+    assert told == pytest.approx(whole.std() / whole.mean(), rel=0.01)
+    assert heel.interface.rq_deviation(part(5e-6, 0.5e-6), part(0.0, None)) == pytest.approx(0.1)
+    assert heel.interface.rq_deviation(part(5e-6, None), part(4e-6, None)) is None
+
+
+@pytest.mark.parametrize("part", [None, 0.05])
+def test_a_measured_coefficient_is_the_sum_of_its_parts(heel, part):
+    changes = {"friction.model": "constant", "friction.cof": 0.3}
+    case = heel.replace(changes | ({} if part is None else {"friction.hysteresis_cof": part}))
+    law: Any = case.friction.build(resolved(case))
+    assert law.cof_adhesion + law.cof_hysteresis == pytest.approx(0.3)
+    assert law.cof_hysteresis == (part or 0.0)
+    with pytest.raises(InputError):
+        heel.replace(changes | {"friction.hysteresis_cof": 0.31})
+
+
+def test_only_what_nobody_measured_or_read_is_an_assumption(heel):
+    path = "floor.roughness.rq"
+
+    def told(**marks):
+        case = heel.replace({path: {"value": "5 um", "source": "a stylus", **marks}})
+        about = [one for one in assumptions(case) if one.about == "floor.roughness"]
+        return any("rq = 5 um" in one.what for one in about)
+
+    assert not told()
+    assert told(assumed=True)
+    assert told(verified=False)
+
+
+def test_equations_and_summaries_are_said_in_short():
+    assert _equation_text([]) == "not in the report"
+    assert _equation_text([4, 5]) == "Eq. 4, 5 of the report"
+
+    def told():
+        """One two three four five six.
+
+        More.
+        """
+
+    assert _summary(told, 80) == "One two three four five six."
+    cut = _summary(told, 20)
+    assert len(cut) <= 20
+    assert cut.endswith(" …")
+
+
+def test_what_is_cut_off_after_a_colon_is_marked():
+    def shortened():
+        """Return the first of three, in this order:
+
+        Source: A paper of 1999.
+        """
+
+    def whole():
+        """Return the first of three.
+
+        Source: A paper of 1999.
+        """
+
+    text = _documented("shortened", shortened, full=False)
+    assert "in this order: …" in text
+    assert " …" not in _documented("whole", whole, full=False)
+
+
+def test_a_template_names_keys_of_an_old_entry_as_a_case_has_them_now():
+    leaf = SimpleNamespace(given="round", assumed=False)
+    entry = SimpleNamespace(values={"heel.profile": leaf, "heel.length": leaf})
+    catalogue = cast(Any, SimpleNamespace(entry=lambda kind, name: entry))
+    first, second = _overrides("shoe", "own", catalogue)
+    assert first.startswith("# heel.profile.model = ")
+    assert second.startswith("# heel.length = ")
+
+
+@pytest.mark.parametrize(
+    ("length", "width", "refused"),
+    [("20 mm", "20 mm", ""), ("400 mm", "20 mm", "patch_length"), ("20 mm", "200 mm", "width")],
+)
+def test_a_worn_patch_is_no_larger_than_its_heel(length, width, refused):
+    case = load(HEEL)
+    changes = {
+        "shoe.wear.mode": "patch",
+        "shoe.wear.depth": "1 mm",
+        "shoe.wear.patch_length": length,
+        "shoe.wear.patch_width": width,
+    }
+    if refused:
+        with pytest.raises(UnderfootError, match=f"{refused}.*larger than the shoe"):
+            case.replace(changes)
+    else:
+        assert case.replace(changes).shoe.wear.patch_length == pytest.approx(0.02)

@@ -1,0 +1,61 @@
+"""Costs and steps of the sole solver by their values: what is refused, how long a step may be."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from underfoot.core import InputError
+from underfoot.shoe import SoleMap
+from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
+from underfoot.sole_contact.solver import longest_step, passing_time
+
+
+def test_a_finer_grid_costs_more_than_its_cells_and_never_less_than_a_program_at_rest():
+    coarse, fine = solution_cost(3.6e-3, 1e-3), solution_cost(3.6e-3, 0.5e-3)
+    assert coarse.cells == 3600
+    assert fine.cells == 4 * coarse.cells
+    assert AT_REST < coarse.memory < fine.memory < 4 * coarse.memory
+    for few, many in zip(coarse.seconds, fine.seconds, strict=True):
+        assert many / few == pytest.approx(4**1.2)
+    assert coarse.seconds[0] < coarse.seconds[1]
+
+
+@pytest.mark.parametrize("most", [200e6, 600e6])
+def test_the_spacing_that_is_advised_is_allowed_and_hardly_coarser_than_it_must_be(most):
+    fine = solution_cost(0.02, 0.2e-3)
+    with pytest.raises(InputError) as told:
+        refuse_too_large(fine, most_memory=most, where="numerics.grid_spacing", spacing=0.2e-3)
+    spacing = 1e-3 * float(re.search(r"spacing of ([\d.]+) mm", str(told.value))[1])
+    refuse_too_large(solution_cost(0.02, spacing), most_memory=most, where="", spacing=spacing)
+    with pytest.raises(InputError):
+        refuse_too_large(
+            solution_cost(0.02, 0.8 * spacing), most_memory=most, where="", spacing=0.8 * spacing
+        )
+
+
+def striped(*lengths: int) -> SoleMap:
+    """Return three rows across of land of so many cells of 1 mm each, one cell apart."""
+    row = np.concatenate([[False], *([*[True] * length, False] for length in lengths)])
+    x, y = 1e-3 * np.arange(row.size), 1e-3 * np.arange(5)
+    land = np.zeros((row.size, 5), bool)
+    land[:, 1:4] = row[:, None]
+    inside = np.zeros_like(land)
+    inside[:, 1:4] = True
+    clear = np.where(land, 0.0, 1e-3)
+    return SoleMap(x, y, clear, inside, land, np.zeros(land.shape), 1e-3, np.zeros((4, 2)))
+
+
+def test_the_floor_passes_a_piece_of_land_in_its_length_over_the_speed():
+    assert passing_time(striped(4), 0.5) == pytest.approx(4e-3 / 0.5)
+    # of the cells of a long and a short piece: 6 of 8 lie in 6 mm, 2 in 2 mm
+    assert passing_time(striped(6, 2), -0.5) == pytest.approx((6 * 6 + 2 * 2) / 8 * 1e-3 / 0.5)
+    assert passing_time(striped(4), 0.0) == math.inf
+
+
+def test_a_step_is_no_longer_than_its_stage_and_no_finer_than_its_eighth():
+    stage = 0.08
+    assert longest_step(stage, math.inf) == stage
+    assert longest_step(stage, 1e-9) == pytest.approx(stage / 8)
+    assert longest_step(stage, 0.5 * stage / 6) == pytest.approx(0.5 * stage)
