@@ -127,6 +127,17 @@ def drawn_map(case: Case, spacing: float) -> SoleMap:
     return sole_map(case.replace("numerics.cells_along", 1), spacing)
 
 
+def drawn_edges(case: Case, spacing: float) -> tuple[NDArray[np.float64], ...]:
+    """Return the lines (n, 2, 2; m) at which lugs and sides of a case's file end on its map."""
+    outsole, surface = file_outsole(case), file_surface(case)
+    return shoe.floor_lines(
+        surface,
+        (outsole.edges, outsole.sides),
+        shoe_angle=case.motion.shoe_angle,
+        spacing=spacing,
+    )
+
+
 def _with_cells(case: Case, sole: SoleMap, fine: Callable[[int], SoleMap]) -> SoleMap:
     """Return the sole with the cells along the sliding that the case asks for."""
     columns = cells_along(case, sole)

@@ -13,6 +13,7 @@ from underfoot.shoe.cut_cells import CutCells
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
+NONE: Floats = np.empty((0, 2, 2))
 STEEP = 2.0
 """Slope between cells of one kind beyond which a wall stands between them."""
 TOLERANCE, HELD = 0.75, 0.05
@@ -55,17 +56,30 @@ class SurfaceMesh:
 
 
 def surface_mesh(
-    x: Floats, y: Floats, height: Floats, land: Mask, cut: CutCells | None = None
+    x: Floats,
+    y: Floats,
+    height: Floats,
+    land: Mask,
+    cut: CutCells | None = None,
+    *,
+    edges: Floats = NONE,
+    rim: Floats = NONE,
+    reach: float = 0.0,
 ) -> SurfaceMesh:
     """Return the surface through the heights (nx, ny; m, nan outside) of square cells.
 
     Lines between levels (land, channels, what a wall parts) pass within a cell of where the cells
-    change; those of lugs, where ``cut`` has their crossings, within ``DRAWN`` of the drawing.
+    change; those of lugs, where ``cut`` has their crossings, within ``DRAWN`` of the drawing, and
+    where ``edges`` and ``rim`` (n, 2, 2; m), lines at which lugs and the sole end, are known within
+    ``reach`` (m) of them.
     Triangles between lines are within ``ERROR`` of the cells where they are smooth.
     """
     side = float(np.median(np.diff(x)))
+    known = tuple(
+        _Edges((lines - np.array([x[0], y[0]])) / side + 1, reach / side) for lines in (edges, rim)
+    )
     grid = _Grid.of(np.pad(height, 1, constant_values=np.nan), np.pad(land, 1), side)
-    ends, lines = _divided(*_lines(grid, cut), LATTICE / side)
+    ends, lines = _divided(*_lines(grid, cut, *known), LATTICE / side)
     inner = _lattice(grid, ends, LATTICE / side, NEAR / side)
     ends, lines, triangles, levels = _triangles(grid, ends, lines, inner)
     for _ in range(REFINED):
@@ -176,12 +190,36 @@ def _beside_another(level: Indices, steep: Mask) -> Mask:
     return np.asarray(binary_dilation(other, iterations=2), bool)
 
 
-def _lines(grid: _Grid, cut: CutCells | None) -> tuple[Floats, Indices]:
+class _Edges:
+    """Lines (n, 2, 2; cells) that are known within ``reach`` cells of a place."""
+
+    def __init__(self, lines: Floats, reach: float) -> None:
+        import shapely
+
+        self._lines = shapely.linestrings(lines)
+        self._tree, self._reach = shapely.STRtree(self._lines), reach
+
+    def nearest(self, places: Floats) -> tuple[Floats, Mask]:
+        """Return the nearest point of the lines to each place (n, 2), and where one is near."""
+        import shapely
+
+        if not len(self._lines):
+            return places, np.zeros(len(places), bool)
+        points = shapely.points(places)
+        (at, line), away = self._tree.query_nearest(points, return_distance=True, all_matches=False)
+        onto = shapely.line_interpolate_point(
+            self._lines[line], shapely.line_locate_point(self._lines[line], points[at])
+        )
+        near = away <= self._reach
+        return np.where(near[:, None], shapely.get_coordinates(onto), places), near
+
+
+def _lines(grid: _Grid, cut: CutCells | None, edges: _Edges, rim: _Edges) -> tuple[Floats, Indices]:
     """Return places (n, 2) and lines (m, 2) between levels, straightened.
 
     Of the places between cells that differ, joined around each corner of four cells; where three
     or four levels meet they are joined in the corner. A place is the middle, of land and channel
-    where ``cut`` has the edge.
+    where ``cut`` has the edge, and the nearest of ``edges`` or the ``rim``.
     """
     level = grid.level
     n, m = level.shape
@@ -203,13 +241,22 @@ def _lines(grid: _Grid, cut: CutCells | None) -> tuple[Floats, Indices]:
     i, j = np.divmod(cell, m)
     places = np.stack([i, j], axis=1) + np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]])[kind]
     drawn = np.zeros(len(names), bool)
-    if cut is not None:
-        for axis, share in enumerate((cut.along, cut.across)):
-            after = (i + (axis == 0)) % n, (j + (axis == 1)) % m
-            edge = (kind == axis) & (level[i, j] > 0) & (level[after] > 0)
-            edge &= grid.is_land[level[i, j]] != grid.is_land[level[after]]
-            places[edge, axis] += np.pad(share, 1, constant_values=0.5)[i[edge], j[edge]] - 0.5
-            drawn |= edge
+    for axis in (0, 1):
+        after = (i + (axis == 0)) % n, (j + (axis == 1)) % m
+        two = (kind == axis) & (level[i, j] > 0) & (level[after] > 0)
+        two &= grid.is_land[level[i, j]] != grid.is_land[level[after]]
+        one = (kind == axis) & ((level[i, j] > 0) != (level[after] > 0))
+        if cut is not None:
+            share = np.pad((cut.along, cut.across)[axis], 1, constant_values=0.5)
+            places[two, axis] += share[i[two], j[two]] - 0.5
+            drawn |= two
+        for known, here in ((edges, two & ~drawn), (rim, one)):
+            places[here], drawn[here] = known.nearest(places[here])
+    around = [
+        level[np.minimum(i + a, n - 1), np.minimum(j + b, m - 1)] for a in (0, 1) for b in (0, 1)
+    ]
+    ending = (kind == 2) & (np.min(around, axis=0) == 0)
+    places[ending], _ = rim.nearest(places[ending])
     lines = [
         _along_edge(places, chain, EDGE / grid.side)
         if drawn[chain[1:-1]].all() and len(chain) > 2
@@ -318,7 +365,10 @@ def _along_edge(places: Floats, chain: list[int], tolerance: float) -> Indices:
             here = _meeting(path, *ends)
         elif ends := ends[-1:] if k == 0 else ends[:1]:
             first, then = path[ends[0]]
-            way = (then - first) / np.hypot(*(then - first))
+            long = float(np.hypot(*(then - first)))
+            if long == 0:
+                continue
+            way = (then - first) / long
             here = first + way * ((path[k] - first) @ way)
         else:
             continue

@@ -2,6 +2,7 @@
 
 from .geometry import SoleMap as SoleMap
 from .geometry import SoleSurface as SoleSurface
+from .grids import floor_lines as floor_lines
 from .grids import heel_map as heel_map
 from .grids import heel_surface as heel_surface
 from .grids import place_on_floor as place_on_floor

@@ -1,7 +1,7 @@
 """Soles on square cells: in their own frame, and tilted over the floor."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -410,6 +410,24 @@ def _above_land(surface: SoleSurface, base: Array) -> Array:
     channel = surface.inside & ~surface.land
     window = 1 + 2 * max(1, round(BESIDE_A_WALL / surface.spacing))
     return np.where(channel, maximum_filter(np.where(channel, above, 0.0), window), above)
+
+
+def floor_lines(
+    surface: SoleSurface, sets: Sequence[Array], *, shoe_angle: float, spacing: float
+) -> tuple[Array, ...]:
+    """Return lines (n, 2, 2; m) in the plane of a surface as they lie on its ``surface_map``."""
+    from .tread_measures import surface_without_slits
+
+    surface, _ = surface_without_slits(surface, CELLS_REFUSED * spacing)
+    base = _land_everywhere(surface)
+    _, rear = _outline_on_floor(surface, base, shoe_angle)
+
+    def on_floor(lines: Array) -> Array:
+        x, y = np.moveaxis(lines, -1, 0)
+        risen = base[_cells(surface, x, y)] * math.sin(shoe_angle)
+        return np.stack([x * math.cos(shoe_angle) - risen - rear, y], axis=-1)
+
+    return tuple(on_floor(lines) for lines in sets)
 
 
 def _signed_distance(

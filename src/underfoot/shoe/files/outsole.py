@@ -17,6 +17,7 @@ from ..geometry import SoleSurface, centred
 from ..tread_measures import (
     QUIET,
     WIDEST_CHANNEL,
+    TreadMap,
     arch_area,
     height_noise,
     tread_map,
@@ -26,6 +27,7 @@ from . import orientation
 from .bodies import Found, found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
+from .edges import section_lines
 from .mesh import Mesh
 from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
@@ -42,6 +44,7 @@ _MOST_APART = 0.02
 _PLAINLY_OFF = 2.0  # off centre across over that along: a piece is broader than long
 _LONGEST_LAG = 1.5e-3  # m: walls stand farther apart
 _POINTS_NOISE = math.sqrt(2.0)  # a height within a face weighs three points: mean sum w^2 = 1/2
+_NOISY = 10e-6  # m, of heights: a scan's
 _ARCH = 0.02  # of the plan form: smaller ones are not told
 
 
@@ -59,6 +62,8 @@ class FileOutsole:
             surface without thickness.
         whole_length: Of the sole before the region was cut, m.
         draft: Median angle of the channels' walls from upright, rad; None without walls.
+        edges, sides: (n, 2, 2) m, lines in plan at which lugs end, and the body above them; none of
+            a scan.
     """
 
     surface: SoleSurface
@@ -72,6 +77,8 @@ class FileOutsole:
     thickness: float | None
     whole_length: float
     draft: float | None
+    edges: Array
+    sides: Array
 
 
 def outsole_from_file(path: Path | str, settings: FileSettings | None = None) -> FileOutsole:
@@ -173,15 +180,27 @@ def _outsole(
         noise=min(height_noise(height), height_noise(height.T)),
     )
     check_sole(shape, where)
-    height, part, region_remarks = _region(height, seen.spacing, chosen, where)
-    thickness = thickness[part]
+    cells = np.array(height.shape)
+    height, block, region_remarks = _region(height, seen.spacing, chosen, where)
+    thickness = thickness[block]
     remarks += region_remarks
-    surface, tread_remarks = _surface(height, seen.spacing, name, lag)
+    surface, tread_remarks, tread = _surface(height, seen.spacing, name, lag)
     remarks += tread_remarks
     check_carried(surface.inside, surface.land, seen.spacing, mesh.unmet, where)
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
     body = float(np.median(thickness[surface.land]))
+    across = np.diag([1.0, -1.0 if chosen.mirror else 1.0, 1.0])
+    corner = np.array([rows[0], columns[0]], dtype=float)
+    if chosen.mirror:  # the last column is the first
+        corner[1] = columns[0] + cells[1] - 1
+    first = np.append(np.array(seen.first) + corner * seen.spacing, seen.level) @ across
+    cut = np.array([each.start or 0 for each in block]) * seen.spacing
+    first[:2] += cut - np.array([surface.x[0], surface.y[0]])
+    faces = (mesh.triangles, across @ axes, first, surface)
+    none, lugs = np.empty((0, 2, 2)), surface.tread_depth[surface.tread_depth > 0]
+    quiet = tread.noise <= _NOISY
+    deep = float(lugs.max()) if lugs.size else 0.0
     return FileOutsole(
         surface=replace(surface, remarks=tuple(remarks)),
         format=mesh.format,
@@ -194,6 +213,8 @@ def _outsole(
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
         draft=draft,
+        edges=section_lines(*faces, tread.level) if lugs.size and quiet else none,
+        sides=section_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
     )
 
 
@@ -395,7 +416,9 @@ def _region(
     return height[block], block, remarks
 
 
-def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSurface, list[str]]:
+def _surface(
+    height: Array, spacing: float, name: str, lag: int
+) -> tuple[SoleSurface, list[str], TreadMap]:
     tread = tread_map(height, spacing, lag=lag)
     lugs = tread.tread_depth[tread.tread_depth > 0]
     deep = float(np.median(lugs)) if lugs.size else 0.0
@@ -409,7 +432,7 @@ def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSu
         f"Land is what stands within {tread.level * 1e3:.2g} mm of the floor side; channels are "
         "deeper."
     )
-    if tread.noise > 10e-6:
+    if tread.noise > _NOISY:
         points = _POINTS_NOISE * tread.noise
         off = "; planes through the land take it off" if tread.noise > QUIET else ""
         remarks.append(
@@ -433,4 +456,4 @@ def _surface(height: Array, spacing: float, name: str, lag: int) -> tuple[SoleSu
         name=name,
         base=tread.base,
     )
-    return surface, remarks
+    return surface, remarks, tread

@@ -1,0 +1,93 @@
+"""The lugs of a file are drawn where its faces end, whichever way it lies and is cut."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+import trimesh
+
+from underfoot.report.surface_mesh import surface_mesh
+from underfoot.shoe import Flat, Heel, Tread, floor_lines, surface_map
+from underfoot.shoe.files import FileSettings, outsole_from_file
+from underfoot.shoe.parametric import write_sole
+
+HEEL = Heel(
+    length=0.07, width=0.062, rear_radius=0.03, outsole_thickness=0.012, profile=Flat(),
+    tread=Tread("hexagons", 7e-3, 3e-3, 3e-3),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """The heel by its lengths, and the same with the solid turned and moved."""
+    folder = tmp_path_factory.mktemp("soles")
+    plain, turned = folder / "plain.stl", folder / "turned.stl"
+    write_sole(HEEL, plain)
+    solid = trimesh.load_mesh(plain)
+    turn = trimesh.transformations.euler_matrix(0.4, -0.3, 2.1)
+    solid.apply_transform(turn)
+    solid.apply_translation([120.0, -40.0, 15.0])
+    solid.export(turned)
+    return plain, turned
+
+
+def lug_edges(file, angle=0.0, spacing=0.2e-3, **given):
+    """Places on the drawn edges of lugs, (n, 2), in m from the rear end and the middle."""
+    outsole = outsole_from_file(file, FileSettings(**given))
+    chosen = {"shoe_angle": angle, "spacing": spacing}
+    sole = surface_map(outsole.surface, **chosen)
+    lugs, sides = floor_lines(outsole.surface, (outsole.edges, outsole.sides), **chosen)
+    height = np.where(sole.inside, sole.clearance, np.nan)
+    mesh = surface_mesh(sole.x, sole.y, height, sole.land, edges=lugs, rim=sides, reach=0.4e-3)
+    walls = mesh.walls[mesh.land[mesh.walls[:, 0]] != mesh.land[mesh.walls[:, 2]]][:, :2]
+    ends = mesh.points[walls][:, :, :2]
+    rim = sides.reshape(-1, 2)
+    begin = rim[:, 0].min(), (rim[:, 1].min() + rim[:, 1].max()) / 2
+    return np.concatenate([ends[:, 0], ends.mean(axis=1)]) - begin, outsole
+
+
+def off_the_design(places, heel):
+    inner = heel.inward_distance(*places.T) > 1e-3
+    assert np.count_nonzero(inner) > 200
+    return np.abs(heel.tread.channel_distance(*places[inner].T))
+
+
+def test_edges_of_lugs_are_those_of_the_faces(files):
+    places, outsole = lug_edges(files[0])
+    assert off_the_design(places, HEEL).max() < 0.02e-3
+    rim = outsole.sides.reshape(-1, 2)
+    assert np.abs(HEEL.inward_distance(*rim.T)).max() < 0.1e-3  # chords of the file's arcs
+
+
+def test_edges_turn_with_the_file_and_its_mirror(files):
+    """A hexagonal tread of a symmetric heel is its own mirror image."""
+    for file, given in ((files[1], {}), (files[0], {"mirror": True})):
+        places, _ = lug_edges(file, **given)
+        assert np.quantile(off_the_design(places, HEEL), 0.95) < 0.03e-3
+
+
+def test_edges_lie_where_a_tilted_sole_has_them(files):
+    angle = radians(8)
+    places, _ = lug_edges(files[0], angle=angle)
+    flat = np.column_stack([places[:, 0] / np.cos(angle), places[:, 1]])
+    assert np.quantile(off_the_design(flat, HEEL), 0.95) < 0.03e-3
+
+
+def test_a_cut_keeps_the_edges_of_its_part(files):
+    places, outsole = lug_edges(files[0], region="heel", region_length=0.04)
+    assert places[:, 0].max() < 0.0405
+    inner = places[places[:, 0] < 0.038]
+    assert off_the_design(inner, HEEL).max() < 0.02e-3
+
+
+def test_a_scan_and_a_plain_sole_have_no_lines(tmp_path):
+    plain = tmp_path / "plain.stl"
+    write_sole(replace(HEEL, tread=None), plain)
+    assert not len(outsole_from_file(plain).edges)
+    scan = trimesh.load_mesh(plain).subdivide_to_size(1.0)
+    noise = np.random.default_rng(3).normal(0.0, 0.05, scan.vertices.shape)
+    scan.vertices = scan.vertices + noise
+    scan.export(tmp_path / "scan.stl")
+    outsole = outsole_from_file(tmp_path / "scan.stl")
+    assert not len(outsole.edges) and not len(outsole.sides)
