@@ -14,6 +14,7 @@ from underfoot.trials.statistics import effect_size
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
+from underfoot.trials.study.study_tests import comparison_findings
 
 LEVEL = protocol("level_walking")
 
@@ -88,7 +89,39 @@ def test_what_can_be_told_is_told_and_the_rest_has_its_reason(name):
 def test_a_comparison_that_nothing_is_left_of_says_why():
     study = study_of(files_of(STUDIES["every person an own shoe"]), LEVEL)
     (lost,) = (one for one in study.findings if "not done" in one.table.columns)
-    assert "shoe" in lost.table.rows[0][0]
+    assert "shoe" in str(lost.table.rows[0][0])
+
+
+def test_a_column_of_one_value_is_named_on_the_page():
+    """One value, or one a file: no factor of any study, and the page says which and why."""
+    told = 'floor: RCOF is known at one value only, "tile": the effect of floor is not estimated'
+    rows = crossed(6, "ab", ("tile",))
+    rows = [({**c, "note": f"n{i}"}, v, s) for i, (c, v, s) in enumerate(rows)]
+    study = study_of(files_of(rows), LEVEL)
+    assert study.findings[0].table.notes[-2:] == (
+        told, "note: RCOF is known once at each value: the effect of note is not estimated"
+    )  # fmt: skip
+    assert not any(told in caution for one in study.findings for caution in one.cautions)
+    assert {row[0] for one in study.findings if one.name == "mixed_rcof" for row in one.table.rows
+            } == {"shoe"}  # fmt: skip
+    for kind, response in (
+        ("report_g6", "acof"),
+        ("en_iso_13287", "cof"),
+        ("level_walking", "rcof"),
+    ):
+        files = [
+            FileResult(f"{i}.csv", main={response: 0.2 + 0.01 * i, "slip": 0.0},
+                       conditions={"outsole": "a", "order": "a", "shoe": "a"})
+            for i in range(4)
+        ]  # fmt: skip
+        lost = [
+            row[0] for one in study_of(files, protocol(kind)).findings for row in one.table.rows
+            if one.table.columns == ("not done",)
+        ]  # fmt: skip
+        assert any('at one value only, "a"' in text for text in lost), kind
+    assert comparison_findings("tau_hydro", [], {"fluid": []})[0].table.rows == (
+        ("fluid: tau_hydro is known nowhere: the effect of fluid is not estimated",),
+    )
 
 
 def test_two_persons_have_no_effect_size():
