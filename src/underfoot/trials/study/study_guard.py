@@ -24,6 +24,7 @@ _BODY = {
 }  # fmt: skip
 """Conditions that a person keeps, and how far they may differ (relative)."""
 _JUDGED, _UNLIKE = 8, 0.3  # trials needed; ln of RCOF over the person's others; assumed
+_MEASURED = {FORCE: "mean force in stance", HEIGHT: "height of the highest marker"}
 _LEAST, _SCATTERS = 0.02, 6.0
 _LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
 """A body is another's from six times the scatter within the study's persons, but at least 2 %, and
@@ -82,7 +83,7 @@ def guarded_files(
             copies[numbers].append(i)
     copies |= {frozenset(pair): sorted(pair) for pair in _with_same_steps(recordings)}
     doubts: list[Doubt] = []
-    refused: dict[int, str] = {}
+    refused: dict[int, tuple[str, str]] = {}
     told: set[tuple[int, ...]] = set()
     for key, members in copies.items():
         if len(members) < 2 or tuple(members) in told:
@@ -99,12 +100,17 @@ def guarded_files(
         doubts.append(Doubt(words, names[1:] if same else names, True))
         refused |= dict.fromkeys(
             members[1:] if same else members,
-            f"{what} as {names[0]}"
+            (f"{what} as {names[0]}", f"{what} as another file")
             if same
-            else f"{what} under {', '.join(names)}, noted differently",
+            else (
+                f"{what} under {', '.join(names)}, noted differently",
+                f"{what}, noted differently",
+            ),
         )
     files = [
-        replace(one, verdict=REFUSED, reasons=(refused[i], *one.reasons)) if i in refused else one
+        replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
+        if i in refused
+        else one
         for i, results in enumerate(recordings)
         for one in results
     ]
@@ -493,7 +499,7 @@ def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt
         beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
         distances, wrong = (sum(not _kind(name) for name in part) for part in (one, beyond))
         texts = [
-            f"{name.split(' (')[0]} {100 * v:+.0f} %" for name, v in beyond.items() if _kind(name)
+            f"{_MEASURED[name]} {100 * v:+.0f} %" for name, v in beyond.items() if name in _MEASURED
         ]
         if wrong > max(1, 0.3 * distances):
             texts.append(f"{wrong} of {distances} distances of markers")

@@ -80,7 +80,9 @@ def comparison_findings(
     if model is None and not warning and not table.model.dependent:
         model = table.model
     tukey = _tukey(response, model, values, factors, persons) if model is not None else []
-    anova = Finding.of_anova(table, warning)
+    # the mixed model of persons who repeat counts in place of trials taken as independent
+    repeats = bool(warning) and len(set(persons)) > 1
+    anova = Finding.of_anova(table, warning, outcome="" if repeats else name)
     found = [*findings, *tukey, anova] if warning else [anova, *tukey]
     return [_with_left_out(found[0], left, confounded), *found[1:], *repeated]
 
@@ -136,7 +138,8 @@ def _mixed(
     columns = ("term", "df", "df of error", "F", "p")
     rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
     files = model_files(key, title, model, response, values, factors, persons)
-    mixed = replace(finding(key, title, columns, rows, note, model.warnings), files=files)
+    mixed = finding(key, title, columns, rows, note, model.warnings)
+    mixed = replace(mixed, files=files, outcome=name)
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
@@ -321,7 +324,7 @@ def _t_tests(
     files: Sequence[FileResult], key: str, levels: list[str], person: str
 ) -> list[Finding]:
     """Return t tests of persons' means where persons are known, of trials otherwise."""
-    rows, findings = [], []
+    rows, kinds, findings = [], [], []
     for name in ("peak_pressure", "peak_slipping_speed", "rcof"):
         having = [f for f in files if name in f.main and str(f.conditions.get(key)) in levels]
         values = [f.main[name] for f in having]
@@ -341,12 +344,15 @@ def _t_tests(
             except UnderfootError:
                 continue
             rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
+            kinds.append(kind)
     if rows:
         # rows come in pairs: Welch's test, on which the correction stands, then Student's
-        corrected = iter(
-            statistics.corrected_p([row[-1] for row in rows if row[1].startswith("Welch")])
-        )
-        rows = [(*row, next(corrected) if row[1].startswith("Welch") else None) for row in rows]
+        welch = [row[-1] for row, kind in zip(rows, kinds, strict=True) if kind == "welch"]
+        corrected = iter(statistics.corrected_p(welch))
+        rows = [
+            (*row, next(corrected) if kind == "welch" else None)
+            for row, kind in zip(rows, kinds, strict=True)
+        ]
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
         columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")
         findings.insert(0, finding(f"t_{key}", title, columns, rows))
@@ -371,7 +377,7 @@ def _logistic(
             try:
                 fit = statistics.logistic_regression(y, {name: x}, method=method)
             except UnderfootError as error:
-                cautions.append(f"{METHODS[method].split(' (')[0]}: {error.what}")
+                cautions.append(f"{method.replace('_', ' ')}: {error.what}")
                 continue
             best = best or fit
             cautions += fit.warnings

@@ -9,6 +9,7 @@ import numpy as np
 from underfoot.core import UnderfootError
 
 from .. import statistics
+from ..recording.measurement import MEAN_OF_STEPS
 from ..walking.gait_context import PERCENT
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
@@ -49,8 +50,9 @@ class Finding:
     """One test: what was asked, the table, and cautions.
 
     Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
-    ``values`` the means of the persons (or the single values) by level. ``files``: text by the name
-    of a file from which other programs find the test again.
+    ``values`` the means of the persons (or the single values) by level. ``outcome``: what was
+    measured, where the p of the table are those that this outcome stands on. ``files``: text by
+    the name of a file from which other programs find the test again.
     """
 
     name: str
@@ -62,16 +64,19 @@ class Finding:
     marks: Mapping[str, str] = field(default_factory=dict)
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
+    outcome: str = ""
 
     @classmethod
-    def of_anova(cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
+    def of_anova(
+        cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = (), *, outcome: str = ""
+    ) -> Self:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
         plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
         name = f"anova_{plain}_type_{anova.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
         table = Table(name, anova.title, columns, rows)
-        return cls(name, anova.title, table, (*cautions, *anova.warnings))
+        return cls(name, anova.title, table, (*cautions, *anova.warnings), outcome=outcome)
 
 
 def finding(
@@ -324,7 +329,7 @@ def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[
 def counted_steps(result: FileResult) -> int:
     """Return the number of steps of a file that gave a required friction."""
     return sum(
-        m["name"] == "rcof" and m["value"] is not None and str(m["item"]).startswith("step ")
+        m["name"] == "rcof" and m["value"] is not None and m["item"] != MEAN_OF_STEPS
         for m in result.measurements
     )
 
