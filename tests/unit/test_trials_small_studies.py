@@ -11,6 +11,7 @@ from underfoot.core.units import plain_number
 from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size
+from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
@@ -130,6 +131,7 @@ def test_two_persons_have_no_effect_size():
     study = study_of(files_of(crossed(2, "ab", trials=1)), LEVEL)
     (tukey,) = (one for one in study.findings if one.name.startswith("tukey"))
     assert tukey.table.rows[0][-3:] == (None, None, None)
+    assert "Hedges' g is not estimated" in tukey.table.notes[0]
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -148,6 +150,44 @@ def test_a_page_prints_numbers_that_a_person_reads(name):
 )  # fmt: skip
 def test_what_is_too_small_or_large_is_told_by_its_bound(value, text):
     assert plain_number(value) == text
+
+
+def table_of(tmp_path, name, text):
+    (tmp_path / "table.csv").write_text(text)
+    analysis = analyse_folder(tmp_path, protocol(name), processes=1)
+    return analysis, {table.name: table for table in analysis.study.tables}
+
+
+def test_one_reading_has_no_uncertainty(tmp_path):
+    """It was printed as 0.000 in the column of the COF."""
+    rows = "sample,PTV\nA,36\n" + "B,36\n" * 5
+    _, tables = table_of(tmp_path, "en_16165_pendulum", rows)
+    one, five = (
+        dict(zip(tables["samples"].columns, row, strict=True)) for row in tables["samples"].rows
+    )
+    assert (one["u"], one["u of COF"], one["PTV SD"]) == (None, None, None)
+    assert isinstance(five["u of COF"], float)
+    assert five["u of COF"] > 0
+    assert "Of a single reading" in " ".join(tables["samples"].notes)
+    # five equal readings of whole numbers: an interval of no width would say that nothing scatters
+    assert (five["PTV"], five["PTV SD"], five["PTV 95 % low"]) == (36, 0, None)
+
+
+@pytest.mark.parametrize(("machine", "told"), [("", True), ("BOT-3000E", False)])
+def test_a_cof_without_its_machine_is_doubted(tmp_path, machine, told):
+    rows = "sample,machine,cof\n" + "".join(f"A,{machine},{c}\n" for c in (0.41, 0.4, 0.42))
+    analysis, tables = table_of(tmp_path, "machine_cof", rows)
+    assert any('"machine" is noted for no reading' in str(one) for one in analysis.doubts) == told
+    assert tables["samples"].rows[0][-1] == pytest.approx(0.01 / 3**0.5)
+
+
+def test_one_person_has_no_scatter_and_the_page_says_so():
+    notes = {
+        name: " ".join(study_of(files_of(STUDIES[name]), LEVEL).tables[0].notes)
+        for name in ("one person", "empty cells")
+    }
+    assert "Of one of the persons alone SD and interval are not estimated" in notes["one person"]
+    assert "not estimated" not in notes["empty cells"]
 
 
 def test_scatter_of_rounding_alone_is_none():

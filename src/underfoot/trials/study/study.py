@@ -387,7 +387,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
         cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
         if quantity == "ptv":
-            cells += cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cof, error = cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cells += cof, error or None
         if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
             scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
             cells += _classes(scheme, m)
@@ -399,6 +400,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
         "uncertainty, with the calibration where it is known."
     ]
+    if any(f.measurements[0]["spread"] is None for f in files):
+        notes.append("Of a single reading SD, interval and u are not estimated: it has no scatter.")
     columns += ["class", "2 u reaches"] if schemes else []
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
     spreads = [f.measurements[0]["uncertainty"] for f in files]

@@ -45,6 +45,7 @@ _PAIRS, _SURE = 8, 4.0
 _PLATES = {"rcof": 0.08, "peak_force": 0.04}
 """Recordings and standard errors that tell two plates apart, and how far (logarithm) left and right
 feet of one person may differ beyond them, who meet the same plates in the same order; assumed."""
+_MACHINES = ("machine", "tribometer", "device", "tester", "instrument", "gerät", "maschine")
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 
@@ -622,6 +623,14 @@ def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[
     said = [m["conventions"] for one in files for m in one.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"
+        yield Doubt(words, ("all",))
+    any_machine = protocol.kind == "readings" and not protocol.text("classes")
+    unnamed = [
+        f for f in files if "cof" in f.main and not any(n in f.conditions for n in _MACHINES)
+    ]
+    if any_machine and len(unnamed) == len(files) > 0:
+        words = '"machine" is noted for no reading: another machine gives another COF, and how far '
+        words += "machines differ is not estimated"
         yield Doubt(words, ("all",))
     if protocol.text("quantity") == "ptv":
         lacking = [

@@ -207,10 +207,12 @@ def _tukey(
             "Hedges' g", "g 95 % low", "g 95 % high",
         )  # fmt: skip
         listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
-        note = (
-            f"Levels that share a letter do not differ at 0.05: {listed}. Hedges' g of the persons "
-            "who have both levels (difference over the SD of their differences), else over the "
-            "pooled SD; its interval is exact and holds one comparison."
+        note = f"Levels that share a letter do not differ at 0.05: {listed}. "
+        note += (
+            "Hedges' g of the persons who have both levels (difference over the SD of their "
+            "differences), else over the pooled SD; its interval is exact and holds one comparison."
+            if any(row[-3] is not None for row in rows)
+            else "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
         places = decimals_of(min(c.standard_error for c in comparisons))
         decimals = {name: 2 if "g" in name.split() or "'" in name else places

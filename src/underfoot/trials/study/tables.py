@@ -287,6 +287,10 @@ def condition_table(
     columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
     averaged = ", each person's trials averaged first." if person else "."
     notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
+    if any(
+        len({str(m.conditions.get(person, m.file)) for m in own}) < 2 for own in groups.values()
+    ):
+        notes.append(f"Of one of the {unit} alone SD and interval are not estimated: no scatter.")
     if not person and len(usable) > 1:
         notes.append(
             "No condition names the persons or samples: every file counts as one. Where files "
@@ -309,20 +313,25 @@ def number_columns(name: str) -> list[str]:
 
 
 INTERVALS = (
-    "Intervals: t on the logarithm of a mean that can't be negative (none from two values), on the "
-    "logit of a share."
+    "Intervals: t on the logarithm of a mean that can't be negative (none from two values, or from "
+    "values that are all alike), on the logit of a share."
 )
 _SIGNED = ("acof_minus_rcof", "slip_margin")
 
 
 def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[float | None, ...]:
-    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values."""
+    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values.
+
+    Values that are all alike have no interval: they scatter by less than their resolution.
+    """
     if not len(values):
         return None, None, None, None
     mean = float(np.mean(values))
     if len(values) < 2:
         return mean, None, None, None
-    ends = statistics.mean_interval(values, positive=name not in _SIGNED) or (None, None)
+    alike = float(np.ptp(values)) <= statistics.ROUNDING * float(np.abs(values).max())
+    interval = None if alike else statistics.mean_interval(values, positive=name not in _SIGNED)
+    ends = interval or (None, None)
     return mean, float(np.std(values, ddof=1)), *ends
 
 
