@@ -3,14 +3,16 @@
 import hashlib
 import re
 import subprocess
+from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from trial_testers import FAULTS, sound_log, write_log
 from underfoot.cli.trials import trials_app
 from underfoot.core import InputError
-from underfoot.trials.pages.court_bundle import bundle_faults
+from underfoot.trials.pages.court_bundle import bundle_faults, changed_files
 
 
 def bundled(folder, out, *more):
@@ -84,6 +86,85 @@ def test_a_bundle_is_as_written_until_it_is_changed(bundle):
     (bundle / "audit.html").write_text(page.replace(signed, 64 * "0"))
     assert any("audit.html" in fault for fault in bundle_faults(bundle))
     (bundle / "audit.html").write_text(page)
+
+
+def changed(path, content):
+    """Write other content into a file (None: take it away); return what puts the file back."""
+    before = path.read_bytes() if path.is_file() else None
+
+    def write(data):
+        path.unlink(missing_ok=True)
+        if data is not None:
+            path.write_bytes(data)
+
+    write(content)
+    return lambda: write(before)
+
+
+def test_a_single_changed_byte_of_any_file_is_named(bundle):
+    """A walk over all files, 24 bytes of each: every bit pattern comes up, also line ends."""
+    assert changed_files(bundle) == []
+    rng = np.random.default_rng(3)
+    files = sorted(path for path in bundle.rglob("*") if path.is_file())
+    assert len(files) > 15
+    for path in files:
+        content = path.read_bytes()
+        places = {0, len(content) - 1, *rng.integers(0, len(content), 22).tolist()}
+        for place in places if content else ():
+            other = bytearray(content)
+            other[place] ^= int(rng.integers(1, 256))
+            back = changed(path, bytes(other))
+            try:
+                faults = {fault.about for fault in changed_files(bundle)}
+            except InputError as error:
+                faults = {Path(str(error.where)).name}
+            finally:
+                back()
+            # a changed list of checksums is told by the page that names its checksum
+            own = path.relative_to(bundle).as_posix()
+            assert ("audit.html" if own == "SHA256SUMS" else own) in faults
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "told"),
+    [
+        ("report/tables/measurements.csv", None, "measurements.csv: missing"),
+        ("report/tables/measurements.csv", b"\xff\xfe", "measurements.csv: changed"),
+        ("recordings/.hidden.csv", b"1", "recordings/.hidden.csv: not in SHA256SUMS"),
+        ("recordings/conditions.csv", b"a\nb\n", "recordings/conditions.csv: changed"),
+        ("recordings/edits.csv", b"\xff", "recordings: the analysis can't be made again"),
+        ("SHA256SUMS", b"\xff\n", "SHA256SUMS: line 1 is no checksum of a file"),
+        ("audit.html", None, "audit.html: missing"),
+    ],
+)
+def test_what_is_damaged_in_a_bundle_is_named(bundle, name, content, told):
+    back = changed(bundle / name, content)
+    try:
+        assert any(told in fault for fault in bundle_faults(bundle))
+    finally:
+        back()
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "Expecting value"), (b"[]", "no attribute"), (b"\xff", "can't decode"),
+        (b"{}", "options"), (b'{"options": {"folder": 1}}', "folder"),
+    ],
+)  # fmt: skip
+def test_damaged_settings_are_an_error_with_a_remedy(bundle, content, reason):
+    back = changed(bundle / "bundle.json", content)
+    late = changed(bundle / "recordings" / "late.csv", b"x")
+    try:
+        done = bundled(None, None, "--check", bundle)
+        with pytest.raises(InputError, match=reason) as error:
+            bundle_faults(bundle)
+    finally:
+        back()
+        late()
+    assert done.exit_code == 2
+    for words in ("bundle.json", "is damaged", "as it was signed", "late.csv: not in SHA256SUMS"):
+        assert words in str(error.value), words
 
 
 @pytest.mark.slow

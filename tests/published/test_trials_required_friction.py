@@ -82,7 +82,7 @@ def test_a_heel_beside_the_plate_is_a_partial_hit():
     """The left heel of this file lands 136 mm behind plate 1; its 0.18 is no required friction."""
     trial = _trial("opensim/walking5.c3d")
     first = required_frictions(trial)[0]
-    assert first.measurement.reason == "the heel stands 136 mm outside the plate: a partial hit"
+    assert first.measurement.reason == "a partial hit: the heel stands 136 mm outside the plate"
     blind = replace(trial, markers={})
     assert _rcof(blind) == pytest.approx([0.18, 0.21], abs=0.01)  # as seen without the markers
 

@@ -37,7 +37,12 @@ FORMATS = {
     "studies": "names of effects and fluids",
     "surface/instruments.py": "files",
     "surface/read.py": "files",
-    "trials": "recordings and tables of users; has a test of its own",
+    "trials/readers": "recordings",
+    "trials/recording/marker_names.py": "recordings",
+    "trials/statistics/linear.py": "terms of a model",
+    "trials/study/conditions.py": "headings of users' tables",
+    "trials/study/methods.py": "names of quantities and conventions",
+    "trials/study/model_scripts.py": "terms of a model",
 }
 """Rooms and files that read text of others, and whose."""
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -175,6 +176,15 @@ def test_a_model_with_another_answer_is_told_with_its_reason():
         "Another model has 50 % for the same friction and people (c): every c slips.",
     ]
     assert not assessment(present=outcome(slip=0.55)).apart
+
+
+def test_a_model_by_which_friction_is_not_enough_is_told():
+    """1.9 % is below 5 %, 9 % of another model is not, though they differ by less than 0.1."""
+    near = ModelRisk("a", "b", "As a.", 0.09, None, None, None)
+    low = ModelRisk("c", "d", "As c.", 0.001, None, None, None)
+    found = replace(assessment(present=outcome(slip=0.019)), models=(near, low))
+    assert [one.name for one in found.apart] == ["a"]
+    assert any("Another model has 9.0 %" in text for text in found.cautions())
 
 
 def test_missing_friction_is_named_and_sufficient_friction_too():

@@ -89,7 +89,8 @@ def test_one_foot_across_two_plates_is_rejected(walk):
 def test_a_partial_hit_is_rejected(walk):
     second = walk.plates[1]
     (reason,) = _reasons(replace(walk, plates=(_refinished(second, 0.5 * second.force),)))
-    assert "% of body weight: partial" in reason
+    assert reason.startswith("partial: ")
+    assert "% of body weight" in reason
 
 
 def _bump(duration: float, height: float, shear: float = 0.0) -> Trial:

@@ -11,9 +11,11 @@ from underfoot.core.units import plain_number
 from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size
+from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.file_result import FileResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
+from underfoot.trials.study.study_tests import comparison_findings
 
 LEVEL = protocol("level_walking")
 
@@ -88,7 +90,39 @@ def test_what_can_be_told_is_told_and_the_rest_has_its_reason(name):
 def test_a_comparison_that_nothing_is_left_of_says_why():
     study = study_of(files_of(STUDIES["every person an own shoe"]), LEVEL)
     (lost,) = (one for one in study.findings if "not done" in one.table.columns)
-    assert "shoe" in lost.table.rows[0][0]
+    assert "shoe" in str(lost.table.rows[0][0])
+
+
+def test_a_column_of_one_value_is_named_on_the_page():
+    """One value, or one a file: no factor of any study, and the page says which and why."""
+    told = 'floor: RCOF is known at one value only, "tile": the effect of floor is not estimated'
+    rows = crossed(6, "ab", ("tile",))
+    rows = [({**c, "note": f"n{i}"}, v, s) for i, (c, v, s) in enumerate(rows)]
+    study = study_of(files_of(rows), LEVEL)
+    assert study.findings[0].table.notes[-2:] == (
+        told, "note: RCOF is known once at each value: the effect of note is not estimated"
+    )  # fmt: skip
+    assert not any(told in caution for one in study.findings for caution in one.cautions)
+    assert {row[0] for one in study.findings if one.name == "mixed_rcof" for row in one.table.rows
+            } == {"shoe"}  # fmt: skip
+    for kind, response in (
+        ("report_g6", "acof"),
+        ("en_iso_13287", "cof"),
+        ("level_walking", "rcof"),
+    ):
+        files = [
+            FileResult(f"{i}.csv", main={response: 0.2 + 0.01 * i, "slip": 0.0},
+                       conditions={"outsole": "a", "order": "a", "shoe": "a"})
+            for i in range(4)
+        ]  # fmt: skip
+        lost = [
+            row[0] for one in study_of(files, protocol(kind)).findings for row in one.table.rows
+            if one.table.columns == ("not done",)
+        ]  # fmt: skip
+        assert any('at one value only, "a"' in text for text in lost), kind
+    assert comparison_findings("tau_hydro", [], {"fluid": []})[0].table.rows == (
+        ("fluid: tau_hydro is known nowhere: the effect of fluid is not estimated",),
+    )
 
 
 def test_two_persons_have_no_effect_size():
@@ -97,6 +131,7 @@ def test_two_persons_have_no_effect_size():
     study = study_of(files_of(crossed(2, "ab", trials=1)), LEVEL)
     (tukey,) = (one for one in study.findings if one.name.startswith("tukey"))
     assert tukey.table.rows[0][-3:] == (None, None, None)
+    assert "Hedges' g is not estimated" in tukey.table.notes[0]
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -115,6 +150,44 @@ def test_a_page_prints_numbers_that_a_person_reads(name):
 )  # fmt: skip
 def test_what_is_too_small_or_large_is_told_by_its_bound(value, text):
     assert plain_number(value) == text
+
+
+def table_of(tmp_path, name, text):
+    (tmp_path / "table.csv").write_text(text)
+    analysis = analyse_folder(tmp_path, protocol(name), processes=1)
+    return analysis, {table.name: table for table in analysis.study.tables}
+
+
+def test_one_reading_has_no_uncertainty(tmp_path):
+    """It was printed as 0.000 in the column of the COF."""
+    rows = "sample,PTV\nA,36\n" + "B,36\n" * 5
+    _, tables = table_of(tmp_path, "en_16165_pendulum", rows)
+    one, five = (
+        dict(zip(tables["samples"].columns, row, strict=True)) for row in tables["samples"].rows
+    )
+    assert (one["u"], one["u of COF"], one["PTV SD"]) == (None, None, None)
+    assert isinstance(five["u of COF"], float)
+    assert five["u of COF"] > 0
+    assert "Of a single reading" in " ".join(tables["samples"].notes)
+    # five equal readings of whole numbers: an interval of no width would say that nothing scatters
+    assert (five["PTV"], five["PTV SD"], five["PTV 95 % low"]) == (36, 0, None)
+
+
+@pytest.mark.parametrize(("machine", "told"), [("", True), ("BOT-3000E", False)])
+def test_a_cof_without_its_machine_is_doubted(tmp_path, machine, told):
+    rows = "sample,machine,cof\n" + "".join(f"A,{machine},{c}\n" for c in (0.41, 0.4, 0.42))
+    analysis, tables = table_of(tmp_path, "machine_cof", rows)
+    assert any('"machine" is noted for no reading' in str(one) for one in analysis.doubts) == told
+    assert tables["samples"].rows[0][-1] == pytest.approx(0.01 / 3**0.5)
+
+
+def test_one_person_has_no_scatter_and_the_page_says_so():
+    notes = {
+        name: " ".join(study_of(files_of(STUDIES[name]), LEVEL).tables[0].notes)
+        for name in ("one person", "empty cells")
+    }
+    assert "Of one of the persons alone SD and interval are not estimated" in notes["one person"]
+    assert "not estimated" not in notes["empty cells"]
 
 
 def test_scatter_of_rounding_alone_is_none():

@@ -110,9 +110,16 @@ class RiskAssessment(Presentable):
 
     @property
     def apart(self) -> list[ModelRisk]:
-        """Return the models whose slip probability is another than that of the case's model."""
-        own = self.outcome.number("slip_probability")
-        return [one for one in self.models if abs(one.probability - own) > APART]
+        """Return the models whose slip probability is another than that of the case's model.
+
+        Or lies on the other side of the target: there friction is enough by one of both alone.
+        """
+        own, target = self.outcome.number("slip_probability"), self.target
+        return [
+            one
+            for one in self.models
+            if abs(one.probability - own) > APART or (one.probability > target) != (own > target)
+        ]
 
     def headline(self) -> tuple[str, ...]:
         if not self.usable:

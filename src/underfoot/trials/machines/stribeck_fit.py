@@ -107,7 +107,8 @@ class FitParameter:
 
     ``value`` is None where the report's rule gives none; ``standard_error``, from the curvature at
     the optimum, is None on a bound; ``low`` and ``high``, the profile-likelihood interval, are None
-    where the profile does not close. ``remark``: ``"not identified in this speed range"`` or empty.
+    where the profile does not close. ``identified``: False where the speeds don't tell it;
+    ``remark`` says so.
     """
 
     name: str
@@ -117,6 +118,7 @@ class FitParameter:
     low: float | None = None
     high: float | None = None
     remark: str = ""
+    identified: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,9 +254,9 @@ def _parameters(
     def parameter(name: str, value: float, unit: str = "1") -> FitParameter:
         bottom, top = ends.get(name, (None, None))
         beyond = name == "tau_hydro" and tau > v.max()
-        unknown = NOT_IDENTIFIED if bottom is None or top is None or beyond else ""
-        remark = unknown if name in ends else "given"
-        return FitParameter(name, value, unit, errors.get(name), bottom, top, remark)
+        unknown = name in ends and (bottom is None or top is None or beyond)
+        remark = NOT_IDENTIFIED if unknown else "" if name in ends else "given"
+        return FitParameter(name, value, unit, errors.get(name), bottom, top, remark, not unknown)
 
     first, last = parameter("cof_bl", start), parameter("cof_asymptote", asymptote)
     return first, parameter("tau_hydro", tau, "m/s"), last

@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 import platform
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from underfoot.core import InputError, Progress, silent
+from underfoot.core import InputError, Progress, UnderfootError, silent
 from underfoot.core.files import checksum
 from underfoot.core.html import environment
 from underfoot.core.provenance import package_version, program_hash
+from underfoot.core.remark import Remark
 
 from ..recording.protocols import protocol
 from ..study import analyse_folder
@@ -82,53 +83,104 @@ def audit_page(analysis: FolderAnalysis, fingerprint: str) -> str:
     )  # fmt: skip
 
 
-def bundle_faults(bundle: Path) -> list[str]:
+def bundle_faults(bundle: Path) -> list[Remark]:
     """Return what in a bundle is not as it was written: files, page, and all of it made again.
 
-    Every byte of the page counts, and every checksum. With the versions that wrote the bundle the
-    report and the page are made again and compared byte by byte; with others, the numbers are.
+    Every byte of every file counts. Where recordings and settings are as they were written, the
+    analysis is made again: with the versions that wrote the bundle report and page are compared
+    byte by byte, with others the numbers are. A fault is ``about`` a file or folder of the bundle.
+
+    InputError: the folder is no bundle, or its settings can't be read.
+    """
+    faults = changed_files(bundle)
+    settings = _settings(bundle, faults)
+    changed = {fault.about for fault in faults}
+    if SETTINGS in changed:
+        return faults
+    own = [bundle / _CATALOGUE] if (bundle / _CATALOGUE).is_dir() else []
+    try:
+        chosen = protocol(settings["protocol"], own).with_settings(settings["method"])
+        again = analyse_folder(bundle / RECORDINGS, chosen, **settings["options"])
+    except UnderfootError as error:
+        return [*faults, Remark(RECORDINGS, f"the analysis can't be made again ({error})")]
+    if settings["versions"] == _versions() and not any(
+        Path(name).parts[0] == RECORDINGS for name in changed
+    ):
+        faults += _unlike_made_again(bundle, again, changed)
+    numbers = bundle / _REPORT / _NUMBERS
+    if not numbers.is_file():
+        return faults
+    old = numbers.read_text(encoding="utf-8", errors="replace").splitlines()
+    new = csv_text(measurement_table(again.files)).splitlines()
+    different = sum(a != b for a, b in zip(old, new, strict=False)) + abs(len(old) - len(new))
+    if different:
+        what = (
+            f"{different} of {len(new) - 1} numbers come out differently; made with underfoot "
+            f"{settings['versions'].get('underfoot')}, checked with {package_version('underfoot')}"
+        )
+        faults.append(Remark(numbers.relative_to(bundle).as_posix(), what))
+    return faults
+
+
+def changed_files(bundle: Path) -> list[Remark]:
+    """Return the files of a bundle whose bytes are not those that were written and signed.
 
     InputError: the folder is no bundle.
     """
     if not (bundle / SUMS).is_file() or not (bundle / SETTINGS).is_file():
         raise InputError(f"{bundle} is no bundle: {SUMS} or {SETTINGS} is missing", where="--check")
-    lines = (bundle / SUMS).read_text(encoding="utf-8").splitlines()
-    written = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
+    lines = (bundle / SUMS).read_text(encoding="utf-8", errors="replace").splitlines()
+    pairs = [line.split("  ", 1) for line in lines]
+    written = {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
+    faults = [
+        Remark(SUMS, f"line {number} is no checksum of a file")
+        for number, pair in enumerate(pairs, start=1)
+        if len(pair) < 2
+    ]
     there = {path.relative_to(bundle).as_posix(): path for path in _files(bundle)}
-    faults = [f"{name}: missing" for name in sorted(written.keys() - there.keys())]
-    faults += [f"{name}: not in {SUMS}" for name in sorted(there.keys() - written.keys())]
+    faults += [Remark(name, "missing") for name in sorted(written.keys() - there.keys())]
+    faults += [Remark(name, f"not in {SUMS}") for name in sorted(there.keys() - written.keys())]
     faults += [
-        f"{name}: changed" for name in sorted(written.keys() & there.keys())
+        Remark(name, "changed") for name in sorted(written.keys() & there.keys())
         if checksum(there[name]) != written[name]
     ]  # fmt: skip
-    settings = json.loads((bundle / SETTINGS).read_text(encoding="utf-8"))
     fingerprint, page = checksum(bundle / SUMS), bundle / PAGE
     signed = page.read_bytes() if page.is_file() else b""
     if fingerprint.encode() not in signed:
-        faults.append(f"{PAGE}: missing, or signed for other checksums")
-    else:
-        blank = signed.replace(fingerprint.encode(), _UNKNOWN.encode())
-        if sha256(blank).hexdigest() != settings.get("page"):
-            faults.append(f"{PAGE}: changed")
-    own = [bundle / _CATALOGUE] if (bundle / _CATALOGUE).is_dir() else []
-    chosen = protocol(settings["protocol"], own).with_settings(settings["method"])
-    again = analyse_folder(bundle / RECORDINGS, chosen, **settings["options"])
-    own = f"{RECORDINGS}/"
-    if settings["versions"] == _versions() and not any(one.startswith(own) for one in faults):
-        faults += _unlike_made_again(bundle, again, faults)
-    old = (bundle / _REPORT / _NUMBERS).read_text(encoding="utf-8").splitlines()
-    new = csv_text(measurement_table(again.files)).splitlines()
-    different = sum(a != b for a, b in zip(old, new, strict=False)) + abs(len(old) - len(new))
-    if different:
-        faults.append(
-            f"{different} of {len(old) - 1} numbers come out differently; made with underfoot "
-            f"{settings['versions']['underfoot']}, checked with {package_version('underfoot')}"
-        )
+        return [*faults, Remark(PAGE, "missing, or signed for other checksums")]
+    blank = signed.replace(fingerprint.encode(), _UNKNOWN.encode())
+    if sha256(blank).hexdigest() != _settings(bundle, faults)["page"]:
+        faults.append(Remark(PAGE, "changed"))
     return faults
 
 
-def _unlike_made_again(bundle: Path, analysis: FolderAnalysis, known: Sequence[str]) -> list[str]:
-    """Return the files of report and page that are not those that the recordings give again."""
+def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
+    """Return the settings of a bundle; ``faults`` are those known of its other files."""
+    kinds = {"protocol": str, "method": dict, "options": dict, "versions": dict, "page": str}
+    try:
+        settings = json.loads((bundle / SETTINGS).read_text(encoding="utf-8"))
+        lacking = [
+            name for name, kind in kinds.items() if not isinstance(settings.get(name), kind)
+        ] + [name for name in settings["options"] if name not in ("names", "merge_spelling")]
+        reason = f"wrong or missing: {', '.join(lacking)}" if lacking else ""
+    except (ValueError, AttributeError, KeyError, TypeError) as error:
+        settings, reason = {}, str(error)
+    if not reason:
+        return settings
+    others = [str(fault) for fault in faults if fault.about != SETTINGS]
+    raise InputError(
+        f"is damaged ({reason}), so nothing can be made again",
+        where=str(bundle / SETTINGS),
+        allowed=f"the file that trials bundle wrote, an object with {', '.join(kinds)}",
+        remedy="Ask for the bundle as it was signed"
+        + (f"; not as written are also: {'; '.join(others)}" if others else ""),
+    )
+
+
+def _unlike_made_again(
+    bundle: Path, analysis: FolderAnalysis, known: Collection[str]
+) -> list[Remark]:
+    """Return the files of report and page, but those ``known``, that are not made so again."""
     with TemporaryDirectory() as place:
         folder = Path(place) / _REPORT
         write_trials_report(analysis, folder)
@@ -139,11 +191,10 @@ def _unlike_made_again(bundle: Path, analysis: FolderAnalysis, known: Sequence[s
             if path.is_file()
         }
     made[PAGE] = audit_page(analysis, checksum(bundle / SUMS)).encode("utf-8")
-    told = {fault.split(":", 1)[0] for fault in known}
     return [
-        f"{name}: not what the recordings give again"
+        Remark(name, "not what the recordings give again")
         for name, content in sorted(made.items())
-        if name not in told
+        if name not in known
         and (bundle / name).is_file()
         and (bundle / name).read_bytes() != content
     ]
@@ -152,10 +203,7 @@ def _unlike_made_again(bundle: Path, analysis: FolderAnalysis, known: Sequence[s
 def _files(folder: Path) -> list[Path]:
     """Return the files that the checksums cover."""
     apart = {folder / SUMS, folder / PAGE}
-    return sorted(
-        path for path in folder.rglob("*")
-        if path.is_file() and path not in apart and not path.name.startswith(".")
-    )  # fmt: skip
+    return sorted(path for path in folder.rglob("*") if path.is_file() and path not in apart)
 
 
 def _versions() -> dict[str, str]:

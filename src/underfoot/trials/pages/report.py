@@ -26,6 +26,7 @@ from underfoot.core.progress import part
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
+from ..study.tables import number_columns
 from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
 
 if TYPE_CHECKING:
@@ -155,9 +156,9 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
     study = list(analysis.study.tables)
     summary = study.pop(0) if study and study[0].name not in ("steps",) else None
     reasons = Counter(
-        re.sub(r"\d[\d.]*", "…", re.sub(r" \([^)]*\)", "", reason.split(": ", 1)[-1]))[:90]
+        kind
         for one in analysis.files
-        for reason in one.reasons
+        for kind in one.kinds or one.reasons
         if one.verdict != "accepted"
     )
     findings = analysis.study.findings
@@ -199,17 +200,20 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     # Floors and shoes on a tester are no sample of one population: no mean over all of them.
     if table is not None and (kind == "gait" or len(table.rows) == 1):
         row = dict(zip(table.columns, table.rows[-1], strict=True))
-        column = next(c for c in table.columns if isinstance(row[c], float))
-        name = column.split(" (")[0]
+        column, _, *ends = next(
+            names
+            for names in map(number_columns, usable[0].main)
+            if isinstance(row.get(names[0]), float)
+        )
         places = table.decimals.get(column, 3)
         counted = ", ".join(
             f"{row[unit]} {unit if row[unit] != 1 else unit[:-1]}"
             for unit in ("persons", "files", "trials", "readings", "steps")
             if row.get(unit)
         )
-        label = {"RCOF": "Required friction (RCOF)"}.get(name, name)
+        label = {"RCOF": "Required friction (RCOF)"}.get(column, column)
         text = f"{label} {row[column]:.{places}f}"
-        low, high = row.get(f"{name} 95 % low"), row.get(f"{name} 95 % high")
+        low, high = map(row.get, ends)
         if isinstance(low, float) and isinstance(high, float):
             spread = row[table.columns[table.columns.index(column) + 1]]
             text += f", SD {spread:.{places}f}, 95 % {low:.{places}f} to {high:.{places}f}"

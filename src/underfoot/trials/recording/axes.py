@@ -61,15 +61,17 @@ class Ramp:
         return _turned(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
 
     @property
+    def name(self) -> str:
+        """What is walked on: "level" or "ramp of 5 deg"."""
+        return f"ramp of {abs(math.degrees(self.angle)):.4g} deg" if self.angle else "level"
+
+    @property
     def description(self) -> str:
         """The surface in words, as "ramp of 5 deg, walking up; plates that measure ..."."""
         if not self.angle:
-            return "level"
+            return self.name
         way = "up" if self.angle > 0 else "down"
-        return (
-            f"ramp of {abs(math.degrees(self.angle)):.4g} deg, walking {way}; "
-            f"{PLATE_FRAMES[self.plate_frame]}"
-        )
+        return f"{self.name}, walking {way}; {PLATE_FRAMES[self.plate_frame]}"
 
     words = property(renamed("words", "description", gone="0.4"))
 

@@ -41,9 +41,13 @@ class Flag:
     words = property(renamed("words", "message", gone="0.4"))
 
 
+UNNAMED = "caution"
+"""Name of a flag of no check: what it says is all that it is."""
+
+
 def caution(message: str) -> Flag:
     """Return a flag that makes a number a caution."""
-    return Flag("caution", message)
+    return Flag(UNNAMED, message)
 
 
 def remark(message: str) -> Flag:
@@ -110,7 +114,7 @@ class Measurement(Presentable):
 
     def headline(self) -> tuple[str, ...]:
         """Return the number with unit and uncertainty, or why there is none."""
-        return (str(self).split(" [")[0],)
+        return (self._number(),)
 
     def cautions(self) -> tuple[str, ...]:
         """Return the flags that matter, in words."""
@@ -125,6 +129,10 @@ class Measurement(Presentable):
         return f"<Measurement {str(self)[:180]}>"
 
     def __str__(self) -> str:
+        flags = "" if self.value is None else "; ".join(map(str, self.flags))
+        return self._number() + (f" [{flags}]" if flags else "")
+
+    def _number(self) -> str:
         if self.value is None:
             return f"{self.name}: not estimated ({self.reason})"
         text = f"{self.name}: {display(self.value, self.unit)}"
@@ -132,7 +140,7 @@ class Measurement(Presentable):
             text += f" (mean of {self.n}, SD {display(self.spread, self.unit, 2)})"
         elif self.uncertainty is not None:
             text += f" ± {display(self.uncertainty, self.unit, 2)}"
-        return text + (f" [{'; '.join(map(str, self.flags))}]" if self.flags else "")
+        return text
 
     def table(self) -> Table:
         """Return value, uncertainty, flags and conventions, a row each."""

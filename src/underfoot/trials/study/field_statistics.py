@@ -293,13 +293,9 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     """Return the p of all factors over several outcomes with Holm's and Benjamini-Hochberg's."""
     named = []
     for one in findings:
-        if not one.name.startswith(("mixed_", "anova_")) or "p" not in one.table.columns:
-            continue
-        if one.name.startswith("anova_") and any("independent" in c for c in one.cautions):
-            continue  # the mixed model of the same outcome stands beside
-        at = one.table.columns.index("p")
-        outcome = one.title.split(" of ", 1)[-1].split(":")[0].split(",")[0]
-        named += [(outcome, row[0], row[at]) for row in one.table.rows if row[at] is not None]
+        at = one.table.columns.index("p") if one.outcome else 0
+        rows = one.table.rows if one.outcome else ()
+        named += [(one.outcome, row[0], row[at]) for row in rows if row[at] is not None]
     if len({outcome for outcome, *_ in named}) < 2:
         return []
     p = [float(value) for *_, value in named if isinstance(value, float)]

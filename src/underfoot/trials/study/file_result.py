@@ -8,7 +8,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from ..recording.measurement import Measurement
+from underfoot.core.remark import remarks, subjects
+
+from ..recording.measurement import UNNAMED, Measurement
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FAILED, TesterCalibration
 from ..recording.trial import Trial
@@ -22,7 +24,8 @@ class FileResult:
     """Outcome of one file.
 
     ``file`` and ``checksum``: name and SHA-256. ``verdict``: "accepted", "caution" (read the
-    reasons before using the numbers) or "refused". ``reasons``: why, in words. ``measurements``:
+    reasons before using the numbers) or "refused". ``reasons``: why, in words; ``kinds``: the same
+    without the numbers and places of this file, each once. ``measurements``:
     one entry per number: item (trial, step, sensor), then as ``Measurement.as_dict``. ``main``: the
     numbers that stand for the file in tables: name to SI value. ``facts``: what the rules were
     checked against. ``curves``: series for figures, thinned. ``conditions``: what the laboratory
@@ -35,6 +38,7 @@ class FileResult:
     checksum: str = ""
     verdict: str = ACCEPTED
     reasons: tuple[str, ...] = ()
+    kinds: tuple[str, ...] = ()
     measurements: tuple[Mapping[str, Any], ...] = ()
     main: Mapping[str, float] = field(default_factory=dict)
     facts: Mapping[str, float] = field(default_factory=dict)
@@ -97,18 +101,23 @@ class Draft:
 
     def finished(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
+        kinds = list(subjects(remarks([*self.refusals, *self.cautions])))
         for rule in protocol.rules:
             broken = rule.quantity in self.facts and rule.broken_by(self.facts[rule.quantity])
             if broken:
+                kinds.append(rule.statement())
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for entry in self.measurements:
-            self.cautions += [
-                f"{entry['item']}: {flag['message']}" for flag in entry["flags"] if flag["matters"]
+            flags = [flag for flag in entry["flags"] if flag["matters"]]
+            self.cautions += [f"{entry['item']}: {flag['message']}" for flag in flags]
+            kinds += [
+                flag["message"] if flag["name"] == UNNAMED else flag["name"] for flag in flags
             ]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
         reasons = dict.fromkeys([*self.refusals, *self.cautions])
         own = {k: v for k, v in vars(self).items() if k not in ("cautions", "refusals")}
-        return FileResult.from_dict({**own, "verdict": verdict, "reasons": list(reasons)})
+        whole = {**own, "reasons": list(reasons), "kinds": list(dict.fromkeys(kinds))}
+        return FileResult.from_dict({**whole, "verdict": verdict})
 
 
 def rates(trial: Trial, draft: Draft) -> None:

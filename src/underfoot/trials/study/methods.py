@@ -99,9 +99,7 @@ def _selection(files: Sequence[FileResult]) -> list[str]:
         return []
     counts = Counter(str(step["verdict"]) for step in steps)
     reasons = Counter(
-        re.sub(r"\d[\d.]*", "…", str(step["reason"]).split(";")[0].split(":")[0])
-        for step in steps
-        if step["verdict"] == "rejected" and step["reason"]
+        step["kind_of_reason"] for step in steps if step["verdict"] == "rejected" and step["reason"]
     )
     used = counts["accepted"] + counts["caution"]
     text = (
@@ -177,13 +175,12 @@ _PRIVATE = ("search ends", "sign", "uncertainty")
 
 def _conventions(files: Sequence[FileResult]) -> list[str]:
     """Return one sentence for each quantity; where files or plates differ, each way with counts."""
-    numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}
+    numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}  # file and conventions, by name
     for one in files:
         for m in one.measurements:
             known = m["value"] is not None and m["name"] in _TOLD and m["item"] != MEAN_OF_STEPS
             if known and m["conventions"]:
-                place = f"{one.file}, {m['item']}"
-                numbers.setdefault(m["name"], []).append((place, m["conventions"]))
+                numbers.setdefault(m["name"], []).append((one.file, m["conventions"]))
     sentences: list[str] = []
     for name, made in numbers.items():
         if (name == "pressure duration" and "peak pressure" in numbers) or (
@@ -204,7 +201,7 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
 
 
 def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
-    """Return the value that all numbers share, or every value with its numbers."""
+    """Return the value that all numbers share, or every value with its files."""
     places: dict[str, list[str]] = {}
     for place, conventions in made:
         places.setdefault(_general(key, conventions.get(key, "not recorded")), []).append(place)
@@ -220,7 +217,7 @@ def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
     }
     parts = []
     for value, where in sorted(places.items(), key=lambda item: -len(item[1])):
-        files = sorted({place.rsplit(", ", 1)[0] for place in where})
+        files = sorted(set(where))
         named = ": " + ", ".join(files) if len(files) <= 3 else f" in {len(files)} files"
         parts.append(f"{value} ({len(where)} of {len(made)}{named})")
     return "; ".join(parts)

@@ -281,10 +281,9 @@ def _one_sample(
     flags = []
     if last and len(counted) not in (last, last + drop):
         several = f" or {last + drop} with the {drop} of conditioning" if drop else ""
-        words = (
-            f"{len(counted)} readings, {len(readings)} of them used; expected are {last}{several}"
-        )
-        flags.append(caution(words))
+        many = "readings" if len(counted) > 1 else "reading"
+        used = f"{len(counted)} {many}, {len(readings)} of them used"
+        flags.append(caution(f"{used}; expected are {last}{several}"))
     fewest = int(protocol.number("fewest", "1", 0.0))
     if len(readings) < fewest:
         flags.append(caution(f"{len(readings)} readings; expected are {fewest} of each walker"))

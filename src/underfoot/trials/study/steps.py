@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
+from underfoot.core.remark import Remark, remarks, subjects
 
 from ..machines.compression import compression
 from ..machines.pin_on_disk import friction_point
@@ -44,7 +45,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         analysed_steps(trial, draft, protocol, profile)
         return
     for edit in trial.edits:
-        draft.refusals.append(f"excluded by hand: {edit.why}")
+        draft.refusals.append(Remark("excluded by hand", edit.why))
         excluded = (draft.file, edit.what, "used", "excluded", "", None, None, edit.why)
         draft.edits.append(dict(zip(EDIT_COLUMNS, excluded, strict=True)))
     _KINDS[protocol.kind](trial, draft, protocol, profile)
@@ -76,7 +77,7 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         plate = slide_plate(trial, axes.up, record)
         cof = replace(cof, flags=(*cof.flags, *slide_flags(slide, plate, axes.up, record)))
     else:
-        draft.refusals.append(f"no COF: {cof.reason}")
+        draft.refusals.append(Remark("no COF", cof.reason))
     draft.add("slide", cof, main="cof")
     refer_to(record, draft)
     draft.facts.update(slide.facts)
@@ -92,7 +93,7 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     try:
         scan = pressure_scan(trial, sensor, marker, position=position)
     except DataError as error:
-        draft.cautions.append(f"no pressure scan: {error.what}")
+        draft.cautions.append(Remark("no pressure scan", error.what))
         return
     draft.cautions += list(scan.flags)
     highest = float(scan.pressure.max())
@@ -290,7 +291,8 @@ class _Walk:
 def _gait(walk: _Walk) -> None:
     if not _required(walk, walk.stances):
         reasons = dict.fromkeys(step["reason"] for step in walk.draft.steps if step["reason"])
-        walk.draft.refusals.append("no clean step: " + "; ".join(reasons or ["no peak found"]))
+        why = "; ".join(reasons or ["no peak found"])
+        walk.draft.refusals.append(Remark("no clean step", why))
 
 
 def _human_slip(walk: _Walk) -> None:
@@ -376,7 +378,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
     try:
         reading = sensor_array_reading(trial, slip, sensors, up=up, walking=walking)
     except UnderfootError as error:
-        draft.cautions.append(f"pressures: {error.what}")
+        draft.cautions.append(Remark("pressures", error.what))
         return
     draft.add("sensor array", reading.peak, main="peak_pressure")
     draft.main["crossed_array"] = float(reading.crossed)
@@ -460,6 +462,7 @@ def _step_entry(
     walk: _Walk, stance: Stance, step: RequiredFriction | None = None, *, reason: str = ""
 ) -> dict[str, Any]:
     rcof = None if step is None else step.measurement
+    why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else "")
     return {
         **{key: getattr(stance, key) for key in ("number", "plate", "side", "contact", "toe_off")},
         "item": stance.label,
@@ -468,7 +471,8 @@ def _step_entry(
         "rcof": None if rcof is None else rcof.value,
         "rcof_uncertainty": None if rcof is None else rcof.uncertainty,
         "verdict": "rejected" if step is None else step.verdict,
-        "reason": reason or stance.reason or (rcof.reason if rcof and rcof.value is None else ""),
+        "reason": why,
+        "kind_of_reason": "; ".join(subjects(remarks([why]))),
         "cautions": [] if rcof is None else [flag.message for flag in rcof.caution_flags],
         "by_hand": list(stance.by_hand),
         **asdict(gait_context(walk.way, stance, walk.stances)),

@@ -21,7 +21,7 @@ from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
 from .readings import NOTED, board_correction
-from .study_tests import comparison_findings, persons_of, slip_findings, varying
+from .study_tests import columns_of, comparison_findings, persons_of, slip_findings, varying
 from .tables import Finding, Table, condition_table, quantity_name
 
 
@@ -78,9 +78,9 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             {"label": label, "group": first, "speed": speed, "cof": cof, "raw": list(fit.raw),
              "mean": mean, "verdict": fit.verdict, "r_squared": fit.r_squared}
         )  # fmt: skip
-        levels = dict(zip(keys, group, strict=True)) or {"group": ""}
+        levels = dict(zip(keys, group, strict=True))
         for parameter in fitted:
-            keep = parameter.value is not None and not parameter.remark.startswith("not identified")
+            keep = parameter.value is not None and parameter.identified
             parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
         (name, "95 % low", "95 % high", "remark")
@@ -101,18 +101,13 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     compared = protocol.texts("compare") or keys[:1]
     for name, values in parameters.items():
         kept = [pair for pair in values if pair is not None]
-        factors = {
-            key: [levels[key] for levels, _ in kept]
-            for key in compared
-            if len({levels.get(key) for levels, _ in kept}) > 1
-        }
-        if factors:
-            tests = comparison_findings(name, [value for _, value in kept], factors)
-            lost = len(values) - len(kept)
-            if lost and tests:
-                text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
-                tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
-            findings += tests
+        factors = {key: [level[key] for level, _ in kept] for key in compared if key in keys}
+        tests = comparison_findings(name, [value for _, value in kept], factors)
+        lost = len(values) - len(kept)
+        if lost and tests:
+            text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
+            tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
+        findings += tests
     curves: dict[str, Any] = {"fits": fits}
     wanted = [f for f in files if "viscosity" in f.conditions and {"speed", "cof"} <= {*f.main}]
     if len(wanted) >= 6:
@@ -235,11 +230,9 @@ def _crossed_findings(
 
     Tukey's comparisons of the levels follow. Adhesions of a pair share its mean under the oil.
     """
-    if not readings:
-        return []
     values = [value for value, _ in readings]
-    factors = {key: [own[key] for _, own in readings] for key in readings[0][1]}
-    factors = {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+    keys = readings[0][1] if readings else ()
+    factors = {key: [own[key] for _, own in readings] for key in keys}
     return comparison_findings(response, values, factors)
 
 
@@ -289,12 +282,9 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         note = "The load is what the scans cover; pressure beyond them is not in it."
         title = "Load carried by the fluid, Eq. 27"
         made.append(Table("maps", title, columns, tuple(rows), (note,)))
-    findings: list[Finding] = []
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
-    factors = varying(labelled, keys)
-    if keys and keys[0] in factors:
-        values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
-        findings = comparison_findings("cof", values, factors, margin=margin)
+    values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
+    findings = comparison_findings("cof", values, columns_of(labelled, keys), margin=margin)
     shown = tuple(table for table in made if table)
     return Study(shown, tuple(findings), {"maps": maps}, tuple(notes))
 
@@ -336,13 +326,12 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
             if isinstance(value, str) and key != person and key not in NUMBERS
         )
     )
-    everywhere = [key for key in keys if all(key in f.conditions for f in with_rcof)]
-    several = max(len(with_rcof), 2)
-    factors = {k: v for k, v in varying(with_rcof, everywhere).items() if len(set(v)) < several}
+    noted = columns_of(with_rcof, keys)
+    factors, _ = varying("rcof", noted)
     numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
     persons = persons_of(with_rcof, person)
     values, margin = [f.main["rcof"] for f in with_rcof], protocol.number("equivalence", "1", 0.0)
-    findings = comparison_findings("rcof", values, factors, persons, margin=margin)
+    findings = comparison_findings("rcof", values, noted, persons, margin=margin)
     findings += curve_findings(with_rcof, tuple(factors), person)
     table = condition_table(with_rcof, tuple(factors), numbers, person=person)
     made = [table] if table else []
@@ -398,7 +387,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
         cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
         if quantity == "ptv":
-            cells += cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cof, error = cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cells += cof, error or None
         if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
             scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
             cells += _classes(scheme, m)
@@ -410,6 +400,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
         "uncertainty, with the calibration where it is known."
     ]
+    if any(f.measurements[0]["spread"] is None for f in files):
+        notes.append("Of a single reading SD, interval and u are not estimated: it has no scatter.")
     columns += ["class", "2 u reaches"] if schemes else []
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
     spreads = [f.measurements[0]["uncertainty"] for f in files]

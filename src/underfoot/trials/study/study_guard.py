@@ -24,6 +24,7 @@ _BODY = {
 }  # fmt: skip
 """Conditions that a person keeps, and how far they may differ (relative)."""
 _JUDGED, _UNLIKE = 8, 0.3  # trials needed; ln of RCOF over the person's others; assumed
+_MEASURED = {FORCE: "mean force in stance", HEIGHT: "height of the highest marker"}
 _LEAST, _SCATTERS = 0.02, 6.0
 _LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
 """A body is another's from six times the scatter within the study's persons, but at least 2 %, and
@@ -32,16 +33,19 @@ _STEP = ("contact", "peak_force")  # what tells one step from all others
 _TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
 """Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
 0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
-_SAME, _APART, _TELLING = 0.002, 0.04, 3
-"""Scatter of a body's measures that is the least (relative), scatter between persons where few are
-measured, and how many measures two bodies must share; assumed."""
+_SAME, _COUNTED, _ODDS = 0.002, 3, 100.0
+_APART = {FORCE: 0.12, HEIGHT: 0.04, "": 0.04}
+"""Scatter of a body's measures that is the least, and that between persons (relative; "" distances
+of markers); distances count as so many measures at most, for they grow together; likelihood of one
+body over that of two from which it is told, for each pair of persons; assumed."""
 _SIDE = re.compile(
-    r"(.*\w)[ _-]?(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
+    r"(.*[^\W_])([ _-]?)(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
 )
 _PAIRS, _SURE = 8, 4.0
 _PLATES = {"rcof": 0.08, "peak_force": 0.04}
 """Recordings and standard errors that tell two plates apart, and how far (logarithm) left and right
 feet of one person may differ beyond them, who meet the same plates in the same order; assumed."""
+_MACHINES = ("machine", "tribometer", "device", "tester", "instrument", "gerät", "maschine")
 _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 
@@ -82,7 +86,7 @@ def guarded_files(
             copies[numbers].append(i)
     copies |= {frozenset(pair): sorted(pair) for pair in _with_same_steps(recordings)}
     doubts: list[Doubt] = []
-    refused: dict[int, str] = {}
+    refused: dict[int, tuple[str, str]] = {}
     told: set[tuple[int, ...]] = set()
     for key, members in copies.items():
         if len(members) < 2 or tuple(members) in told:
@@ -99,12 +103,17 @@ def guarded_files(
         doubts.append(Doubt(words, names[1:] if same else names, True))
         refused |= dict.fromkeys(
             members[1:] if same else members,
-            f"{what} as {names[0]}"
+            (f"{what} as {names[0]}", f"{what} as another file")
             if same
-            else f"{what} under {', '.join(names)}, noted differently",
+            else (
+                f"{what} under {', '.join(names)}, noted differently",
+                f"{what}, noted differently",
+            ),
         )
     files = [
-        replace(one, verdict=REFUSED, reasons=(refused[i], *one.reasons)) if i in refused else one
+        replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
+        if i in refused
+        else one
         for i, results in enumerate(recordings)
         for one in results
     ]
@@ -293,17 +302,31 @@ def _one_slip(a: str, b: str) -> bool:
 def _words_exchanged(files: Sequence[FileResult]) -> Iterator[Doubt]:
     """Two levels of the same words in another order: "hard wet" beside "wet hard"."""
     for key, having in _factors(files).items():
-        by_words: dict[tuple[str, ...], dict[str, list[FileResult]]] = {}
-        for one in having:
-            level = str(one.conditions[key])
-            words = tuple(sorted(re.findall(r"\w+", level.casefold())))
-            if len(words) > 1 and not any(word.isdigit() for word in words):
-                by_words.setdefault(words, {}).setdefault(level, []).append(one)
-        for levels in by_words.values():
-            if len(levels) > 1:
-                named = " and ".join(f'"{level}" ({len(own)})' for level, own in levels.items())
-                rare = min(levels.values(), key=len)
-                yield Doubt(f"{key} {named} are the same words: one level?", _names(rare))
+        levels = dict.fromkeys(str(one.conditions[key]) for one in having)
+        for first, second in combinations(levels, 2) if key not in ORDERS else ():
+            if not _same_in_another_order(first, second):
+                continue
+            both = [[o for o in having if str(o.conditions[key]) == one] for one in (first, second)]
+            named = f'"{first}" ({len(both[0])}) and "{second}" ({len(both[1])})'
+            yield Doubt(f"{key} {named} are the same words: one level?", _names(min(both, key=len)))
+
+
+def _same_in_another_order(first: str, second: str) -> bool:
+    """Whether levels are the same words; numbers stay with the word before them, or after."""
+    levels = [re.findall(r"[^\W\d_]+|\d+", one.casefold()) for one in (first, second)]
+    if levels[0] == levels[1] or any(sum(not w.isdigit() for w in own) < 2 for own in levels):
+        return False
+    for way in (1, -1):
+        groups: list[list[tuple[str, ...]]] = []
+        for own in levels:
+            made: list[tuple[str, ...]] = []
+            for word in own[::way]:
+                number = word.isdigit() and made
+                made[-1:] = [(*made[-1], word)] if number else [*made[-1:], (word,)]
+            groups.append(sorted(made))
+        if groups[0] == groups[1]:
+            return True
+    return False
 
 
 def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileResult]]:
@@ -340,16 +363,22 @@ def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 
 def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    """Left and right of most persons noted as two: S01L, S01R."""
+    """Left and right of persons noted as two: S01L, S01R; of most where these may be initials."""
     own = grouped(files, (person,))
-    stems: dict[str, set[str]] = defaultdict(set)
+    sides: dict[str, set[str]] = defaultdict(set)
+    sure: dict[str, bool] = {}
     for (who,) in own:
-        found = _SIDE.fullmatch(who)
-        if found:
-            stems[found[1]].add(found[2][0].casefold().replace("g", "l").replace("d", "r"))
-    both = [stem for stem, sides in stems.items() if len(sides) > 1]
-    if len(both) > 1 and 4 * len(both) > len(own):
-        words = f"{len(both)} persons are noted twice, by side ({both[0]}): left and right of one "
+        parts = _SIDE.fullmatch(who)
+        if parts:
+            stem, gap, side = parts[1], parts[2], parts[3].casefold()
+            sides[stem].add(side[0].replace("g", "l").replace("d", "r"))
+            sure[stem] = bool(gap) or len(side) > 1 or stem[-1].isdigit()
+    # among A to T of one name two letters are no sides
+    lettered = Counter(who[:-1] for (who,) in own if who[-1:].isalpha())
+    both = [stem for stem, two in sides.items() if len(two) > 1 and lettered[stem] <= 2]
+    if any(sure[stem] for stem in both) or (len(both) > 1 and 4 * len(both) > len(own)):
+        many = f"{len(both)} persons are" if len(both) > 1 else "one person is"
+        words = f"{many} noted twice, by side ({both[0]}): left and right of one "
         words += "person are no two persons; note the side in a column of its own"
         yield Doubt(words, ("all",))
 
@@ -363,27 +392,36 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     usual = {who: {name: median([b[name] for b in own if name in b]) for name in own[0]}
              for who, own in bodies.items() if own}  # fmt: skip
     names = dict.fromkeys(name for body in usual.values() for name in body)
-    within, between = {}, {}
+    within: dict[str, float] = {}
     for name in names:
         values = [np.log(body[name]) for body in usual.values() if body.get(name, 0.0) > 0.0]
         off = [
-            np.log(b[name] / usual[who][name])
+            np.log(b[name] / usual[who][name]) * (len(own) / (len(own) - 1.0)) ** 0.5
             for who, own in bodies.items()
             for b in own
             if len(own) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
         ]
         if len(off) < 3 or len(values) < 2:
             continue
-        within[name] = max(1.4826 * float(np.median(np.abs(off))), _SAME)
-        between[name] = float(np.std(values, ddof=1)) if len(values) > 2 else _APART
-    telling = [name for name in within if between[name] > 4.0 * within[name]]
-    for one, other in combinations(sorted(usual), 2):
-        shared = [n for n in telling if n in usual[one] and n in usual[other]]
-        kinds = {_kind(n) for n in shared}
-        if len(shared) < (_TELLING if len(kinds) > 1 else 2 * _TELLING):
-            continue
-        off = [abs(np.log(usual[one][n] / usual[other][n])) for n in shared]
-        if all(d < 3.0 * within[n] for d, n in zip(off, shared, strict=True)):
+        scatter = max(1.4826 * float(np.median(np.abs(off))), _SAME)
+        # distances on a plate of markers are those of everybody who wears it; of two persons none
+        # can be told from these, and all of them count as one
+        if len(values) == 2 or float(np.ptp(values)) > 4.0 * scatter:
+            within[name] = scatter
+    pairs = list(combinations(sorted(usual), 2))
+    counted = _COUNTED if len(pairs) > 1 else 1
+    for one, other in pairs:
+        shared = [n for n in within if n in usual[one] and n in usual[other]]
+        evidence: dict[str, list[float]] = defaultdict(list)
+        for name in shared:
+            apart = float(np.log(usual[one][name] / usual[other][name]))
+            share = 1.0 / len(bodies[one]) + 1.0 / len(bodies[other])
+            same = _SAME**2 + share * within[name] ** 2
+            differ = same + 2.0 * _APART[_kind(name)] ** 2
+            ratio = 0.5 * (np.log(differ / same) - apart**2 * (1.0 / same - 1.0 / differ))
+            evidence[_kind(name)].append(float(ratio))
+        odds = sum(float(np.mean(own)) * min(len(own), counted) for own in evidence.values())
+        if odds > np.log(_ODDS * len(pairs)):
             words = f"{one} and {other} have one body: {len(shared)} measures of it agree as those "
             words += "of one person's trials do; one person under two names?"
             yield Doubt(words, _names([f for f in files if str(f.conditions.get(person)) == other]))
@@ -493,7 +531,7 @@ def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt
         beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
         distances, wrong = (sum(not _kind(name) for name in part) for part in (one, beyond))
         texts = [
-            f"{name.split(' (')[0]} {100 * v:+.0f} %" for name, v in beyond.items() if _kind(name)
+            f"{_MEASURED[name]} {100 * v:+.0f} %" for name, v in beyond.items() if name in _MEASURED
         ]
         if wrong > max(1, 0.3 * distances):
             texts.append(f"{wrong} of {distances} distances of markers")
@@ -585,6 +623,14 @@ def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[
     said = [m["conventions"] for one in files for m in one.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"
+        yield Doubt(words, ("all",))
+    any_machine = protocol.kind == "readings" and not protocol.text("classes")
+    unnamed = [
+        f for f in files if "cof" in f.main and not any(n in f.conditions for n in _MACHINES)
+    ]
+    if any_machine and len(unnamed) == len(files) > 0:
+        words = '"machine" is noted for no reading: another machine gives another COF, and how far '
+        words += "machines differ is not estimated"
         yield Doubt(words, ("all",))
     if protocol.text("quantity") == "ptv":
         lacking = [

@@ -8,6 +8,7 @@ import numpy as np
 
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.presentation import p_text
+from underfoot.core.remark import Remark
 from underfoot.core.units import plain_number
 
 from .. import statistics
@@ -44,21 +45,21 @@ def comparison_findings(
 ) -> list[Finding]:
     """Return tests of factors on a response, and Tukey's comparisons of the levels.
 
-    Factors that can't be told apart are named, and all but one of them left out. Where persons
-    repeat, repeated measures come first where every person has every condition, then the mixed
-    model; Tukey's comparisons are its. The analysis of variance that takes trials as independent
-    follows with a warning. Otherwise it stands alone. Rank tests follow where the scatter is not
-    normal, tests of equivalence where there is a ``margin``, and the reliability of repeated
-    trials.
+    Factors of one level, or of a level each value, are named and left out; so are all but one of
+    those that can't be told apart. Where persons repeat, repeated measures come first where every
+    person has every condition, then the mixed model; Tukey's comparisons are its. The analysis of
+    variance that takes trials as independent follows with a warning. Otherwise it stands alone.
+    Rank tests follow where the scatter is not normal, tests of equivalence where there is a
+    ``margin``, and the reliability of repeated trials.
     """
+    factors, left = varying(response, factors)
     factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
-    if not factors and confounded:
-        why = DataError(
-            f"{'; '.join(map(str, confounded))}: nothing is left to compare", where=response
-        )
-        return [not_done(f"anova_{response}", f"Comparisons of {quantity_name(response)}", why),
-                *repeated]  # fmt: skip
+    if not factors and (left or confounded):
+        title = f"Comparisons of {quantity_name(response)}"
+        reasons = [*left, *(f"{each}: nothing is left to compare" for each in confounded)]
+        lost = finding(f"anova_{response}", title, ("not done",), [(one,) for one in reasons])
+        return [lost, *repeated]
     if not factors:
         return repeated
     if margin:
@@ -74,15 +75,25 @@ def comparison_findings(
         )
     except UnderfootError as error:
         title = f"Analysis of variance of {name}"
-        return [*findings, not_done(f"anova_{response}", title, error), *repeated]
+        first, *rest = [*findings, not_done(f"anova_{response}", title, error)]
+        return [_with_left_out(first, left, confounded), *rest, *repeated]
     if model is None and not warning and not table.model.dependent:
         model = table.model
     tukey = _tukey(response, model, values, factors, persons) if model is not None else []
-    anova = Finding.of_anova(table, warning)
+    # the mixed model of persons who repeat counts in place of trials taken as independent
+    repeats = bool(warning) and len(set(persons)) > 1
+    anova = Finding.of_anova(table, warning, outcome="" if repeats else name)
     found = [*findings, *tukey, anova] if warning else [anova, *tukey]
-    left = tuple(f"{one}; it is left out of this analysis" for one in confounded)
-    first = replace(found[0], cautions=(*left, *found[0].cautions))
-    return [first, *found[1:], *repeated]
+    return [_with_left_out(found[0], left, confounded), *found[1:], *repeated]
+
+
+def _with_left_out(
+    first: Finding, left: Sequence[Remark], confounded: Sequence[statistics.Confounded]
+) -> Finding:
+    """Return the first finding of a response with the factors that it says nothing of."""
+    doubtful = tuple(f"{each}; it is left out of this analysis" for each in confounded)
+    table = replace(first.table, notes=(*first.table.notes, *left))
+    return replace(first, table=table, cautions=(*doubtful, *first.cautions))
 
 
 def _crossed(
@@ -127,7 +138,8 @@ def _mixed(
     columns = ("term", "df", "df of error", "F", "p")
     rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
     files = model_files(key, title, model, response, values, factors, persons)
-    mixed = replace(finding(key, title, columns, rows, note, model.warnings), files=files)
+    mixed = finding(key, title, columns, rows, note, model.warnings)
+    mixed = replace(mixed, files=files, outcome=name)
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
@@ -195,10 +207,12 @@ def _tukey(
             "Hedges' g", "g 95 % low", "g 95 % high",
         )  # fmt: skip
         listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
-        note = (
-            f"Levels that share a letter do not differ at 0.05: {listed}. Hedges' g of the persons "
-            "who have both levels (difference over the SD of their differences), else over the "
-            "pooled SD; its interval is exact and holds one comparison."
+        note = f"Levels that share a letter do not differ at 0.05: {listed}. "
+        note += (
+            "Hedges' g of the persons who have both levels (difference over the SD of their "
+            "differences), else over the pooled SD; its interval is exact and holds one comparison."
+            if any(row[-3] is not None for row in rows)
+            else "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
         places = decimals_of(min(c.standard_error for c in comparisons))
         decimals = {name: 2 if "g" in name.split() or "'" in name else places
@@ -229,7 +243,7 @@ def slip_findings(
             having = [f for f in files if name in f.main and all(k in f.conditions for k in keys)]
             if having:
                 values = [f.main[name] for f in having]
-                factors, persons = varying(having, keys), persons_of(having, person)
+                factors, persons = columns_of(having, keys), persons_of(having, person)
                 margin = protocol.number("equivalence", "1", 0.0)
                 findings += comparison_findings(name, values, factors, persons, margin=margin)
         findings += multiplicity_findings(findings)
@@ -251,10 +265,34 @@ def persons_of(files: Sequence[FileResult], person: str) -> tuple[str, ...]:
     return tuple(str(f.conditions.get(person, f.file)) for f in files)
 
 
-def varying(files: Sequence[FileResult], keys: Sequence[str]) -> dict[str, list[str]]:
-    """Return the conditions that have several levels, each with its level by file."""
-    factors = {key: [str(f.conditions[key]) for f in files] for key in keys}
-    return {key: levels for key, levels in factors.items() if len(set(levels)) > 1}
+def varying(
+    response: str, factors: Mapping[str, Sequence[str]]
+) -> tuple[dict[str, Sequence[str]], list[Remark]]:
+    """Return the factors with levels that can be compared, and why the others are not estimated.
+
+    ``response``: name of the quantity. ``factors``: level of each of its values, by factor.
+    """
+    compared: dict[str, Sequence[str]] = {}
+    left = []
+    for name, levels in factors.items():
+        several = set(levels)
+        if 1 < len(several) < len(levels):
+            compared[name] = levels
+            continue
+        known = f'at one value only, "{levels[0]}"' if len(several) == 1 else "once at each value"
+        known = known if several else "nowhere"
+        what = f"{quantity_name(response)} is known {known}: the effect of {name} is not estimated"
+        left.append(Remark(name, what))
+    return compared, left
+
+
+def columns_of(files: Sequence[FileResult], keys: Sequence[str]) -> dict[str, list[str]]:
+    """Return conditions that all the files have, each with its level by file."""
+    return {
+        key: [str(f.conditions[key]) for f in files]
+        for key in keys
+        if all(key in f.conditions for f in files)
+    }
 
 
 def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
@@ -288,7 +326,7 @@ def _t_tests(
     files: Sequence[FileResult], key: str, levels: list[str], person: str
 ) -> list[Finding]:
     """Return t tests of persons' means where persons are known, of trials otherwise."""
-    rows, findings = [], []
+    rows, kinds, findings = [], [], []
     for name in ("peak_pressure", "peak_slipping_speed", "rcof"):
         having = [f for f in files if name in f.main and str(f.conditions.get(key)) in levels]
         values = [f.main[name] for f in having]
@@ -308,12 +346,15 @@ def _t_tests(
             except UnderfootError:
                 continue
             rows.append((quantity_name(name), t.title, t.difference, t.t, t.df, t.p))
+            kinds.append(kind)
     if rows:
         # rows come in pairs: Welch's test, on which the correction stands, then Student's
-        corrected = iter(
-            statistics.corrected_p([row[-1] for row in rows if row[1].startswith("Welch")])
-        )
-        rows = [(*row, next(corrected) if row[1].startswith("Welch") else None) for row in rows]
+        welch = [row[-1] for row, kind in zip(rows, kinds, strict=True) if kind == "welch"]
+        corrected = iter(statistics.corrected_p(welch))
+        rows = [
+            (*row, next(corrected) if kind == "welch" else None)
+            for row, kind in zip(rows, kinds, strict=True)
+        ]
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
         columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")
         findings.insert(0, finding(f"t_{key}", title, columns, rows))
@@ -338,7 +379,7 @@ def _logistic(
             try:
                 fit = statistics.logistic_regression(y, {name: x}, method=method)
             except UnderfootError as error:
-                cautions.append(f"{METHODS[method].split(' (')[0]}: {error.what}")
+                cautions.append(f"{method.replace('_', ' ')}: {error.what}")
                 continue
             best = best or fit
             cautions += fit.warnings

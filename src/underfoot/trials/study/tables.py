@@ -9,6 +9,7 @@ import numpy as np
 from underfoot.core import UnderfootError
 
 from .. import statistics
+from ..recording.measurement import MEAN_OF_STEPS
 from ..walking.gait_context import PERCENT
 from .conditions import NUMBERS, person_condition
 from .file_result import FileResult
@@ -49,8 +50,9 @@ class Finding:
     """One test: what was asked, the table, and cautions.
 
     Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
-    ``values`` the means of the persons (or the single values) by level. ``files``: text by the name
-    of a file from which other programs find the test again.
+    ``values`` the means of the persons (or the single values) by level. ``outcome``: what was
+    measured, where the p of the table are those that this outcome stands on. ``files``: text by
+    the name of a file from which other programs find the test again.
     """
 
     name: str
@@ -62,16 +64,19 @@ class Finding:
     marks: Mapping[str, str] = field(default_factory=dict)
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
+    outcome: str = ""
 
     @classmethod
-    def of_anova(cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = ()) -> Self:
+    def of_anova(
+        cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = (), *, outcome: str = ""
+    ) -> Self:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
         plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
         name = f"anova_{plain}_type_{anova.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
         table = Table(name, anova.title, columns, rows)
-        return cls(name, anova.title, table, (*cautions, *anova.warnings))
+        return cls(name, anova.title, table, (*cautions, *anova.warnings), outcome=outcome)
 
 
 def finding(
@@ -282,6 +287,10 @@ def condition_table(
     columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
     averaged = ", each person's trials averaged first." if person else "."
     notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
+    if any(
+        len({str(m.conditions.get(person, m.file)) for m in own}) < 2 for own in groups.values()
+    ):
+        notes.append(f"Of one of the {unit} alone SD and interval are not estimated: no scatter.")
     if not person and len(usable) > 1:
         notes.append(
             "No condition names the persons or samples: every file counts as one. Where files "
@@ -304,27 +313,32 @@ def number_columns(name: str) -> list[str]:
 
 
 INTERVALS = (
-    "Intervals: t on the logarithm of a mean that can't be negative (none from two values), on the "
-    "logit of a share."
+    "Intervals: t on the logarithm of a mean that can't be negative (none from two values, or from "
+    "values that are all alike), on the logit of a share."
 )
 _SIGNED = ("acof_minus_rcof", "slip_margin")
 
 
 def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[float | None, ...]:
-    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values."""
+    """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values.
+
+    Values that are all alike have no interval: they scatter by less than their resolution.
+    """
     if not len(values):
         return None, None, None, None
     mean = float(np.mean(values))
     if len(values) < 2:
         return mean, None, None, None
-    ends = statistics.mean_interval(values, positive=name not in _SIGNED) or (None, None)
+    alike = float(np.ptp(values)) <= statistics.ROUNDING * float(np.abs(values).max())
+    interval = None if alike else statistics.mean_interval(values, positive=name not in _SIGNED)
+    ends = interval or (None, None)
     return mean, float(np.std(values, ddof=1)), *ends
 
 
 def counted_steps(result: FileResult) -> int:
     """Return the number of steps of a file that gave a required friction."""
     return sum(
-        m["name"] == "rcof" and m["value"] is not None and str(m["item"]).startswith("step ")
+        m["name"] == "rcof" and m["value"] is not None and m["item"] != MEAN_OF_STEPS
         for m in result.measurements
     )
 

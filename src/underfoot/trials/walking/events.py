@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.remark import Remark
 
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
@@ -119,7 +120,7 @@ def _named(contacts: Sequence[Stance], edit: Edit) -> int:
 def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance:
     by_hand = (*stance.by_hand, edit.what)
     if edit.what == "exclude":
-        return replace(stance, reason=f"excluded by hand: {edit.why}", by_hand=by_hand)
+        return replace(stance, reason=Remark("excluded by hand", edit.why), by_hand=by_hand)
     if edit.what == "side":
         if stance.side == edit.value:
             text = f"step {stance.number} is the {edit.value} foot already"
@@ -165,7 +166,7 @@ def _on_plate(contacts: list[Stance], at: int, edit: Edit) -> list[Stance]:
         words = f"step {named.number} is on {edit.value} alone: the edit changes nothing"
         raise EditError(words, where=edit.where)
     out = list(contacts)
-    other = f"by hand: the step is on {edit.value} ({edit.why})"
+    other = Remark("by hand", f"the step is on {edit.value} ({edit.why})")
     for i in together:
         reason = out[i].reason if out[i].plate == edit.value else other
         out[i] = replace(out[i], reason=reason, by_hand=(*out[i].by_hand, "plate"))
@@ -240,34 +241,36 @@ def _reason(
     if plate.saturated:
         return "the plate is saturated"
     if stance.duration < _SHORTEST:
-        return f"lasts {1e3 * stance.duration:.0f} ms: too short for a walking step"
+        return Remark("too short for a walking step", f"{1e3 * stance.duration:.0f} ms")
     if stance.duration > _LONGEST:
-        return f"lasts {stance.duration:.2f} s: standing, or more than one foot"
+        return Remark("standing, or more than one foot", f"{stance.duration:.2f} s")
     if others:
         gap = 1e3 * abs(others[0].contact - stance.contact)
-        return f"begins {gap:.0f} ms from one on {others[0].plate}: one foot on both, or a jump"
+        what = f"{gap:.0f} ms from the contact on {others[0].plate}"
+        return Remark("one foot on both, or a jump", what)
     expected = weight.newtons if weight else 0.9 * usual_peak
     if stance.peak < 0.7 * expected:
         of = "body weight" if weight else "the usual peak"
-        return f"peak {stance.peak:.0f} N is {100 * stance.peak / expected:.0f} % of {of}: partial"
+        share = 100 * stance.peak / expected
+        return Remark("partial", f"peak {stance.peak:.0f} N is {share:.0f} % of {of}")
     ratio = stance.peak / float(vertical.mean())
     if ratio > 2.2 or (weight and stance.peak > 2.0 * expected):
         times = f"{stance.peak / expected:.1f} times body weight" if weight else ""
         times = times or f"{ratio:.1f} times the mean"
-        return f"peak {stance.peak:.0f} N, {times}: an impact, not a walking step"
+        return Remark("an impact, not a walking step", f"peak {stance.peak:.0f} N, {times}")
     two = _two_feet(stance, feet)
     if two:
         return two
     outside = feet.outside(stance)
     if outside > _OUTSIDE:
-        return f"the heel stands {1e3 * outside:.0f} mm outside the plate: a partial hit"
+        return Remark("a partial hit", f"the heel stands {1e3 * outside:.0f} mm outside the plate")
     if stance.walking is None:
-        return f"no walking direction: {stance.direction.explanation}"
+        return Remark("no walking direction", stance.direction.explanation)
     # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.
     along = part @ walk.axes.ramp.gravity(walk.up, stance.walking)[1]
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
     if braking < 0.01 * stance.peak * stance.duration:
-        return "no braking in its first half: not a heel-first step"
+        return Remark("not a heel-first step", "no braking in its first half")
     return ""
 
 
@@ -313,10 +316,8 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     # A foot set down at an angle to the path lets the centre of pressure move across.
     turning = 1.0 if feet.walk.trial.markers else 0.5
     if along > _FOOT_LENGTH or sideways > _FOOT_WIDTH + 0.5 * along * turning:
-        return (
-            f"the centre of pressure moves {1e3 * along:.0f} mm along and {1e3 * sideways:.0f} mm "
-            "across: more than one foot"
-        )
+        moves = f"moves {1e3 * along:.0f} mm along and {1e3 * sideways:.0f} mm across"
+        return Remark("more than one foot", f"the centre of pressure {moves}")
     return ""
 
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+from underfoot.core.remark import Remark
+
 from ..recording.measurement import Flag, remark
 
 UNLIKELY = 0.002  # of sound steps lie as far out; 0.05 over some 25 features, before any fault
@@ -131,10 +133,8 @@ def impossible(
         value = features.get(one.feature)
         if one.bound and value is not None and one.likelihood(value, speed) < IMPOSSIBLE:
             usual = one.shown(one.mean)
-            return (
-                f"{one.feature} {one.shown(value):.3g} is impossible (sound steps {usual:.3g}): "
-                "gain, unit or axes of the forces?"
-            )
+            what = f"{one.shown(value):.3g} is impossible (sound steps {usual:.3g})"
+            return Remark(one.feature, f"{what}: gain, unit or axes of the forces?")
     return ""
 
 

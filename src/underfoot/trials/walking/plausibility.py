@@ -28,7 +28,7 @@ from .events import Stance
 from .likelihood import unlikely_flags
 from .processed import averaged, dead_time
 from .slips import contact_from_heel, heel_motion, marker_jumps
-from .step_features import VERTICAL, step_features
+from .step_features import BUMP, VERTICAL, step_features
 from .walkway import GRAVITY, BodyWeight, Walkway
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"
@@ -171,7 +171,7 @@ def step_flags(
     plate = walk.plate(stance.plate)
     forces = (*unknown_heel(walk), *_force_flags(walk, plate, stance, speed))
     if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
-        features = {name: v for name, v in features.items() if not name.startswith("bump of ")}
+        features = {name: v for name, v in features.items() if not name.startswith(BUMP)}
     return (
         *forces,
         *_level_flags(plate, stance, walk.up, low_pass),
@@ -274,8 +274,8 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> 
     usual = 0.5 * (RCOF.value + LOW_RCOF.value)
     fall = usual * (1.0 - math.sqrt(min(speed / _USUAL_SPEED, 1.0))) if speed else 0.0
     low = max(LOW_RCOF.value - fall, 0.0)
-    slope, ground = math.tan(abs(ramp.angle)), ramp.description.split(",")[0]
-    where = f"straight walking on a {ground}" if slope else "level, straight walking"
+    slope = math.tan(abs(ramp.angle))
+    where = f"straight walking on a {ramp.name}" if slope else "level, straight walking"
     if value > RCOF.value + slope:
         return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
     if value < low - slope:

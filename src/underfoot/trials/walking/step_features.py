@@ -14,6 +14,8 @@ VERTICAL = (
     "time of second peak", "dwell at the normal peak",
 )  # fmt: skip
 """Features of the normal force's shape over the stance."""
+BUMP = "bump of the "
+"""How names of features begin that a filter leaves nothing of."""
 _LOADED = (0.06, 0.94)  # share of the stance in which the ratio of the forces is sure
 _SINGLE = (0.18, 0.82)  # share of the stance in which the other foot swings
 _SLOW = LowPass(cutoff=20.0)
@@ -92,7 +94,7 @@ def _samples(
             rough = np.abs(values - low_passed(values, rate, LowPass(cutoff=25.0))) / mean
             for part_name, begin, end in (("landing", 0.02, 0.15), ("flat foot", 0.15, 0.85)):
                 top = float(rough[round(begin * count) : round(end * count)].max())
-                features[f"bump of the {name}, {part_name}"] = math.log(top + 1e-3)
+                features[f"{BUMP}{name}, {part_name}"] = math.log(top + 1e-3)
     size = np.abs(along)
     for name, flip in (("contact", 1), ("toe off", -1)):
         onset = [
