@@ -196,7 +196,7 @@ class _Edges:
     def __init__(self, lines: Floats, reach: float) -> None:
         import shapely
 
-        self._lines = shapely.linestrings(lines)
+        self._lines: Any = shapely.linestrings(lines)
         self._tree, self._reach = shapely.STRtree(self._lines), reach
 
     def nearest(self, places: Floats) -> tuple[Floats, Mask]:
@@ -205,7 +205,7 @@ class _Edges:
 
         if not len(self._lines):
             return places, np.zeros(len(places), bool)
-        points = shapely.points(places)
+        points: Any = shapely.points(places)
         (at, line), away = self._tree.query_nearest(points, return_distance=True, all_matches=False)
         onto = shapely.line_interpolate_point(
             self._lines[line], shapely.line_locate_point(self._lines[line], points[at])

@@ -23,8 +23,8 @@ def inward_distance(x: Array, y: Array, arcs: Array) -> Array:
     for first in range(0, x.size, BLOCK):
         block = slice(first, first + BLOCK)
         ends = np.array([[each[block].min(), each[block].max()] for each in (x, y)])
-        middle, across = ends.mean(axis=1)[:, None], float(np.hypot(*np.ptp(ends, axis=1)))
-        off = np.abs([_distance(*middle, arcs[k : k + 1])[0] for k in range(len(arcs))])
+        (at_x, at_y), across = ends.mean(axis=1)[:, None], float(np.hypot(*np.ptp(ends, axis=1)))
+        off = np.abs([_distance(at_x, at_y, arcs[k : k + 1])[0] for k in range(len(arcs))])
         near = off <= off.min() + across * (1 + 1e-9)
         signed[block] = _distance(x[block], y[block], arcs[near])
     return signed
