@@ -77,6 +77,8 @@ def whole_file(path: Path) -> Iterator[Path]:
         yield part
         part.replace(path)
     except OSError as error:
+        if error.errno is None or error.filename not in (None, part, str(part)):
+            raise  # of another file
         raise named_for(error, path) from error
     finally:
         with suppress(OSError):  # a disk that can only be read refuses even what is not there
