@@ -42,7 +42,7 @@ READINGS = {
     "not a number": (readings(("34", "inf", "35", "35", "36")), 'line 3: PTV is "inf"'),
     "an unknown slider": (readings(before="tile,69,wet,along"), 'unknown slider "69"'),
     "one COF among the readings": (readings(("34", "36", "0.35", "35", "36")), "differ by"),
-    "a mean as a last row": (readings() + "\nmean,,,,35.2", "1 readings"),
+    "a mean as a last row": (readings() + "\nmean,,,,35.2", "1 reading,"),
     "readings across": (
         "surface,slider,condition,direction,1,2\ntile,96,wet,along,34,36", "no column of readings"
     ),

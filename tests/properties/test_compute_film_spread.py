@@ -86,7 +86,9 @@ def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spreads = film_spreads(prepared(case, spacing), contact)
     expected = [odds(march(factor)) - odds(contact) for factor in (1 / width, width)]
     assert expected[0] > 0.1 > -0.1 > expected[1]  # a rougher pair leaks more
-    assert spreads[LEAK] == pytest.approx(expected, rel=0.1)
+    # a march ends once its film changes by less than 1 %: two of them are 0.02 apart in odds
+    off = np.abs(np.subtract(spreads[LEAK], expected))
+    assert (off < 0.1 * np.abs(expected) + 0.02).all()
 
 
 def test_a_known_roughness_leaves_the_model_alone():

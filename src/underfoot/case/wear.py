@@ -27,7 +27,7 @@ DIN_FORCE, DIN_WAY = 10.0, 40.0
 """N and m: load and way of the abrasion test, ISO 4649 (DIN 53516)."""
 USUAL_WEAR_RATE = 3.7500000000000005e-10
 """m^2/N: the float that "0.375 mm^3/(N*m)" becomes, one rounding above 3.75e-10."""
-_ABRASION = re.compile(r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d.*)")
+_ABRASION = re.compile(r"\s*(?:(?:DIN|ISO)(?:\s*(?:53516|4649))?\s+)?(?P<volume>\d.*[^\W\d_].*)")
 WearRate = Annotated[float, Quantity("m^2/N", 1e-20, 1e-6)]
 
 

@@ -26,12 +26,13 @@ def section_lines(
     land = land[nearest_true(np.isfinite(land))]
     for first in range(0, len(triangles), _PART):
         corners = triangles[first : first + _PART].astype(np.float64) @ axes.T - begin
+        corners = corners[np.isfinite(corners).all(axis=(1, 2))]
         i, j = (
             np.clip(np.rint((corners[..., n] - at[0]) / surface.spacing), 0, at.size - 1)
             for n, at in enumerate((surface.x, surface.y))
         )
         above = corners[..., 2] - land[i.astype(np.intp), j.astype(np.intp)] - height
-        passing = (above.min(axis=1) < 0) & (above.max(axis=1) >= 0)  # False of nan
+        passing = (above.min(axis=1) < 0) & (above.max(axis=1) >= 0)
         here, low = corners[passing], above[passing]
         ahead, high = np.roll(here, -1, axis=1), np.roll(low, -1, axis=1)
         crossed = (low < 0) != (high < 0)  # two sides of a triangle
