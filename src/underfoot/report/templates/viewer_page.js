@@ -85,10 +85,8 @@ async function startViewer(root) {
         mark.hidden = !there;
         const put = (element, [x, y]) => { element.style.transform = `translate(${x}px, ${y}px)`; };
         if (there) put(mark, drawing.placeOfCell(cellIn(k), view));
-        // the word stays whole in the picture, wherever the tip of the arrow is
-        const toe = stages[k].querySelector(".toe"), half = [toe.offsetWidth / 2, toe.offsetHeight / 2];
-        const most = [stages[k].clientWidth, stages[k].clientHeight];
-        put(toe, drawing.placeOf(drawing.arrow).map((v, n) => Math.max(half[n], Math.min(v, most[n] - half[n]))));
+        const toe = stages[k].querySelector(".toe");
+        drawing.placeOf(drawing.arrow).forEach((v, n) => toe.style.setProperty(["--x", "--y"][n], `${v}px`));
         overlay(k);
       });
       // a canvas of WebGL prints empty: pictures of what is seen lie ready for the printer
