@@ -74,7 +74,11 @@ def test_roughness_that_is_not_given_is_drawn_over_what_is_usual():
     assert resolved(Case.from_text(text)).leak_deviation == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("case", [heel(), flat()], ids=["lugs", "flat"])
+# steady marches end 0.4 to 10 s from the start, by rounding, up to 2 % of film apart: one instant
+AT_ONCE = {"motion.steady": False, "motion.duration": "0.5 s"}
+
+
+@pytest.mark.parametrize("case", [heel().replace(AT_ONCE), flat()], ids=["lugs", "flat"])
 def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spacing = case.numerics.quick_grid_spacing
 
@@ -86,9 +90,7 @@ def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spreads = film_spreads(prepared(case, spacing), contact)
     expected = [odds(march(factor)) - odds(contact) for factor in (1 / width, width)]
     assert expected[0] > 0.1 > -0.1 > expected[1]  # a rougher pair leaks more
-    # a march ends once its film changes by less than 1 %: two of them are 0.02 apart in odds
-    off = np.abs(np.subtract(spreads[LEAK], expected))
-    assert (off < 0.1 * np.abs(expected) + 0.02).all()
+    assert spreads[LEAK] == pytest.approx(expected, rel=0.1)
 
 
 def test_a_known_roughness_leaves_the_model_alone():
