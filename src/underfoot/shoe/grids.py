@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core import Breach, ConvergenceError, InputError, Range, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
@@ -166,6 +166,8 @@ def _solved(
         args=(target, y),
         tolerances={"xatol": _EXACT, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
     )
+    if not found.success.all():
+        raise ConvergenceError("a place on the floor was not found on the sole", where="shoe")
     return found.x
 
 

@@ -180,7 +180,6 @@ def _outsole(
         noise=min(height_noise(height), height_noise(height.T)),
     )
     check_sole(shape, where)
-    cells = np.array(height.shape)
     height, block, region_remarks = _region(height, seen.spacing, chosen, where)
     thickness = thickness[block]
     remarks += region_remarks
@@ -190,11 +189,10 @@ def _outsole(
     if alike and whole_length > HEEL[1]:
         check_tread(shape, bool((surface.inside & ~surface.land).any()), where)
     body = float(np.median(thickness[surface.land]))
+    # the file's faces in the frame of the surface: turned, cropped, mirrored and cut as its heights
     across = np.diag([1.0, -1.0 if chosen.mirror else 1.0, 1.0])
-    corner = np.array([rows[0], columns[0]], dtype=float)
-    if chosen.mirror:  # the last column is the first
-        corner[1] = columns[0] + cells[1] - 1
-    first = np.append(np.array(seen.first) + corner * seen.spacing, seen.level) @ across
+    corner = rows[0], columns[-1] if chosen.mirror else columns[0]
+    first = np.append(seen.first + np.array(corner) * seen.spacing, seen.level) @ across
     cut = np.array([each.start or 0 for each in block]) * seen.spacing
     first[:2] += cut - np.array([surface.x[0], surface.y[0]])
     faces = (mesh.triangles, across @ axes, first, surface)
