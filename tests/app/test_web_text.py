@@ -1,6 +1,8 @@
 """The words of the app: every language has the same, and every word that a page asks for."""
 
 import re
+import tomllib
+from dataclasses import fields
 from pathlib import Path
 from string import Formatter
 
@@ -9,7 +11,7 @@ import pytest
 pytest.importorskip("nicegui")
 
 import underfoot.app
-from underfoot.app.text import LANGUAGES, Text, catalogue, chosen_language
+from underfoot.app.text import FOLDER, LANGUAGES, Text, catalogue, chosen_language
 
 SOURCE = Path(underfoot.app.__file__).parent
 
@@ -47,6 +49,16 @@ def test_words_of_inputs_and_patterns_are_there():
     keys += [f"patterns.{name}" for name in TreadPattern.options()]
     keys += [page.title for page in PAGES]
     assert all(words(key) for key in keys)
+
+
+def test_what_a_cof_is_unsure_of_has_a_name_in_each_language():
+    from underfoot.compute.numbers import INPUTS
+    from underfoot.friction.pair_contact import ContactTerms
+
+    drawn = {field.name for field in fields(ContactTerms)}
+    assert drawn <= INPUTS.keys()
+    german = tomllib.loads((FOLDER / "de.package.toml").read_text("utf-8"))
+    assert not [name for name in INPUTS.values() if f"{name} {{}}" not in german]
 
 
 def test_language_is_the_chosen_one_then_the_browser_s():

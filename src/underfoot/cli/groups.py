@@ -36,7 +36,7 @@ class Command(TyperCommand):
         for text in args:
             option, sign, value = text.partition("=")
             if option in renamed:
-                say(f"note: {option} is now {renamed[option]}; the old name ends with 0.3.")
+                say(f"note: {option} is now {renamed[option]}; the old name ends with 0.4.")
                 option = renamed[option]
             elif (self.name, option) in NOTES:
                 say(f"note: {NOTES[self.name or '', option]}")

@@ -23,7 +23,7 @@ CONTACT_SHARE = 1e-3
 """Contact pressure below this share of the mean pressure doesn't count as contact."""
 BEARING_SHARE = 0.99
 """Share of the contact's load whose pressures decide whether the law of the asperities is left."""
-_INPUTS = {
+INPUTS = {
     "cof_boundary": "friction at rest",
     "cof_hysteresis": "hysteresis",
     "cof_asymptote": "friction at high speed",
@@ -34,6 +34,7 @@ _INPUTS = {
     "roughness_factor": "roughness",
     "shear_strength": "shear strength",
     "film": "boundary film",
+    "rest": "adhesion at rest",
     "dry": "dry-like part",
     "kappa": "fading of the dry-like part",
     "hysteresis": "hysteresis of the rough contact",
@@ -54,6 +55,7 @@ _INPUTS = {
     "film shear": "warmth of the film",
     "zero": "zero of the load cell",
 }
+"""Names of what the spread of a COF comes from, by the name in the draws of a law."""
 ROUGH, SMALL = ("hysteresis", "full_contact", "gap", "flow"), 0.005
 """What the rough contact adds to the spread: told however small; others from this share on."""
 FILM_ERROR = math.log(1.59)
@@ -253,12 +255,12 @@ def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
         return {}
     words = sorted(sampled.share.items(), key=lambda one: -one[1])
     parts = [
-        f"{_INPUTS.get(name, name)} {share:.0%}" if share >= SMALL else f"{_INPUTS[name]} below 1%"
+        f"{INPUTS.get(name, name)} {share:.0%}" if share >= SMALL else f"{INPUTS[name]} below 1%"
         for name, share in words
         if share >= SMALL or name in ROUGH
     ]
     if sampled.left_out:
-        names = ", ".join(_INPUTS.get(name, name) for name in sampled.left_out)
+        names = ", ".join(INPUTS.get(name, name) for name in sampled.left_out)
         parts.append(f"taken as exact: {names}")
     held = "film thickness as computed"
     if "tread_position" in sampled.share:
