@@ -54,6 +54,14 @@ def test_the_limit_of_the_friction_is_film_blocked_adhesion_or_the_dry_pair():
     # 6 % of the load, but the fluid's own shear is what the film gives away
     useless = summary.friction_limit(outcome(cof=0.03, fluid=30.0).scalars)
     assert useless.kind == "boundary"
+    # nearly all of the load floats: what the fluid gives is friction too, nothing else is left
+    # (0.021 - 0.02) / (1 - 0.98) = 0.05 is more than 0.021, with 0.0203 it is 0.015
+    assert summary.friction_limit(outcome(cof=0.021, fluid=490.0).scalars).kind == "film"
+    floating = summary.friction_limit(outcome(cof=0.0203, fluid=490.0).scalars)
+    assert floating.kind == "shear"
+    assert str(floating).endswith("98 % of the load; shearing the fluid makes 99 % of this COF.")
+    afloat = summary.friction_limit(outcome(cof=0.02, fluid=500.0).scalars)
+    assert str(afloat).endswith("100 % of the load; shearing the fluid makes 100 % of this COF.")
     scalars = outcome().scalars | {"minimum_film_thickness": SourcedValue(None, "m")}
     assert summary.friction_limit(scalars).kind == "no fluid"
 

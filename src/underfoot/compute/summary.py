@@ -23,6 +23,8 @@ from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
 """Share of the load carried by the film above which drainage can raise the friction."""
+FILM_BEARS = 0.5
+"""Share of the load above which the film, not what touches, makes the friction."""
 GAIN_MATTERS = 1.1
 """Ratio of the COF without the film to the present one above which drainage is worth naming."""
 QUANTITIES: Mapping[str, tuple[str, str]] = {
@@ -112,12 +114,14 @@ class FrictionLimit:
     cof_without_film: float
 
     @property
-    def kind(self) -> Literal["film", "boundary", "no fluid"]:
-        """Return what limits the friction: load on the film, blocked adhesion or the pair."""
+    def kind(self) -> Literal["film", "shear", "boundary", "no fluid"]:
+        """Return what limits the friction: film, its shear, blocked adhesion or the pair."""
         if math.isnan(self.film_share):
             return "no fluid"
         drainage = self.cof_without_film > GAIN_MATTERS * self.cof
-        return "film" if self.film_share > FILM_MATTERS and drainage else "boundary"
+        if self.film_share > FILM_MATTERS and drainage:
+            return "film"
+        return "shear" if self.film_share > FILM_BEARS else "boundary"
 
     def sentence(self, regime: str = "") -> str:
         """Return the limit as a sentence; ``regime`` (" (mixed)") stands behind the film's load."""
@@ -131,6 +135,10 @@ class FrictionLimit:
                 "without the film the same surfaces would have a COF of about "
                 f"{self.cof_without_film:.2f}."
             )
+        elif self.kind == "shear":
+            touching = (1.0 - self.film_share) * self.cof_without_film / self.cof
+            sheared = 1.0 if math.isnan(touching) else 1.0 - touching
+            limit = f"shearing the fluid makes {100 * sheared:.0f} % of this COF."
         return f"The film carries {100 * self.film_share:.0f} % of the load{regime}; {limit}"
 
     def __str__(self) -> str:
@@ -252,12 +260,13 @@ def cautions(
     if "film_spread_basis" not in labels:
         left_out = {"interface": "interface roughness", **left_out}
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
-    if inputs and friction_limit(scalars).kind == "film":
+    filmed = friction_limit(scalars).kind in ("film", "shear")
+    if inputs and filmed:
         reasons.append(
             f"The film load depends on assumed values ({inputs}) that its interval leaves out; "
             "underfoot sensitivity gives their effect."
         )
-    if "film_inlet" in labels and friction_limit(scalars).kind == "film":
+    if "film_inlet" in labels and filmed:
         reasons.append(labels["film_inlet"])
     return tuple(reasons)
 
