@@ -1,12 +1,14 @@
-"""Maps of fluid pressure, flat tops, empty plates and made-up steps: small steps by hand."""
+"""Maps of fluid pressure, flat tops, empty plates, made-up steps, sheets of heels: by hand."""
 
 import numpy as np
 import pytest
 
 from underfoot.trials.machines.pressure_map import PressureScan, pressure_map
+from underfoot.trials.pages.figures import sheets
 from underfoot.trials.recording.signals import saturated, unloaded
 from underfoot.trials.simulator import walk
 from underfoot.trials.simulator.activities import activity
+from underfoot.trials.study.file_result import FileResult
 
 
 def scan(lateral, line_load, peak=0.0):
@@ -86,3 +88,20 @@ def test_a_made_up_step_is_that_of_walking_with_a_transient_of_the_heel():
     assert -force[top, 0] / force[top, 2] == pytest.approx(0.2, abs=0.005)
     on = (share > 0) & (share < 1)
     assert step.centre[0][on, 0] == pytest.approx(0.15 + 0.22 * share[on])
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_sheet_of_heels_has_the_threshold_and_the_scale_of_the_fastest(count):
+    time = np.linspace(0.0, 1.0, 101).tolist()
+    heels = [
+        {"time": time, "speed": time, "peak": peak, "peak_time": 0.3, "end": 0.5, "threshold": 0.2}
+        for peak in (0.93, 0.4, 0.6)[:count]
+    ]
+    files = [FileResult(f"{k}", curves={"heel": [one]}) for k, one in enumerate(heels)]
+    (sheet,) = sheets([*files, FileResult("empty", reasons=("no marker", "no plate"))])
+    assert sheet.line == 0.2
+    assert (sheet.x_range, sheet.y_range) == ((0.0, 0.8), (0.0, 1.0))
+    *tiles, empty = [tile for _, tile in sheet.tiles]
+    assert [tile.remark for tile in tiles] == ["0.93", "0.40", "0.60"][:count]
+    assert tiles[0].x[-1] == pytest.approx(0.52)  # until 30 ms after the end of the slip
+    assert empty.reason == "no marker; no plate"
