@@ -94,6 +94,11 @@ def test_one_column_of_sentences_is_wrapped_and_of_two_each_row_is_a_record(
     assert max(map(len, lines)) <= 60
     assert " ".join(lines).split().count("word") == 29 * long
     assert ("first" in lines) == (long == 2)  # alone on its line
+    assert all(
+        line[:7].isspace()
+        for line in lines[2:]
+        if "word" in line and "one" not in line and "two" not in line
+    )  # under where its cell begins
     assert sum("short" in line for line in lines) == long
 
 
