@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError, InputError
+from underfoot.shoe._kernels.elements import _number
 from underfoot.shoe.files.mesh import _check
 from underfoot.shoe.files.orientation import resting_plane
 from underfoot.shoe.parametric import solid
@@ -86,3 +87,20 @@ def test_lugs_at_the_rim_are_as_high_as_most_within_a_lugs_reach():
     np.testing.assert_array_equal(made[middle], height[middle])
     at_rim = ~np.pad(np.ones((33, 23), bool), 4)
     np.testing.assert_allclose(made[at_rim], usual[at_rim])
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["1.5", " 1.5", "1.5  ", "\t-2e3 ", "+.5", "7.", "-0.25E-2", "1e+2", "12345678.875", "0", "-3"],
+)
+def test_a_number_of_a_file_is_that_of_python_whatever_stands_around_it(text):
+    around = np.frombuffer(f"9{text}9".encode(), np.uint8)
+    value, good = _number(around, 1, len(text) + 1)
+    assert good
+    assert value == pytest.approx(float(text), rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["", "  ", "-", "+", ".", "e5", "1.5x", "x1", "1 2", "1..2", "1e"])
+def test_what_is_no_number_is_none(text):
+    around = np.frombuffer(f"9{text}9".encode(), np.uint8)
+    assert not _number(around, 1, len(text) + 1)[1]
