@@ -1,9 +1,13 @@
-"""Files of joint draws and what a crash has taken, by their values."""
+"""Files of joint draws, what a crash has taken and what comes next, by their values."""
+
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from underfoot.core import InputError
+from underfoot.explore import proposals
 from underfoot.explore.computing import crashed
 from underfoot.explore.inputs import read_joint_draws
 from underfoot.explore.record import Ending, Job
@@ -43,3 +47,52 @@ def test_a_case_that_crashed_has_no_number_and_took_no_time_that_is_known():
     assert not record.usable
     assert (record.seconds, record.cpu_seconds, record.memory) == (0.0, 0.0, 0.0)
     assert np.isnan(record.number("cof"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "active", "run", "batch", "then"),
+    [
+        ("optimise", 0.0, 6, 3, ("promising", 3)),
+        ("robust", 0.0, 8, 3, ("promising", 2)),  # of ten
+        ("sweep", 0.5, 6, 9, ("least known", 4)),
+        ("sweep", 0.0, 6, 9, "again"),  # its places do not follow from results
+        ("optimise", 0.0, 10, 3, "again"),
+        ("sweep", 0.5, 10, 3, "again"),
+        ("sensitivity", 0.0, 10, 3, "again"),
+    ],
+)
+@pytest.mark.parametrize("ended", [False, True])
+def test_what_comes_next_follows_from_the_kind_and_from_what_is_left(
+    monkeypatch, kind, active, run, batch, then, ended
+):
+    asked = []
+
+    def asks(name):
+        return lambda so_far, count: asked.append((name, count)) or [(0.5,)] * count
+
+    monkeypatch.setattr(proposals, "_promising", asks("promising"))
+    monkeypatch.setattr(proposals, "_least_known", asks("least known"))
+    plan = SimpleNamespace(
+        designs=10,
+        goals=("cof",),
+        method=SimpleNamespace(
+            kind=kind, active=active, batch=batch, again=1, again_on="full", quick=True
+        ),
+        jobs=lambda number, point, batch, again=False: [(number, point, batch, again)],
+    )
+    best = SimpleNamespace(number=4, point=(0.4,))
+    so_far = SimpleNamespace(
+        # the start on the finer grid is what a study ends with
+        jobs=[SimpleNamespace(batch=2, design=run - 1, point=() if ended else (0.1,), quick=True)],
+        designs=[None] * run,
+        again=[],
+        best=lambda count: [best] * count,
+    )
+    jobs = list(proposals.next_batch(cast(Any, plan), cast(Any, so_far)))
+    if then == "again":
+        assert not asked
+        again = [(4, (0.4,), 3, True), (run, (), 3, True)]
+        assert jobs == ([] if ended and run == 10 else again)
+    else:
+        assert asked == [then]
+        assert jobs == [(run + k, (0.5,), 3, False) for k in range(then[1])]

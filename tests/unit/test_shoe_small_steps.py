@@ -10,6 +10,7 @@ from underfoot.core import DataError, InputError
 from underfoot.shoe._kernels.elements import _number
 from underfoot.shoe.files.mesh import _check
 from underfoot.shoe.files.orientation import resting_plane
+from underfoot.shoe.files.threemf import _Object, _Package, _Volume
 from underfoot.shoe.parametric import solid
 from underfoot.shoe.parametric.sole import ShoeOutline
 from underfoot.shoe.tread_measures import LUG_REACH, _without_ends
@@ -104,3 +105,30 @@ def test_a_number_of_a_file_is_that_of_python_whatever_stands_around_it(text):
 def test_what_is_no_number_is_none(text):
     around = np.frombuffer(f"9{text}9".encode(), np.uint8)
     assert not _number(around, 1, len(text) + 1)[1]
+
+
+@pytest.mark.parametrize(
+    ("parts", "told", "kinds"),
+    [
+        ("12", [("1", "model"), ("2", "modifier")], ["model", "modifier"]),
+        ("12", [("2", "modifier"), ("1", "model")], ["model", "modifier"]),  # in another order
+        ("12", [("2", "modifier")], ["model", "modifier"]),
+        ("11", [("1", "model"), ("1", "modifier")], ["model", "modifier"]),  # one object twice
+        ("12", [], ["model", "model"]),
+    ],
+)
+def test_a_slicer_tells_of_a_component_by_its_number_or_its_turn(parts, told, kinds):
+    face, none = np.array([[0, 1, 2]]), np.zeros((0, 3), int)
+    objects = {
+        ("p", number): _Object(number, "model", np.eye(3), face, ())
+        for number in dict.fromkeys(parts)
+    }
+    placed = tuple((("p", number), np.eye(4)) for number in parts)
+    objects["p", "9"] = _Object("whole", "model", np.zeros((0, 3)), none, placed)
+    reader = object.__new__(_Package)
+    reader._of = objects.__getitem__
+    volumes = tuple(
+        _Volume(f"v{number}", cast(Any, kind), component=number) for number, kind in told
+    )
+    bodies = list(reader._bodies(("p", "9"), np.eye(4), (), "model", True, volumes))
+    assert [body.kind for body in bodies] == kinds
