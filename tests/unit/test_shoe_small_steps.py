@@ -1,4 +1,4 @@
-"""Steps of soles by their values: faces, planes they rest on, lugs that take a fillet, ends."""
+"""Steps of soles by their values: faces, lugs that take a fillet, ends, numbers, components."""
 
 from types import SimpleNamespace
 from typing import Any, cast
@@ -9,7 +9,6 @@ import pytest
 from underfoot.core import DataError, InputError
 from underfoot.shoe._kernels.elements import _number
 from underfoot.shoe.files.mesh import _check
-from underfoot.shoe.files.orientation import resting_plane
 from underfoot.shoe.files.threemf import _Object, _Package, _Volume
 from underfoot.shoe.parametric import solid
 from underfoot.shoe.parametric.sole import ShoeOutline
@@ -26,17 +25,6 @@ def test_a_face_without_a_vertex_is_named_by_it(faces, bad):
         _check(cast(Any, body), "PLY", "sole.ply")
     body.faces = np.array([[0, 1, 2], [3, 2, 1]])
     _check(cast(Any, body), "PLY", "sole.ply")
-
-
-@pytest.mark.parametrize(("level", "slope"), [(0.4, 0.0), (0.25, 0.0), (0.1, 0.02)])
-@pytest.mark.parametrize("lies", [0.0, 0.03])
-def test_a_sole_rests_as_it_was_drawn_where_a_fifth_of_it_is_level(level, slope, lies):
-    """0.1 m by 50 mm, level from the rear and then rising by 0.02: the middle lies on the rise."""
-    x = np.arange(100)[:, None] * 1e-3
-    height = np.broadcast_to(lies + 0.02 * np.maximum(x - 0.1 * level, 0.0), (100, 50))
-    a, b, c = resting_plane(height, 1e-3)
-    assert (a, b) == pytest.approx((slope, 0.0), abs=5e-4)
-    assert c == pytest.approx(lies - slope * 0.1 * level, abs=1e-9 + slope * 3e-3)
 
 
 @pytest.mark.parametrize(
