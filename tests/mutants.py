@@ -275,22 +275,22 @@ class Test(NamedTuple):
 
 
 class Lines:
-    """Which tests run which lines of the source."""
+    """Which tests run which lines of some files of the source."""
 
-    def __init__(self) -> None:
+    def __init__(self, files: set[str]) -> None:
         self.red: list[str] = []
         self.tests: dict[str, list[Test]] = {}
         self._lines: dict[str, dict[int, list[Test]]] = defaultdict(lambda: defaultdict(list))
         for file, _ in test_texts():
-            found = known_map(file)
+            found = known_map(file, files)
             if not found:
                 continue
             every = [Test(one["name"], one.get("seconds", 0.0)) for one in found["tests"]]
             passed = [one["passed"] for one in found["tests"]]
             self.tests[file] = [one for one, good in zip(every, passed, strict=True) if good]
             self.red += [one.name for one, good in zip(every, passed, strict=True) if not good]
-            for path, lines in found["lines"].items():
-                for line, numbers in lines.items():
+            for path in files & found["lines"].keys():
+                for line, numbers in found["lines"][path].items():
                     self._lines[path][int(line)] += [every[n] for n in numbers if passed[n]]
 
     def meeting(self, mutant: Mutant) -> list[Test]:
@@ -458,9 +458,9 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
         time.sleep(0.02)
 
 
-def record(tests: Iterable[str], jobs: int) -> None:
-    """Run the quick tests, of these files, whose lines are not known yet."""
-    if not (files := [file for file in tests if known_map(file) is None]):
+def record(tests: Iterable[str], sources: set[str], jobs: int) -> None:
+    """Run the quick tests, of these files, whose lines in ``sources`` are not known yet."""
+    if not (files := [file for file in tests if known_map(file, sources) is None]):
         return
     print(f"recording the lines that the tests of {len(files)} files run", flush=True)
     spread = ["--dist", "loadfile", "-n", str(jobs)] if jobs > 1 else ["-n", "0"]
@@ -468,7 +468,7 @@ def record(tests: Iterable[str], jobs: int) -> None:
         [sys.executable, "-m", "pytest", "-p", "mutants_map", *spread, "-q", "-m", QUICK, *files],
         cwd=REPOSITORY, env={**os.environ, "PYTHONPATH": str(REPOSITORY / "tests")}, check=False,
     )  # fmt: skip
-    without = [file for file in files if known_map(file) is None]
+    without = [file for file in files if known_map(file, sources) is None]
     if run.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED,
                               pytest.ExitCode.NO_TESTS_COLLECTED):  # fmt: skip
         raise SystemExit(f"The recording ended ({run.returncode}) before: {', '.join(without)}")
@@ -543,11 +543,12 @@ def main() -> None:
         if not faults and given.rooms:
             parser.error(f"{room}: nothing in it can be changed")
         chosen += faults
+    sources = {one.file for one in chosen}
     if not given.known:
         of_rooms = {test for one in chosen for test in tests_of(one.file)}
         wanted = [test for test, _ in test_texts() if not given.own or test in of_rooms]
-        record(wanted, given.jobs)
-    lines = Lines()
+        record(wanted, sources, given.jobs)
+    lines = Lines(sources)
     if lines.red:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:

@@ -1,14 +1,15 @@
 """A plugin of pytest that notes which lines of the source each test runs, and how long it takes.
 
 ``python tests/mutants.py`` records with it what is not yet known. A file of tests has a file of its
-own in out/mutants/map; it counts until that file of tests, or a file of the source that it runs,
-changes.
+own in out/mutants/map. What it says of a file of the source counts until that one, or the file of
+tests, changes; a change elsewhere may lead a test past other lines (remove the folder to be sure).
 """
 
 import hashlib
 import json
 import time
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 
 import coverage
@@ -29,14 +30,17 @@ def map_path(tests: str) -> Path:
     return MAPS / (tests.replace("/", "-") + ".json")
 
 
-def known_map(tests: str) -> dict | None:
-    """Return the lines that the tests of a file run, or None where they must be recorded."""
+def known_map(tests: str, files: Iterable[str] = ()) -> dict | None:
+    """Return the lines that the tests of a file run, or None where they must be recorded.
+
+    ``files``: of the source (relative to its folder), of which the lines must be those of today.
+    """
     path = map_path(tests)
     if not path.exists():
         return None
     found = json.loads(path.read_text(encoding="utf-8"))
     alike = found["of"] == digest(REPOSITORY / tests) and all(
-        digest(SOURCE / file) == of for file, of in found["sources"].items()
+        found["sources"].get(file) in (None, digest(SOURCE / file)) for file in files
     )
     return found if alike else None
 

@@ -404,3 +404,33 @@ def test_no_floor_of_the_catalogue_grips_more_wet_than_dry_behind_an_edge(floor,
     for speed in (0.03, 0.3, 1.0):
         found = edged(pressure, speed, film)
         assert found.adhesion + found.hysteresis <= limit.adhesion + limit.hysteresis
+
+
+@pytest.mark.parametrize("slender", [0.5, 1.0, 1.5])
+@pytest.mark.parametrize("drag", [3e-4, 1e-3])
+def test_a_lug_that_leans_presses_what_does_not_lift_off_closer(slender, drag):
+    """A sharp edge lets no film in: the fixed point of suction and friction, one after the other.
+
+    The resultant moves forward by e; beyond 0.12 of the length the rear lifts by 1.9 of the rest,
+    what stays bears all, and the emptied gap there is that of the law at this pressure.
+    """
+    p, suction, law = 1e5, 1e5, ExponentialLaw(3e6, 0.5, 2e-6)
+    edges = one_lug(edge=1e-9, length=5e-3, height=5e-3 * slender)
+    shift = 0.5 - 0.012 / slender**2 + 0.12 / math.sqrt(slender)
+    mu, pull = 0.3, 0.0
+    for _ in range(3000):
+        lifted = max(1 - 1.9 * max(min(shift * mu * slender, 0.47) - 0.12, 0.0), 0.12)
+        pressed = p * (1 + pull) / lifted
+        gap = brentq(lambda one, most=pressed: float(law.pressure(one)) / most - 1, 0.0, 1e-4)
+        back = gap**2 * suction / (6 * 0.25 * drag)
+        kept = max(1 - back / 5e-3, 0.0)
+        kept *= max(1 - 4 / 3 * math.sqrt(back * 5e-3) / edges.width.item(), 0.0)
+        emptied = lifted * kept
+        sheared = drag / gap * (lifted - 0.5 * emptied) / p
+        step = 0.3 * (1 + pull) + sheared - mu, emptied * suction / p - pull
+        mu, pull = mu + 0.1 * step[0], pull + 0.1 * step[1]
+        if max(map(abs, step)) < 1e-9:
+            break
+    told = friction(edges, drag=drag)
+    assert told.suction.item() == pytest.approx(pull, abs=2e-3)
+    assert lifted < 1.0

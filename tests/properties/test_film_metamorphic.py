@@ -49,13 +49,29 @@ def test_the_sliding_speed_as_it_is_makes_a_film_of_twice_the_speed():
     assert float(sliding.minimum) == float(entrained.minimum)
 
 
-def test_a_film_at_one_end_of_the_fit_and_beyond_it():
-    at = 2 * 0.5e-8 * 1e7 * 0.01 / 0.1  # m/s, where U is the least of the fit
-    one = {"viscosity": 0.1, "radius": 0.01, "effective_modulus": 1e7}
-    inside = soft_ehl(speed=1.001 * at, load=1.0, **one)
-    below = soft_ehl(speed=0.999 * at, load=1.0, **one)
-    assert not inside.breaches
-    assert [breach.quantity for breach in below.breaches] == ["dimensionless speed U"]
+@pytest.mark.parametrize(
+    ("number", "low", "high"),
+    [
+        ("dimensionless speed U", 0.5e-8, 5.1e-8),
+        ("dimensionless load W", 0.2e-3, 2.2e-3),
+        ("ellipticity k", 1.0, 12.0),
+    ],
+)
+def test_a_film_is_within_its_fit_from_end_to_end_and_nowhere_else(number, low, high):
+    """U = eta u / (E' R') and W = F / (E' R'^2), of which the others are held inside."""
+
+    def beyond(value):
+        numbers = {"dimensionless speed U": 2e-8, "dimensionless load W": 1e-3}
+        numbers |= {"ellipticity k": 3.0, number: value}
+        speed, load, k = numbers.values()
+        film = soft_ehl(
+            viscosity=0.1, speed=2 * speed * 1e7 * 0.01 / 0.1, load=load * 1e7 * 0.01**2,
+            radius=0.01, effective_modulus=1e7, ellipticity=k,
+        )  # fmt: skip
+        return [breach.quantity for breach in film.breaches]
+
+    assert beyond(1.001 * low) == beyond(0.999 * high) == []
+    assert beyond(0.999 * low) == beyond(1.001 * high) == [number]
 
 
 def test_regimes_at_a_radius_ratio_by_hand():

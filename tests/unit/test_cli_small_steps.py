@@ -1,9 +1,11 @@
 """Lines on a terminal by rules of their own: what is cut, what is left out, what fits."""
 
 import io
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
+import typer
 from rich.console import Console
 
 from underfoot.cli.output import (
@@ -14,8 +16,11 @@ from underfoot.cli.output import (
     _print_records,
     _say_rest,
     narrowed,
+    print_table,
 )
+from underfoot.cli.trials_analyse import analyse
 from underfoot.core.presentation import Table
+from underfoot.trials.study.file_result import FileResult
 
 
 def console_of(width):
@@ -63,6 +68,65 @@ def test_a_wide_table_is_printed_in_blocks_that_fit(everything):
         assert sum(line.startswith("shoe ") for line in block.splitlines()[1:]) == shown
     assert all(f"column {n}" in printed(console) for n in range(9))
     assert ("more rows" in lines[-1]) == (not everything)
+
+
+TALL = ["first", "1.5", "m/s", "a remark"]
+
+
+@pytest.mark.parametrize("everything", [True, False])
+def test_a_table_that_fits_has_a_row_on_a_line_with_every_cell(capsys, monkeypatch, everything):
+    monkeypatch.setenv("COLUMNS", "60")
+    print_table(Table("", ("name", "value", "unit", "remark"), [TALL]), everything=everything)
+    heads, row = capsys.readouterr().out.splitlines()
+    assert heads.split() == ["name", "value", "unit", "remark"]
+    assert row.split() == ["first", "1.5", "m/s", "a", "remark"]
+
+
+@pytest.mark.parametrize("long", [1, 2])
+def test_one_column_of_sentences_is_wrapped_and_of_two_each_row_is_a_record(
+    capsys, monkeypatch, long
+):
+    monkeypatch.setenv("COLUMNS", "60")
+    sentence = "word " * 29 + "end"
+    rows = [["first", *[sentence] * long], ["second", *["short"] * long]]
+    print_table(Table("", ("name", *("one", "two")[:long]), rows))
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 60
+    assert " ".join(lines).split().count("word") == 29 * long
+    assert ("first" in lines) == (long == 2)  # alone on its line
+    assert all(
+        line[:7].isspace()
+        for line in lines[2:]
+        if "word" in line and "one" not in line and "two" not in line
+    )  # under where its cell begins
+    assert sum("short" in line for line in lines) == long
+
+
+@pytest.mark.parametrize(("count", "told"), [(0, ""), (3, ": r0; r1; r2"), (5, "2 more in")])
+@pytest.mark.parametrize("verdict", ["caution", "refused"])
+def test_a_file_has_three_reasons_and_a_count_of_the_others(
+    capsys, monkeypatch, tmp_path, count, told, verdict
+):
+    one = FileResult("a.c3d", verdict=verdict, reasons=tuple(f"r{k}" for k in range(count)))
+    found = SimpleNamespace(files=[one], doubts=(), notes=(), study=SimpleNamespace(notes=()))
+    monkeypatch.setattr("underfoot.trials.study.analyse_folder", lambda *a, **b: found)
+    monkeypatch.setattr("underfoot.trials.pages.report.write_trials_report", lambda *a, **b: None)
+
+    def call():
+        analyse(tmp_path, protocol="level_walking", out=tmp_path / "out")
+
+    if verdict == "refused":  # nothing is usable
+        with pytest.raises(typer.Exit) as ended:
+            call()
+        assert ended.value.exit_code == 3
+    else:
+        call()
+    said = capsys.readouterr()
+    (line,) = said.out.splitlines()
+    assert line.startswith(verdict)
+    assert told in line
+    assert ("more" in line) == (count > 3)
+    assert f"{int(verdict == 'caution')} of 1 files usable" in said.err
 
 
 def test_a_record_has_a_line_for_each_column_that_says_something():

@@ -70,6 +70,19 @@ def test_what_leaves_one_cell_enters_the_next():
     assert total.sum() == pytest.approx(0.0, abs=1e-12 * np.abs(total).sum())
 
 
+@pytest.mark.parametrize("way", [-1, 1])
+def test_walls_that_carry_both_ways_carry_what_each_face_has_upstream(way):
+    """Without a mean speed roughness alone carries, from the middle to both ends or from both."""
+    flat = np.full((6, 2), 10e-6)
+    rough = way * np.array([-3.0, -3.0, -3.0, 2.0, 2.0, 2.0])[:, None] * np.ones(2) * 1e-7
+    fraction = np.linspace(0.1, 0.6, 6)[:, None] * np.ones(2)
+    carried = operator(flat, 0.0, roughness_flow=rough).carried(fraction)
+    mean = SPACING * 0.5 * (rough[1:] + rough[:-1])
+    upstream = np.where(mean > 0, fraction[:-1], fraction[1:])
+    np.testing.assert_allclose(carried, mean * upstream)
+    assert (carried[0] * carried[-1] < 0).all()
+
+
 def test_a_deep_channel_does_not_feed_the_lug():
     """Across a step in the sole the upwinding leaves nothing of the channel's depth."""
     outflows = []

@@ -6,10 +6,13 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from underfoot.core import InputError
 from underfoot.material import RelaxationSpectrum, fit_relaxation
 from underfoot.material.decks import _elastic
 from underfoot.material.durometer_scales import SCALES
+from underfoot.material.gent_1958 import shore_a_gent, youngs_modulus_gent
 from underfoot.material.read import _moduli
+from underfoot.material.ruess import youngs_modulus_ruess
 from underfoot.material.tables import _is_row
 
 FREQUENCY = np.geomspace(0.1, 1e3, 9)
@@ -78,6 +81,23 @@ def test_a_scaled_spectrum_is_scaled_at_every_time_and_rate():
         one.scaled(1.7).relaxation_modulus(time), 1.7 * one.relaxation_modulus(time)
     )
     assert one.scaled(1.7).equilibrium_modulus == pytest.approx(1.7e6)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        RelaxationSpectrum(1e6, np.array([2e6]), np.array([0.01])).complex_modulus,
+        RelaxationSpectrum(1e6, np.array([2e6]), np.array([0.01])).relaxation_modulus,
+        youngs_modulus_gent,
+        youngs_modulus_ruess,
+        shore_a_gent,
+    ],
+)
+def test_one_missing_value_among_good_ones_is_refused(ask):
+    good = [50e6, 60e6] if ask is shore_a_gent else [50.0, 60.0]
+    assert np.shape(ask(good)) == (2,)
+    with pytest.raises(InputError):
+        ask([good[0], np.nan])
 
 
 def test_a_fit_is_believed_between_the_ends_of_its_test():

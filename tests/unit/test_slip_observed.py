@@ -9,7 +9,7 @@ import pytest
 
 from underfoot.slip.dynamics.observation import AFTER, BEFORE, RATE, SWING_SPEED, heel_marker
 from underfoot.slip.dynamics.reduced_model import SPEED_SCALE, error_of
-from underfoot.slip.dynamics.study import SlipStudy
+from underfoot.slip.dynamics.study import FrictionDraws, SlipStudy
 
 
 def motion_at(speed, *, duration=0.4, still_sliding=False, heel_speed=0.5):
@@ -132,3 +132,24 @@ def test_a_sensor_meets_the_speed_at_which_the_heel_passes_it():
     assert told["row"] == pytest.approx([1, 1, 2, 2])
     assert told["lateral"] == pytest.approx([0.01, 0.02, 0.01, 0.02])
     assert told["speed"] == pytest.approx([1.0, 1.0, 2.0, 2.0])
+
+
+def at_level(values, crossed):
+    found = {"speed": np.array(values), "crossed": np.array(crossed)}
+    return SimpleNamespace(of=found.__getitem__)
+
+
+def test_a_draw_of_the_friction_has_walkers_of_its_level_and_crossed_ones_where_asked():
+    levels = (
+        at_level([1.0, 1.0, 9.0], [1, 1, 0]),
+        at_level([2.0, 2.0, 8.0], [1, 1, 0]),
+        at_level([3.0, 3.0, 3.0], [0, 0, 0]),
+    )
+    draws = FrictionDraws(cast(Any, levels), np.array([0, 1, 2, 1]), np.full(4, 0.2), seed=3)
+    over_sensors = draws.means("speed", 7, crossed=True)
+    assert over_sensors == pytest.approx([1, 2, np.nan, 2], nan_ok=True)
+    assert draws.means("speed", 4000) == pytest.approx([11 / 3, 4, 3, 4], abs=0.25)
+    assert draws.means("speed", 40) == pytest.approx(draws.means("speed", 40))
+    # few walkers scatter from draw to draw
+    many = FrictionDraws(cast(Any, levels), np.ones(400, int), np.full(400, 0.2), seed=3)
+    assert many.means("speed", 9).std() == pytest.approx(np.sqrt(8) / 3, rel=0.15)

@@ -9,6 +9,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
+from underfoot.sole_contact.long_waves import SIDE, wide_hats
 from underfoot.sole_contact.solver import longest_step, passing_time
 
 
@@ -59,3 +60,18 @@ def test_a_step_is_no_longer_than_its_stage_and_no_finer_than_its_eighth():
     assert longest_step(stage, math.inf) == stage
     assert longest_step(stage, 1e-9) == pytest.approx(stage / 8)
     assert longest_step(stage, 0.5 * stage / 6) == pytest.approx(0.5 * stage)
+
+
+@pytest.mark.parametrize(("cells", "count"), [(4, 1), (8, 1), (12, 2), (58, 10)])
+def test_hats_share_the_land_between_corners_a_side_apart(cells, count):
+    sole = striped(cells + 1)
+    hats = wide_hats(sole, sole.land).toarray()
+    assert SIDE == 6e-3
+    assert hats.shape[1] == 2 * (count + 1)  # 2 mm across: one hat at either rim
+    land = sole.land.ravel()
+    np.testing.assert_allclose(hats[land].sum(axis=1), 1.0)
+    assert not hats[~land].any()
+    # linear between its corners: at rest where its corner stands, gone at the next
+    corners = np.repeat(1e-3 * np.linspace(1, cells + 1, count + 1), 2)
+    x = np.repeat(sole.x, sole.y.size)
+    np.testing.assert_allclose((hats @ corners)[land], x[land])

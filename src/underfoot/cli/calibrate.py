@@ -50,6 +50,7 @@ def law(
     A case uses it with friction.model = "table" and friction.table_file = "FILE".
     """
     from underfoot.calibrate.law_file import law_file_text, law_table, trial_readings
+    from underfoot.case.text import save
     from underfoot.core import InputError, to_si
 
     chosen = {}
@@ -63,11 +64,8 @@ def law(
     load = None if pressure is None else to_si(pressure, "Pa", where="--pressure")
     if load is not None and not load > 0:
         raise InputError(f"{pressure}", where="--pressure", allowed="above 0")
-    if out.exists() and not overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
     table = law_table(trial_readings(folder, chosen), form=form)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(law_file_text(table, pressure=load), encoding="utf-8")
+    save(law_file_text(table, pressure=load), out, overwrite=overwrite)
     for note in table.notes:
         say(note)
     worst = float(table.deviation.max())

@@ -66,7 +66,7 @@ class FrictionDraws:
     levels: tuple[SlipStudy, ...]
     nearest: Array
     cof: Array
-    seed: int = 0
+    seed: int
 
     def means(self, name: str, count: int, *, crossed: bool = False) -> Array:
         """Return the mean of a number over ``count`` walkers, (draws,); nan where none has it.
