@@ -50,7 +50,7 @@ def build(session: Session) -> None:
         waits = {name for name, task in runs.items() if task.open}
         missing[:] = [row["name"] for row in rows if row["state"] in ("not_computed", "earlier")]
         missing[:] = [name for name in missing if name not in waits]
-        label = "project.compute" if missing else "project.compute_none"
+        label = "project.compute_some" if missing else "project.compute_none"
         compute.text = text(label, count=len(missing))
         compute.set_enabled(bool(missing))
         shown = time.monotonic()
