@@ -1,4 +1,4 @@
-"""What people wait for in the app: the link, pages, a preview of a slider; memory of its server.
+"""What people wait for in the app: the link, pages, a preview of a slider; memory of its processes.
 
     python -m benchmarks app_times
 
@@ -37,6 +37,9 @@ WATCH = """(name) => {
   }))).observe(live, { childList: true });
 }"""
 """Moves a slider; notes when the frame with its number was drawn."""
+LET_GO = """() => document.querySelector(".sliders [name]")
+  .dispatchEvent(new Event("change", { bubbles: true }))"""
+"""Lets a slider go, which begins a full run."""
 PARTS = """() => {
   const { began, shown } = seen.at(-1), asks = (each) => each.name.includes("/api/ask/");
   const asked = performance.getEntriesByType("resource").filter(asks).at(-1);
@@ -64,6 +67,7 @@ def measured() -> tuple[dict[str, str], dict[str, list[dict[str, Any]]]]:
             page.get_by_role("heading", name="I design outsoles").wait_for()
         times["link to first page"] = str(cost)
         begin(page, app.base)
+        shares = stack.enter_context(app.memory_watched())
         page.get_by_role("button", name="Compute friction").click()
         helped(page)
         with Cost() as cost:
@@ -81,7 +85,13 @@ def measured() -> tuple[dict[str, str], dict[str, list[dict[str, Any]]]]:
                     page.wait_for_function(f"seen.length === {number} && {ASKED} >= {number}")
                 part = page.evaluate(PARTS)
                 steps.setdefault(name, []).append({**part, "cpu": 1e3 * cost.cpu})
+        page.evaluate(LET_GO)
+        for number in range(STEPS + 1, 2 * STEPS + 1):  # previews beside the full run
+            page.evaluate("window.step()")
+            page.wait_for_function(f"seen.length >= {number}")
         times["memory of the server"] = f"{app.memory():.0f} MB"
+    parts = ", ".join(f"{share:.0f}" for share in shares)
+    times["most memory of the app and its processes"] = f"{sum(shares):.0f} MB ({parts})"
     return times, steps
 
 

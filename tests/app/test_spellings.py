@@ -1,7 +1,7 @@
 """Forty spellings of ten quantities at every entry: right, asked or refused; none wrong in silence.
 
 Entries: ``--set``, a case file, a field of the app and a box beside a slider (an English and a
-German page), the study form, tables as CSV and XLSX.
+German page), the study form, tables as CSV and XLSX, edits and readings of trials, goals.
 """
 
 import csv
@@ -18,10 +18,15 @@ from underfoot.case import Case
 from underfoot.case.tables import table_columns
 from underfoot.case.template import template
 from underfoot.cli.options import number, setting
-from underfoot.core import InputError, to_si
+from underfoot.core import DataError, InputError, to_si
 from underfoot.core.catalogue import Catalogue
+from underfoot.explore.goals import Condition, Goal, read_goal, read_requirement
 from underfoot.questions.wear import limit_load
+from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study.conditions import conditions_of
+from underfoot.trials.study.edit_table import edit_from
+from underfoot.trials.study.readings import reading_results
+from underfoot.trials.walking.events import EditError
 
 QUANTITIES = {
     "contaminant.viscosity": ("cP", "Pa*s"),
@@ -78,7 +83,7 @@ SPELLINGS = {
     "12 34 {}": (ASKED, ASKED, ASKED),
     "1.2.3 {}": (ASKED, ASKED, ASKED),
     "1e400 {}": (ASKED, ASKED, ASKED),
-    "1e-400 {}": (ASKED, ASKED, 0.0),
+    "1e-400 {}": (ASKED, ASKED, ASKED),
     "NaN {}": (ASKED, ASKED, ASKED),
     "abc": (ASKED, ASKED, ASKED),
     "": (ASKED, ASKED, ASKED),
@@ -199,6 +204,7 @@ NOTED = (
     (["1e400", "1"], ASKED),
     (["41 cP", "42 cP"], ASKED),
     (["1 2", "1"], ASKED),
+    (["1e-400", "1"], ASKED),
 )
 
 
@@ -209,6 +215,98 @@ def test_what_is_noted_of_trials_is_read_right_or_asked(tmp_path, cells, wanted)
     seen = read_or_asked(lambda: conditions_of(tmp_path, path))
     values = seen and [1e3 * each["viscosity"] for each in seen.values()]
     assert values == (wanted and pytest.approx(wanted))
+
+
+def test_a_column_of_dates_marks_no_thousands(tmp_path):
+    """Two points in "01.02.2024" say nothing about that of "1.234"."""
+    rows = [["file", "date", "viscosity (cP)"], ["a.csv", "01.02.2024", "1.234"]]
+    noted = conditions_of(tmp_path, as_csv(tmp_path, rows, ";"))
+    assert noted["a.csv"] == {"date": "01.02.2024", "viscosity": pytest.approx(1.234e-3)}
+
+
+EDITS = {
+    "3.06 s": 3.06, "3,06 s": 3.06, "3060 ms": 3.06, "1 234,5 ms": 1.2345, "0,512 s": 0.512,
+    "1,234 s": ASKED, "12,345 s": ASKED, "3.06": ASKED, "1e400 s": ASKED, "1e-400 s": ASKED,
+    "3 m": ASKED, "NaN s": ASKED,
+}  # fmt: skip
+
+
+def test_a_time_of_an_edit_is_read_right_or_asked():
+    """As its value, in a column with a unit, and as the time that names a step."""
+    for text, wanted in EDITS.items():
+        bare = text.removesuffix(" s")
+        ways = {
+            "value": lambda text=text: edit_from("1", "contact", text, "seen", "").value,
+            "step": lambda text=text: edit_from(text, "exclude", "", "seen", "").step,
+        }
+        if bare != text:
+            ways["heading"] = lambda bare=bare: (
+                edit_from("1", "contact", bare, "seen", "", "s").value
+            )
+        for way, read in ways.items():
+            seen = read_or_asked(read)
+            assert seen == (wanted and pytest.approx(wanted)), (way, text, seen)
+    with pytest.raises(EditError, match=r"can be 1\.234 or 1234"):
+        edit_from("1", "contact", "1,234 s", "seen", "")
+
+
+READ = (
+    (["0,35", "0,41", "0,38"], [0.35, 0.41, 0.38]),
+    (["0.35", "0.41", "0.38"], [0.35, 0.41, 0.38]),
+    (["1,012", "0,985", "0,9"], [1.012, 0.985, 0.9]),
+    (["1,012", "1,985", "1,901"], ASKED),
+    (["0,35", "0.41", "0.38"], ASKED),
+    (["0.35", "1e-400", "0.38"], ASKED),
+)
+
+
+@pytest.mark.parametrize(("cells", "wanted"), READ, ids=lambda value: str(value))
+def test_a_table_of_readings_is_read_right_or_asked(tmp_path, cells, wanted):
+    path = as_csv(tmp_path, [["surface", "COF"], *(["tile", cell] for cell in cells)], ";")
+    given = protocol("en_16165_tribometer")
+    try:
+        (sample,) = reading_results("table", path, "", {}, given)
+    except DataError:
+        assert wanted is None
+        return
+    assert sample.curves["readings"] == (wanted and pytest.approx(wanted))
+
+
+BOUNDS = {
+    "0.16": 0.16, "0,16": 0.16, "16 %": 0.16, "4/25": 0.16, "1,234": ASKED, "1e-400": ASKED,
+    "NaN": ASKED, "0.1.6": ASKED, "0.16 mm": ASKED,
+}  # fmt: skip
+
+
+def test_numbers_of_goals_are_read_right_or_asked():
+    states = (Condition("", {}),)
+
+    def statistic(text):
+        goal = read_goal(text, {"cof": "1"}, states)
+        assert isinstance(goal, Goal)
+        return goal
+
+    for text, wanted in BOUNDS.items():
+        asked = (
+            lambda text=text: read_requirement(f"cof > {text}", {"cof": "1"}, states).bound,
+            lambda text=text: statistic(f"quantile(cof, {text})").share,
+        )
+        for read in asked:
+            assert read_or_asked(read) == (wanted and pytest.approx(wanted)), text
+
+
+@pytest.mark.parametrize("number", ["1e-400", "1e400", "nan"])
+def test_a_bare_number_of_a_file_is_held_or_refused(number):
+    """Of a quantity without a unit, whose number stands in TOML without quotes."""
+    path = "risk.rcof_mean"
+    text = BASE.to_toml().replace("# rcof_mean = 0.20", "rcof_mean = {}")
+    ways = (
+        lambda: BASE.replace(dict([setting(f"{path}={number}")])),
+        lambda: Case.from_text(text.format(number)),
+    )
+    assert Case.from_text(text.format("0.21")).value(path) == 0.21
+    for read in ways:
+        assert read_or_asked(read) is None
 
 
 LIMITS = {

@@ -4,6 +4,7 @@ Sources and names of files stand as they are written; statistics of trials beyon
 example may be in English.
 """
 
+import ast
 import re
 import tomllib
 from pathlib import Path
@@ -121,6 +122,56 @@ def test_sentences_are_put_in_whole_and_numbers_have_their_signs(tmp_path):
             page.wait_for_timeout(50)
             label = page.evaluate("document.querySelector('p').ariaLabel")
             assert (label, page.inner_text("p")) == ("1,234 mm", "0,138")
+
+
+APART = (
+    "app", "block", "calibrate", "cli", "explore/engines", "material", "places/calibration",
+    "questions/contact", "questions/method", "rough_contact", "shoe/parametric", "studies",
+    "trials/pages", "trials/recording/protocols", "trials/study/run_sheet",
+    "trials/walking/describe",
+    "case/explanation", "case/numerics", "case/shoe",
+)  # fmt: skip
+"""What the app does not call, or calls in no way that an option could mend."""
+MARKER = "made by underfoot"
+OPTION = re.compile(r"(?<![\w-])--[a-z]{2,}")
+
+
+def sentences_with_options():
+    """Return the sentences of the package that name an option of a command, "x" for their parts."""
+    package = text.FOLDER.parent.parent
+    told = set()
+    for path in package.rglob("*.py"):
+        if path.relative_to(package).as_posix().startswith(APART):
+            continue
+        tree = ast.parse(path.read_text("utf-8"))
+        explained = {id(each.value) for each in ast.walk(tree) if isinstance(each, ast.Expr)}
+        for each in ast.walk(tree):
+            if isinstance(each, ast.JoinedStr):
+                parts = [p.value if isinstance(p, ast.Constant) else "x" for p in each.values]
+                explained |= set(map(id, each.values))
+                told.add("".join(map(str, parts)))
+            elif isinstance(each, ast.Constant) and id(each) not in explained:
+                told.add(str(each.value))
+    return {each for each in told if OPTION.search(each) and not each.startswith(MARKER)}
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_app_names_its_fields_in_place_of_options(tmp_path, language):
+    """An error of a job said "--out: ...", which no page has."""
+    told = sentences_with_options()
+    assert len(told) > 20
+    page_file = tmp_path / "page.html"
+    page_file.write_text("<p></p>")
+    words = text.Text(language)
+    with page_of(page_file.as_uri()) as page:
+        page.add_script_tag(content=words.script().replace("const spoken", "window.spoken"))
+        page.add_script_tag(path=text.FOLDER.parent / "static" / "language.js")
+        for each in sorted(told):
+            whole = f"a sole{each}" if each.startswith(";") else f"--out: {each}"
+            said = page.evaluate("t => inLanguage(t)", whole)
+            assert not OPTION.search(said), (each, said)
+        # what is no sentence of the package stays as it is, with the blanks that hold it together
+        assert page.evaluate("t => inLanguage(t)", "no\u00a0moon: so far") == "no\u00a0moon: so far"
 
 
 def test_five_pages_and_the_report_have_no_english_word_in_german(app, english):

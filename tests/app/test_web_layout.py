@@ -97,3 +97,34 @@ def test_nothing_is_cut_covered_or_empty(project, tmp_path, language):
                     page.screenshot(path=f"{folder}/{file}_1366.png")
     print("\n".join(found))
     assert not found
+
+
+LONG = "Work shoe, half of the tread worn off, channels of 4 mm"
+
+
+def test_a_ranking_and_a_progress_line_fit_a_telephone(tmp_path):
+    """A long name leaves the numbers beside it in view; words of what is computed are whole."""
+    made = project_of(tmp_path / "project", LONG, f"{LONG}, 2")
+    with (
+        served(made.folder, tmp_path / "home") as app,
+        page_of(app.link, width=390, height=844) as page,
+    ):
+        page.goto(app.base + "project")
+        page.get_by_role("button", name="Compute all that is missing (2)").click()
+        page.get_by_text("0 of 2 computed").wait_for()
+        name, row = (
+            page.locator(f".result-table tbody tr:first-child {part}").bounding_box()
+            for part in (".named", "td:nth-child(2)")
+        )
+        words, bar, stop = (
+            page.locator(f".task {part}").bounding_box()
+            for part in ("> :first-child", ".q-linear-progress", "button")
+        )
+        assert page.evaluate(FAULTS) == []
+        page.get_by_role("button", name="Stop all").click()
+    assert name["width"] < 390 / 2
+    assert row["x"] + row["width"] < 390
+    assert words["width"] > 0.8 * 390
+    assert words["y"] + words["height"] <= bar["y"]
+    assert bar["width"] > 390 / 2
+    assert stop["x"] + stop["width"] <= 390

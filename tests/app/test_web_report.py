@@ -103,7 +103,7 @@ def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
         assert len(project.results()) < 5
         page.reload()  # what is missing is computed: nothing twice
         page.get_by_role("button", name=re.compile("missing")).click()
-        page.get_by_role("button", name="Compute all", exact=True).wait_for()
+        page.get_by_role("button", name="Nothing to compute").wait_for()
         page.get_by_role("button", name="Stop all").wait_for(state="hidden")
         page.wait_for_function(
             "[...document.querySelectorAll('.result-table tbody tr')]"

@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -49,6 +50,35 @@ class Served:
         """Return the resident memory of the server in MB."""
         text = Path(f"/proc/{self.process.pid}/status").read_text()
         return int(re.search(r"VmRSS:\s+(\d+)", text)[1]) / 1e3
+
+    def shares(self):
+        """Return the memory (MB) of the server and each process it started, largest first.
+
+        Pages that several hold are shared out among them, so that the sum counts each once.
+        """
+        server = psutil.Process(self.process.pid)
+        shares = []
+        for each in (server, *server.children(recursive=True)):
+            with contextlib.suppress(psutil.NoSuchProcess):  # it has ended meanwhile
+                shares.append(each.memory_full_info().pss / 1e6)
+        return sorted(shares, reverse=True)
+
+    @contextlib.contextmanager
+    def memory_watched(self, every=0.2):
+        """Yield a list that holds after the block the ``shares`` of when their sum was largest."""
+        most, ended = [], threading.Event()
+
+        def watch():
+            while not ended.wait(every):
+                most[:] = max(most, self.shares(), key=sum)
+
+        watcher = threading.Thread(target=watch)
+        watcher.start()
+        try:
+            yield most
+        finally:
+            ended.set()
+            watcher.join()
 
     def libraries(self):
         """Return the text that names every library in the server's memory."""

@@ -256,7 +256,7 @@ def _material(given: Mapping[str, Any], path: Path) -> tuple[model.MicroMaterial
     kinds = {key: given.get(key) for key in ("report", "power_law", "spectrum")}
     allowed = 'one of: report = "rubber", power_law = {...}, spectrum = "prony.csv"'
     kind = exactly_one(kinds, "no relaxation data", where, allowed)
-    nu = float(given["poisson_ratio"])
+    nu = to_si(given["poisson_ratio"], "1", where=f"{where}.poisson_ratio")
     if kind == "report":
         young = material.report_elastomer(str(given["report"])).modulus
         assert isinstance(young, material.RelaxationSpectrum)
@@ -270,7 +270,8 @@ def _material(given: Mapping[str, Any], path: Path) -> tuple[model.MicroMaterial
                 allowed='{ shear_modulus = "0.44 MPa", exponent = 0.12 }',
             )
         modulus = to_si(law["shear_modulus"], "Pa", where=f"{where}.power_law.shear_modulus")
-        shear = material.power_law_spectrum(modulus, float(law["exponent"]), terms_per_decade=2)
+        exponent = to_si(law["exponent"], "1", where=f"{where}.power_law.exponent")
+        shear = material.power_law_spectrum(modulus, exponent, terms_per_decade=2)
     else:
         shear = material.shear_from_young(
             material.read_prony(path.parent / str(given["spectrum"])), nu

@@ -11,6 +11,7 @@ from tomlkit.items import InlineTable, Item
 
 from underfoot.core import InputError, nearest_match
 from underfoot.core.files import whole_file
+from underfoot.core.typed import held
 
 
 def read(path: Path) -> str:
@@ -35,7 +36,7 @@ def read(path: Path) -> str:
 def parsed(text: str, file: str | None = None) -> dict[str, Any]:
     """Return a TOML text as nested dictionaries."""
     try:
-        return tomllib.loads(text.removeprefix("\ufeff"))
+        return tomllib.loads(text.removeprefix("\ufeff"), parse_float=held)
     except tomllib.TOMLDecodeError as error:
         remedy = 'Text and numbers with a unit stand in quotes, as in speed = "0.7 m/s"'
         if "Cannot overwrite" in str(error):

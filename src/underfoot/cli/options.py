@@ -198,6 +198,7 @@ def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | Non
 def setting(text: str) -> tuple[str, Any]:
     """Return path and value of one ``--set``."""
     from underfoot.core import InputError
+    from underfoot.core.typed import held
 
     path, sign, value = text.partition("=")
     if not sign or not path.strip():
@@ -208,6 +209,6 @@ def setting(text: str) -> tuple[str, Any]:
         )
     value = value.strip()
     try:
-        return path.strip(), tomllib.loads(f"x = {value}")["x"]
+        return path.strip(), tomllib.loads(f"x = {value}", parse_float=held)["x"]
     except tomllib.TOMLDecodeError:
         return path.strip(), value

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .errors import DataError
 from .text import MISSING
-from .typed import plain_signs
+from .typed import is_lost, plain_signs
 
 _GAP = re.compile(r"(?<=\d)['’ ](?=\d{3}(?!\d))")
 _NO_GROUP = re.compile(r"[+-]?0+['’ ]")
@@ -19,8 +19,15 @@ _OTHER = {",": ".", ".": ","}
 _WITH_UNIT = re.compile(
     rf"({_NUMBER.pattern})\s*(%|[a-zµμ°²][a-zµμ°²³⁻¹/*·.^\d-]{{0,9}})", re.IGNORECASE
 )
+_TINY = re.compile(r"([\d.]*[1-9][\d.]*)[eE]-\d{3,}")
 FEWEST = 3
 """Numbers with three digits behind a point that make it one of thousands beside whole numbers."""
+
+
+def any_lost(rows: Iterable[str]) -> bool:
+    """Return whether rows of plain numbers hold one that ``is_lost``."""
+    small = (found for row in rows if "e-" in row or "E-" in row for found in _TINY.finditer(row))
+    return any(float(found[0]) == 0.0 for found in small)
 
 
 def _closed(cell: str) -> str:
@@ -56,8 +63,12 @@ class NumberForm:
         return text.replace("d", "e").replace("D", "e")
 
     def number(self, cell: str) -> float:
-        """Return the number in a cell; a ValueError where it holds none."""
-        return float(self.plain(cell))
+        """Return the number in a cell; a ValueError where it holds none that can be held."""
+        plain = self.plain(cell)
+        number = float(plain)
+        if is_lost(number, plain):
+            raise ValueError(f"{cell} is too small to be told from 0")
+        return number
 
 
 @dataclass(slots=True)
@@ -93,10 +104,12 @@ class _Evidence:
             self.short_whole |= len(body) == 3 and body[0] != "0"
         elif len(marks) == 2:
             last = max(marks, key=body.rfind)
-            self.decimals.add(last)
-            self.groups.add(_OTHER[last])
+            if _GROUPED[_OTHER[last]].fullmatch(body.partition(last)[0]):
+                self.decimals.add(last)
+                self.groups.add(_OTHER[last])
         elif body.count(marks[0]) > 1:
-            self.groups.add(marks[0])
+            if _GROUPED[marks[0]].fullmatch(body):  # else a date
+                self.groups.add(marks[0])
         elif closed == cell and not match.group(3) and _GROUPED[marks[0]].fullmatch(body):
             self.open.setdefault(marks[0], cell)
             self.opened += 1

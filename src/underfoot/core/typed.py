@@ -61,10 +61,24 @@ def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | Non
     plain = _decimal(digits, text, "," if comma else ".")
     if plain is None:
         return None
-    number = float(f"{sign}{plain}e{exponent or 0}")
-    if number == 0.0 and re.search("[1-9]", plain):
-        raise InputError(f"{text} is too small to be told from 0", allowed="0, or a larger number")
-    return number, unit.strip()
+    return held(f"{sign}{plain}e{exponent or 0}"), unit.strip()
+
+
+def held(plain: str) -> float:
+    """Return the number of a text as ``float`` takes it.
+
+    Raises:
+        InputError: It is not 0 and too small to be held.
+    """
+    number = float(plain)
+    if is_lost(number, plain):
+        raise InputError(f"{plain} is too small to be told from 0", allowed="0, or a larger number")
+    return number
+
+
+def is_lost(number: float, text: str) -> bool:
+    """Return whether the number of a text is 0 because it is too small to be held."""
+    return number == 0.0 and re.match(r"[^eE]*[1-9]", text) is not None
 
 
 def _vulgar(text: str) -> str:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -31,7 +30,7 @@ OVER = ("conditions", "draws", "conditions and draws")
 LIFE = "wear_life"
 WEAR = "shoe.wear.depth"
 _CLAUSE = re.compile(r"\s+(in|over)\s+([^<>()]*?)(?=\s+(?:in|over)\s|$)")
-_STATISTIC = re.compile(r"(\w+)\s*\(\s*(\w+)\s*(?:,\s*([\d.]+)\s*)?\)|(\w+)")
+_STATISTIC = re.compile(r"(\w+)\s*\(\s*(\w+)\s*(?:,\s*([^()]+))?\)|(\w+)")
 _BOUND = re.compile(r"(.+?)\s*(<=|>=|<|>)\s*(.+)")
 
 
@@ -270,7 +269,7 @@ def read_goal(
         raise unknown_name("statistic", statistic, STATISTICS)
     if output not in units:
         raise unknown_name("output", output, [*units, LIFE])
-    share = float(match[3]) if match[3] else 0.5
+    share = to_si(match[3], "1", where="") if match[3] else 0.5
     if (statistic == "quantile") != bool(match[3]) or not 0 < share < 1:
         raise InputError(f'"{text}"', allowed="quantile(output, share), share between 0 and 1")
     over = clauses.get("over", OVER[2])
@@ -298,10 +297,7 @@ def read_requirement(
     goal = read_goal(whole, units, states)
     if not isinstance(goal, Goal):
         raise InputError(f"{goal} can't be required", allowed="an output")
-    given: object = match[3]
-    with suppress(ValueError):
-        given = float(match[3]) if goal.unit == "1" else given
-    return Requirement(goal, 1 if ">" in match[2] else -1, to_si(given, goal.unit, where=""))
+    return Requirement(goal, 1 if ">" in match[2] else -1, to_si(match[3], goal.unit, where=""))
 
 
 def check_agreement(require: Sequence[Requirement]) -> None:

@@ -389,7 +389,7 @@ def _toml(path: Path) -> dict[str, Any]:
 def _given_ratio(path: Path) -> float | None:
     """Return Poisson's ratio that a series in TOML names."""
     given = _toml(path).get("poisson_ratio")
-    return None if given is None else float(given)
+    return None if given is None else to_si(given, "1", where=f"{path}, poisson_ratio")
 
 
 def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
@@ -422,9 +422,7 @@ def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
     )
     spectrum = _prony(
         tau,
-        np.array([float(item["fraction"]) for item in items])
-        if all(with_fraction)
-        else values("modulus", "Pa"),
+        values("fraction", "1") if all(with_fraction) else values("modulus", "Pa"),
         all(with_fraction),
         instantaneous,
         equilibrium,

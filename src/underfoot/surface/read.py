@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, text
-from underfoot.core.numbers_text import NumberForm, column_numbers, number_forms, one_unit
+from underfoot.core.numbers_text import (
+    NumberForm,
+    any_lost,
+    column_numbers,
+    number_forms,
+    one_unit,
+)
 from underfoot.core.units import metres
 
 from .arrays import SPACING, is_array, read_array
@@ -145,9 +151,10 @@ def _plain_numbers(lines: list[str], separator: str | None) -> np.ndarray | None
     if any('"' in line or (separator != "," and "," in line) for line in lines):
         return None
     try:
-        return np.loadtxt(lines, delimiter=separator, ndmin=2, comments=None)
+        values = np.loadtxt(lines, delimiter=separator, ndmin=2, comments=None)
     except (ValueError, OverflowError):
         return None
+    return None if not values.all() and any_lost(lines) else values
 
 
 def _holds(cell: str, form: NumberForm) -> bool:

@@ -29,7 +29,7 @@ def build(session: Session) -> None:
     count = len(project.variants())
     ui.label(text("project.lead", count=count, date=time.strftime("%Y-%m-%d")))
     with ui.element("div").classes("bar-row no-print"):
-        compute = ui.button(text("project.compute"), icon="play_arrow")
+        compute = ui.button(text("project.reading"), icon="play_arrow")
         compute.props("no-caps unelevated").disable()
         printed = ui.button(text("place.print"), icon="print")
         printed.on_click(lambda: ui.run_javascript("window.print()"))
@@ -50,9 +50,8 @@ def build(session: Session) -> None:
         waits = {name for name, task in runs.items() if task.open}
         missing[:] = [row["name"] for row in rows if row["state"] in ("not_computed", "earlier")]
         missing[:] = [name for name in missing if name not in waits]
-        compute.text = text("project.compute")
-        if missing:
-            compute.text = text("project.compute_some", count=len(missing))
+        label = "project.compute_some" if missing else "project.compute_none"
+        compute.text = text(label, count=len(missing))
         compute.set_enabled(bool(missing))
         shown = time.monotonic()
 

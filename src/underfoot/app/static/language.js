@@ -26,7 +26,8 @@ function inLanguage(text, depth = 0) {
   if (!core || depth > 20) return text;
   if (!translations.has(core)) {
     translations.set(core, withDecimals(core)); // what a form of itself would come back to
-    translations.set(core, formed(plain, depth));
+    const said = formed(plain, depth);
+    if (said !== plain) translations.set(core, said); // blanks that hold together stay where nothing is put in
   }
   return text.replace(core, () => translations.get(core));
 }
@@ -38,6 +39,8 @@ function formed(core, depth) {
   if (!/[A-Za-z]{2}/.test(core)) return withDecimals(core);
   const whole = asForm(core, small, depth, (fixed) => fixed > 0);
   if (whole !== null) return whole;
+  const [, where, what] = /^([^:]+): (.+)$/s.exec(core) ?? []; // of an error
+  if (exactWords.has(where)) return `${exactWords.get(where)}: ${inLanguage(what, depth + 1)}`;
   const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
   if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
   if (core.endsWith(".")) return inLanguage(core.slice(0, -1), depth + 1) + ".";

@@ -2,7 +2,9 @@
 
 ``en.toml``, ``de.toml``: what the app says, by key. ``de.package.toml``: what the package says
 (results, remarks, catalogue, errors), by the English sentence; ``{}`` stands for a part that
-changes, ``{0}``, ``{1}`` for these parts in the other language. The browser puts these in.
+changes, ``{0}``, ``{1}`` for these parts in the other language. ``en.package.toml``: the same of
+sentences that name options of the command line, which the app has fields for. The browser puts
+these in.
 """
 
 from __future__ import annotations

@@ -329,7 +329,7 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
         return keep, []
     rest = keep & ~plates
     named = _listed([n for n, p in zip(bodies.names, plates, strict=True) if p])
-    return rest, [assumed(f"{named} is a plate under the sole and was left out.")]
+    return rest, [assumed(f"{named} is a plate under or over the sole and was left out.")]
 
 
 def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:

@@ -73,8 +73,11 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     risen = float(np.median((seen.lowest - level)[rest]))
     towards = risen * float(np.median(seen.facing[beyond])) > 0
     if not settings.cut_floor and (land or not (solid or towards)):
-        told = f"a {what} is part of the sole. If it is a floor or a table, cut it with "
-        return mesh, None, [assumed(told + "--cut-floor (in a case: cut_floor = true).")]
+        told = (
+            f"a {what} is part of the sole. If it is a floor or a table, cut it with --cut-floor "
+            "(in a case: cut_floor = true)."
+        )
+        return mesh, None, [assumed(told)]
     beside = _within(mesh.triangles.mean(axis=1), seen, ~rest if solid else beyond)
     level_with = np.minimum(np.abs(seen.lowest - level), np.abs(seen.highest - level))[rest] <= half
     if not solid:

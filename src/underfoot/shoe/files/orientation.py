@@ -387,6 +387,7 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
 LEVEL = math.radians(0.05)
 """A tilt (rad) below it is that of noise and roundings."""
 _DRAWN_LEVEL = 0.2
+_OTHER_FACE, _ALIKE = math.radians(3.0), math.radians(1.0)
 
 
 def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
@@ -401,31 +402,55 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
         height: (nx, ny) m, z up, nan outside.
         spacing: Of its cells, m.
     """
+    (a, b, c), plan, centre = _lower_faces(height, spacing)
+    # every lower face lies below the points: over the centre the highest of them is the hull
+    best = int(np.argmax(a * centre[0] + b * centre[1] + c))
+    level = np.hypot(a, b) < LEVEL
+    if plan[level].sum() > _DRAWN_LEVEL * plan.sum():
+        best = int(np.argmax(np.where(level, plan, 0.0)))
+    return float(a[best]), float(b[best]), float(c[best])
+
+
+def other_rest(height: Array, spacing: float) -> tuple[float, float] | None:
+    """Return (share of the plan form, angle from level in rad) of another face it could stand on.
+
+    None where no face is a fifth of the plan form and 3 degrees off: of a sole that stands level.
+    """
+    (a, b, _), plan, _ = _lower_faces(height, spacing)
+    normals = np.stack([-a, -b, np.ones_like(a)]) / np.sqrt(a**2 + b**2 + 1)
+    off = np.arccos(np.minimum(normals[2], 1.0)) > _OTHER_FACE
+    largest = int(np.argmax(np.where(off, plan, 0.0)))
+    alike = off & (normals.T @ normals[:, largest] > math.cos(_ALIKE))
+    share = float(plan[alike].sum() / plan.sum())
+    angle = math.acos(min(1.0, float(normals[2, largest])))
+    return (share, angle) if share > _DRAWN_LEVEL else None
+
+
+def _lower_faces(height: Array, spacing: float) -> tuple[Array, Array, Array]:
+    """Return (a, b, c) of the faces of the lower hull, their area in plan, and the sole's centre.
+
+    The one plane that fits, where there are too few points for a hull or all lie in one plane.
+    """
     from scipy.spatial import ConvexHull, QhullError
 
     points = _low_points(height, spacing)
     inside = np.isfinite(height)
     centre = np.array([float(index.mean()) for index in np.nonzero(inside)]) * spacing
+    whole = np.ones(1)
     if points.shape[0] < 4:
-        return 0.0, 0.0, float(np.nanmin(height))
+        return np.array([[0.0], [0.0], [float(np.nanmin(height))]]), whole, centre
     try:
         hull = ConvexHull(points)
-    except QhullError:  # all points in one plane: that plane
+    except QhullError:
         coefficients, *_ = np.linalg.lstsq(
             np.column_stack([points[:, :2], np.ones(points.shape[0])]), points[:, 2], rcond=None
         )
-        return float(coefficients[0]), float(coefficients[1]), float(coefficients[2])
-    lower = hull.equations[hull.equations[:, 2] < -1e-9]
-    # every lower face lies below the points: over the centre the highest of them is the hull
-    a, b, c = (-lower[:, n] / lower[:, 2] for n in (0, 1, 3))
-    best = int(np.argmax(a * centre[0] + b * centre[1] + c))
-    corners = points[hull.simplices[hull.equations[:, 2] < -1e-9], :2]
+        return np.asarray(coefficients, dtype=np.float64)[:, None], whole, centre
+    down = hull.equations[:, 2] < -1e-9
+    lower = hull.equations[down]
+    corners = points[hull.simplices[down], :2]
     (x1, y1), (x2, y2) = (corners[:, n].T - corners[:, 0].T for n in (1, 2))
-    plan = np.abs(x1 * y2 - x2 * y1)
-    level = np.hypot(a, b) < LEVEL
-    if plan[level].sum() > _DRAWN_LEVEL * plan.sum():
-        best = int(np.argmax(np.where(level, plan, 0.0)))
-    return float(a[best]), float(b[best]), float(c[best])
+    return -lower[:, [0, 1, 3]].T / lower[:, 2], np.abs(x1 * y2 - x2 * y1), centre
 
 
 def _low_points(height: Array, spacing: float) -> Array:

@@ -291,12 +291,20 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
         total += angle
         axes = turned
         seen = view(mesh.triangles, axes, spacing)
-    if total > 0:
-        remarks.append(
-            f"Turned by {math.degrees(total):.2g}° so that it rests on its lowest lugs; toe spring "
-            "is kept."
-        )
     height, _ = cleaned(seen.lowest, spacing)
+    if total > 0:
+        told = f"turned by {math.degrees(total):.2g}° so that it rests on its lowest lugs"
+        other = orientation.other_rest(height, spacing)
+        if other is None:
+            remarks.append(f"{told.capitalize()}; toe spring is kept.")
+        else:  # a file that lies level says itself which of them is the floor's
+            share, angle = other
+            remarks.append(
+                assumed(
+                    f"{told}; a face of {share:.0%} of it, {math.degrees(angle):.2g}° off, could "
+                    "stand on the floor as well. Lay the file level in CAD to choose."
+                )
+            )
     a, b, c = orientation.resting_plane(height, spacing)
     centre = [(n - 1) / 2 * spacing for n in height.shape]
     level = a * centre[0] + b * centre[1] + c

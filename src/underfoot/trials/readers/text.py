@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.numbers_text import NumberForm, number_forms
+from underfoot.core.numbers_text import NumberForm, any_lost, number_forms
 from underfoot.core.text import cells_of
 from underfoot.core.typed import MINUS
 
@@ -186,9 +186,10 @@ def plain_numbers(rows: Sequence[str], delimiter: str, notes: list[str]) -> np.n
 
 def _loaded(rows: Sequence[str], delimiter: str) -> np.ndarray | None:
     try:
-        return np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
+        values = np.loadtxt(rows, delimiter=delimiter or None, ndmin=2, comments=None)
     except (ValueError, OverflowError):
         return None
+    return None if not values.all() and any_lost(rows) else values
 
 
 def _number(cell: str, form: NumberForm, where: str) -> float:

@@ -368,17 +368,13 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
             allowed=", ".join(cells) or "headings in the first line",
             nearest=nearest_match("file", cells),
         )
-    numeric = [
-        name for name, (_, own) in cells.items() if all(map(is_written_number, filter(None, own)))
-    ]
     try:
-        read = number_forms([cells[name][1] for name in numeric], path.name)
+        numbers = numbers_of_columns({name: own for name, (_, own) in cells.items()}, path.name)
     except DataError as error:
         raise InputError(error.what, where=path.name, remedy=error.remedy) from error
-    forms = dict(zip(numeric, read, strict=True))
     # A person called 1, 2, 3 is a name, not a number.
     columns = {
-        name: own if name in PERSON else _column(own, unit, lines, path.name, name, forms.get(name))
+        name: own if name in PERSON else _column(own, numbers[name], unit, lines, path.name, name)
         for name, (unit, own) in cells.items()
         if name != files
     }
@@ -421,6 +417,32 @@ def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[in
     return columns, [line for line, _ in rows[1:]]
 
 
+def numbers_of_columns(
+    cells: Mapping[str, Sequence[str]], where: str
+) -> dict[str, list[float | None]]:
+    """Return the numbers of each column, None where a cell is empty or holds no finite one.
+
+    DataError: a number can be two and nothing in the table decides.
+    """
+    numeric = {n: own for n, own in cells.items() if all(map(is_written_number, filter(None, own)))}
+    forms = dict(zip(numeric, number_forms(list(numeric.values()), where), strict=True))
+    return {n: [_number(c, forms.get(n, NumberForm())) for c in own] for n, own in cells.items()}
+
+
+def first_text(cells: Sequence[str], numbers: Sequence[float | None]) -> int | None:
+    """Return the place of a column's first filled cell that holds no number."""
+    pairs = enumerate(zip(cells, numbers, strict=True))
+    return next((i for i, (cell, number) in pairs if cell and number is None), None)
+
+
+def _number(cell: str, form: NumberForm) -> float | None:
+    try:
+        number = form.number(cell)
+    except ValueError:
+        return None
+    return number if is_number(form.plain(cell)) and math.isfinite(number) else None
+
+
 def profile_of(folder: Path, given: Path | None) -> tuple[Profile, str]:
     """Return the given profile, else that of the folder, else the plain one; and its text."""
     path = given or folder / "profile.toml"
@@ -455,29 +477,24 @@ def table_delimiter(text: str) -> str:
 
 def _column(
     cells: list[str],
+    numbers: Sequence[float | None],
     unit: str,
     lines: Sequence[int],
     where: str,
     name: str,
-    form: NumberForm | None,
 ) -> list[Any]:
-    """Return a column in SI, or as text where not every cell is a number (no ``form``)."""
-    plain = cells if form is None else [form.plain(cell) for cell in cells]
-    bad = [
-        i
-        for i, cell in enumerate(plain)
-        if cell and not (is_number(cell) and math.isfinite(float(cell)))
-    ]
-    if bad and (name in MASS or si_unit(unit) or _is_si(unit)):
+    """Return a column in SI, or as text where not every cell is a number."""
+    bad = first_text(cells, numbers)
+    if bad is not None and (name in MASS or si_unit(unit) or _is_si(unit)):
         raise InputError(
-            f'line {lines[bad[0]]}: {name} is "{cells[bad[0]]}"',
+            f'line {lines[bad]}: {name} is "{cells[bad]}"',
             where=where,
             allowed="a number; its unit stands in the heading, as in mass (kg)",
         )
-    if bad or not any(plain):
+    if bad is not None or not any(cells):
         return list(cells)
     factor, offset = _to_si(unit, f"{where}, column {name}")
-    values = [float(cell) * factor + offset if cell else None for cell in plain]
+    values = [None if number is None else number * factor + offset for number in numbers]
     low, high, si, headings = _RANGES.get(name, (-math.inf, math.inf, "", ""))
     if name in _ANGLES:
         high = LARGEST["angle"] * factor

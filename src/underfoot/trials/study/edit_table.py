@@ -10,7 +10,7 @@ from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
 from underfoot.core.text import decoded
 
-from ..readers.text import is_number, name_and_unit
+from ..readers.text import name_and_unit
 from ..recording.trial import Edit
 from ..walking.events import EditError
 from .conditions import named_file, table_columns, table_delimiter
@@ -88,14 +88,12 @@ def edit_from(step: str, what: str, value: str, why: str, where: str, unit: str 
 
 
 def _time(text: str, unit: str, where: str) -> float:
-    plain = text.strip().replace(",", ".")
-    if unit and is_number(plain):
-        plain = f"{plain} {unit}"
     try:
-        return to_si(plain, "s", where=where)
+        return to_si(text, "s", where=where, usual=unit)
     except InputError as error:
         allowed = 'a time with its unit, as "3.06 s"; a step also by its number'
-        raise EditError(f'"{text}" is no time', where=where, allowed=allowed) from error
+        what = f'"{text}" is no time: {error.what}'
+        raise EditError(what, where=where, allowed=allowed) from error
 
 
 def edit_text(folder: Path) -> str:

@@ -11,12 +11,18 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from ..readers.text import is_number
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import TesterCalibration
 from ..statistics import drift
-from .conditions import LARGEST, QUANTITIES, one_spelling, table_columns
+from .conditions import (
+    LARGEST,
+    QUANTITIES,
+    first_text,
+    numbers_of_columns,
+    one_spelling,
+    table_columns,
+)
 from .file_result import Draft, FileResult, refer_to
 from .floor_classes import class_scheme
 
@@ -97,18 +103,18 @@ def reading_results(
     columns, lines = _one_a_row(*table_columns(path), protocol.text("quantity"))
     cells = {head: column for head, _, column in columns}
     units = {head: unit for head, unit, _ in columns}
+    read = numbers_of_columns(cells, name)
     numbers = {
-        head: column
-        for head, column in cells.items()
-        if any(column) and all(is_number(c.replace(",", ".")) for c in column if c)
+        head: np.array(read[head], dtype=float)
+        for head, own in cells.items()
+        if any(own) and first_text(own, read[head]) is None
     }
-    column, quantity = _value_column(list(numbers), name, protocol, cells, lines)
+    column, quantity = _value_column(list(numbers), name, protocol, cells, read, lines)
     unit = units[column].casefold()
     if unit not in _UNITS[quantity]:
         allowed = ", ".join(u for u in _UNITS[quantity] if u)
         raise DataError(f'{column} is in "{units[column]}"', where=name, allowed=allowed)
-    values = np.array([float(c.replace(",", ".")) if c else np.nan for c in numbers[column]])
-    values *= _UNITS[quantity][unit]
+    values = numbers[column] * _UNITS[quantity][unit]
     top = LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
     if len(wrong):
@@ -126,7 +132,13 @@ def reading_results(
     if walker:
         texts = {"operator" if k == walker else k: v for k, v in texts.items()}
     one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
-    boards = _boards(name, cells, units, texts, values) if quantity == "angle" else None
+    board = next((one for one in cells if one.casefold() in _BOARD), None)
+    boards = None
+    if quantity == "angle" and board is not None:
+        _check_numbers(board, cells[board], read[board], lines, name)
+        standards = np.array(read[board], dtype=float)
+        standards *= _UNITS["angle"].get(units[board].casefold(), 1.0)
+        boards = _boards(name, board, standards, texts, values)
     checks: dict[tuple[str, str], list[int]] = {}
     rows: dict[tuple[str, ...], list[int]] = {}
     for i, run in enumerate(runs):
@@ -184,15 +196,12 @@ class _Boards:
 
 def _boards(
     name: str,
-    cells: Mapping[str, Sequence[str]],
-    units: Mapping[str, str],
+    head: str,
+    standards: np.ndarray,
     texts: Mapping[str, Sequence[str]],
     values: np.ndarray,
-) -> _Boards | None:
-    head = next((one for one in cells if one.casefold() in _BOARD), None)
-    if head is None:
-        return None
-    rows = [i for i, cell in enumerate(cells[head]) if cell and np.isfinite(values[i])]
+) -> _Boards:
+    rows = np.flatnonzero(np.isfinite(standards) & np.isfinite(values)).tolist()
     if "operator" not in texts:
         raise DataError(
             f'"{head}" tells calibration boards, but nobody walks on them',
@@ -200,11 +209,10 @@ def _boards(
             allowed="a column operator",
             remedy="Name the walker of each reading",
         )
-    factor = _UNITS["angle"].get(units[head].casefold(), 1.0)
     own: dict[str, dict[float, list[float]]] = {}
     for i in rows:
-        standard = float(cells[head][i].replace(",", ".")) * factor
-        own.setdefault(texts["operator"][i], {}).setdefault(standard, []).append(float(values[i]))
+        of_one = own.setdefault(texts["operator"][i], {})
+        of_one.setdefault(float(standards[i]), []).append(float(values[i]))
     read = {
         operator: [
             [
@@ -351,11 +359,26 @@ def _one_sample(
     draft.curves["readings"] = [float(v) for v in readings - offset]
 
 
+def _check_numbers(
+    head: str,
+    cells: Sequence[str],
+    read: Sequence[float | None],
+    lines: Sequence[int],
+    where: str,
+) -> None:
+    """Refuse a column with a filled cell that holds no number."""
+    bad = first_text(cells, read)
+    if bad is not None:
+        text = f'line {lines[bad]}: {head} is "{cells[bad]}"'
+        raise DataError(text, where=where, allowed="a number alone, or nothing")
+
+
 def _value_column(
     names: list[str],
     where: str,
     protocol: Protocol,
     cells: Mapping[str, Sequence[str]],
+    read: Mapping[str, Sequence[float | None]],
     lines: Sequence[int],
 ) -> tuple[str, str]:
     quantity, named = protocol.text("quantity"), protocol.text("column")
@@ -367,10 +390,7 @@ def _value_column(
         for head, column in cells.items():
             if head.casefold() not in QUANTITIES[candidate] or head in names:
                 continue
-            bad = [i for i, c in enumerate(column) if c and not is_number(c.replace(",", "."))]
-            if bad:
-                text = f'line {lines[bad[0]]}: {head} is "{column[bad[0]]}"'
-                raise DataError(text, where=where, allowed="a number alone, or nothing")
+            _check_numbers(head, column, read[head], lines, where)
         found = [folded[n] for n in QUANTITIES[candidate] if n in folded]
         if len(found) > 1:
             text = f"several columns of readings: {', '.join(found)}"
