@@ -34,6 +34,7 @@ _INPUTS = {
     "roughness_factor": "roughness",
     "shear_strength": "shear strength",
     "film": "boundary film",
+    "rest": "friction at rest",
     "dry": "dry-like part",
     "kappa": "fading of the dry-like part",
     "hysteresis": "hysteresis of the rough contact",

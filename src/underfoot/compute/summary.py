@@ -131,7 +131,7 @@ class FrictionLimit:
                 "without the film the same surfaces would have a COF of about "
                 f"{self.cof_without_film:.2f}."
             )
-        return f"The film carries {100 * self.film_share:.0f} % of the load{regime}; {limit}"
+        return f"The film carries {percent(self.film_share)} of the load{regime}; {limit}"
 
     def __str__(self) -> str:
         return self.sentence()
