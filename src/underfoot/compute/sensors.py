@@ -38,7 +38,7 @@ def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
         return ""
     inlet = f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm"
     return (
-        f"{inlet} reads half of the film's pressure or more under {percent(reading.seen)} of the "
-        "film's load: elsewhere its rim meets a channel "
-        "or the film's end and reads less. A low reading does not show that there is no film."
+        f"of the film's load {percent(reading.seen)} lies where {inlet} reads half of its pressure "
+        "or more: elsewhere its rim meets a channel or the film's end and reads less. "
+        "A low reading does not show that there is no film."
     )

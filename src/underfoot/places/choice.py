@@ -80,6 +80,8 @@ BINS = 10
 MOST_RATIO = 100.0
 """Ratio of slips beyond which no number is printed."""
 WORN_EVENLY = "Shoes are worn evenly over their months; half of them are new on the mean day"
+TOSS_UP = 0.05
+"""Distance of a chance from one half below which a change is none that helps."""
 IDLE = 5e-3
 """Share of the slips that a change moves at least: a smaller one does nothing."""
 CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
@@ -178,14 +180,14 @@ class Choice(Presentable):
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
             )
-        if self.levers and self.levers[0].left[1] < 1:
-            most = self.levers[0]
+        most = self.levers[0] if self.levers else None
+        if most is not None and most.left[1] < 1 and most.fewer > 0.5 + TOSS_UP:
             lines.append(
                 f"Most is gained by {most.name}: it leaves {_share(most.left)} of the slips of "
                 f"today, fewer with a probability of {drawn_probability_text(most.fewer)}."
             )
         else:
-            lines.append("No change that was tried leaves fewer slips.")
+            lines.append("No change that was tried surely leaves fewer slips.")
         if self.measurements and self.measurements[0].changes >= 0.05:
             one = self.measurements[0]
             lines.append(
