@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks._instrument_walk_faults import INSTRUMENT_FAULTS
 from benchmarks._laboratory_walk_faults import LABORATORY_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
 from benchmarks._untuned_walk_faults import UNTUNED_FAULTS
@@ -399,6 +400,7 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
         name: partial(faulty, fault=fault) for name, fault in UNTUNED_FAULTS.items()
     },
     "kinds of a laboratory": LABORATORY_FAULTS,
+    "kinds of instruments, exports and feet": INSTRUMENT_FAULTS,
 }
 
 

@@ -9,6 +9,7 @@ from underfoot.core import DataError, InputError
 from underfoot.trials import profile_from
 from underfoot.trials.readers import read_trial
 from underfoot.trials.recording.protocols import protocol
+from underfoot.trials.statistics import precision
 from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.floor_classes import SCHEMES, class_scheme, cof_of_pendulum
 
@@ -245,6 +246,32 @@ def test_precision_over_operators(tmp_path):
     assert row["s_r"] == pytest.approx(0.005, rel=0.5)
     assert row["s_R"] > 3 * row["s_r"]
     assert any("operator C, outlier" in note for note in tables["precision_operator"].notes)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.05])
+def test_precision_of_equal_readings_is_not_resolved(tmp_path, shift):
+    """0.1 + 0.2 and 0.3 are one reading: their scatter is below its resolution, not 0."""
+    rows = ["floor,operator,COF"]
+    for operator in "ABC":
+        reading = 0.3 + (shift if operator == "C" else 0.0)
+        rows += [f"tile,{operator},{value!r}" for value in (reading, reading + 1e-16, reading)]
+    (tmp_path / "ring.csv").write_text("\n".join(rows))
+    _, tables = study(tmp_path, "machine_cof")
+    table = tables["precision_operator"]
+    row = dict(zip(table.columns, table.rows[0], strict=True))
+    assert row["s_r"] is None
+    assert row["r = 2.8 s_r"] is None
+    if shift:
+        assert row["s_R"] == pytest.approx(shift / 3**0.5)  # SD of 0.3, 0.3 and 0.35
+    else:
+        assert row["s_R"] is None
+    assert any("below the resolution" in note for note in table.notes)
+    samples = tables["samples"]
+    own = dict(zip(samples.columns, samples.rows[0], strict=True))
+    assert own["COF"] == pytest.approx(0.3)
+    assert (own["COF SD"], own["u"]) == (None, None)
+    assert any("scatter by less than the resolution" in note for note in samples.notes)
+    assert precision({"a": [1, 1], "b": [1, 1.0]}).repeatability is None
 
 
 def write_run(path, cof=0.313):

@@ -31,6 +31,7 @@ def test_a_dry_floor_needs_no_film(tmp_path):
     assert "of simulated steps slip" in found.stdout
     assert "run and risk answer" in " ".join(found.stdout.split())
     assert "The case has no fluid" in found.stdout
+    assert "± 0.00" not in found.stdout
     rows = list(csv.DictReader((out / "subjects.csv").read_text().splitlines()))
     assert len(rows) == 12
     assert {row["outcome"] for row in rows} == {"no slip"}

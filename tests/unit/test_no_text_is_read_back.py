@@ -34,7 +34,6 @@ FORMATS = {
     "report/sole_export.py": "files",
     "shoe/files": "files",
     "slip/dynamics/gait.py": "tables",
-    "studies": "names of effects and fluids",
     "surface/instruments.py": "files",
     "surface/read.py": "files",
     "trials/readers": "recordings",

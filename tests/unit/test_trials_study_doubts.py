@@ -152,16 +152,23 @@ def small_study(persons, measures, trials, seed, twins=False, plates=False):
 
 
 @pytest.mark.parametrize("persons", [2, 3, 4, 6])
-@pytest.mark.parametrize(("measures", "trials"), [(4, 6), (5, 2), (8, 2)])
-def test_one_body_of_a_few_persons_is_told_and_two_bodies_are_not(persons, measures, trials):
-    """Of 60 studies with one body under two names 80 % at least, of 120 without none or one."""
+@pytest.mark.parametrize(
+    ("measures", "trials", "least"),
+    [(3, 2, 0.6), (3, 4, 0.75), (4, 6, 0.8), (5, 2, 0.8), (8, 2, 0.8)],
+)
+def test_one_body_of_a_few_persons_is_told_and_two_bodies_are_not(persons, measures, trials, least):
+    """Of 60 studies with one body under two names this share at least, of 120 without none to two.
+
+    Bounds of three measures: those of 150 other studies less two standard errors of 60. Two of 120
+    are 1.7 %; by chance alone 1 % have a body that is so near.
+    """
 
     def share(**how):
         studies = (small_study(persons, measures, trials, seed, **how) for seed in range(60))
         return np.mean([any(_one_body(files, "subject")) for files in studies])
 
-    assert share(twins=True) >= 0.8
-    assert share() + share(plates=True) <= 1 / 60 + 1e-9
+    assert share(twins=True) >= least
+    assert share() + share(plates=True) <= 2 / 60 + 1e-9
 
 
 @pytest.mark.parametrize(

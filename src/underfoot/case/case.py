@@ -549,7 +549,10 @@ def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
 
 def _told_change(path: str, value: Any) -> str:
     """Return a changed value in words: of a section the entry or option that it takes."""
-    words = path.rpartition(".")[2].replace("_", " ")
+    section, _, key = path.rpartition(".")
+    if key in ("value", "from", "model") and section:  # it says nothing by itself
+        key = section.rpartition(".")[2]
+    words = key.replace("_", " ")
     if isinstance(value, Mapping):
         value = next((value[key] for key in ("value", "from", "model") if key in value), "changed")
     if isinstance(value, Section | list | tuple):

@@ -249,8 +249,8 @@ class TreadPositions:
         return {
             "tread_position": f"COF {self._range('cof')}, load on the film "
             f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
-            f"Numbers are means over them; maps and histories show the position that the case "
-            f"describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
+            "Numbers are means over them; maps, histories and drainage show the position that the "
+            f"case describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
             + (f"; {failed}" if failed else ""),
             **told,
         }

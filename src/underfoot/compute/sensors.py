@@ -1,6 +1,7 @@
 """What sensors in the floor read of a solved contact."""
 
 from underfoot.case import Case
+from underfoot.core.presentation import percent
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading, floor_sensor_reading
 from underfoot.sole_contact.reading import BLIND
@@ -35,8 +36,9 @@ def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
         state.fluid_load + state.contact_load
     ):
         return ""
+    inlet = f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm"
     return (
-        f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm sees {100 * reading.seen:.0f} % of "
-        "the load that the film carries: elsewhere its rim meets a channel or the film's end and "
-        "reads less than half. A low reading does not show that there is no film."
+        f"of the film's load {percent(reading.seen)} lies where {inlet} reads half of its pressure "
+        "or more: elsewhere its rim meets a channel or the film's end and reads less. "
+        "A low reading does not show that there is no film."
     )

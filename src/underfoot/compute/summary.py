@@ -138,8 +138,8 @@ class FrictionLimit:
         elif self.kind == "shear":
             touching = (1.0 - self.film_share) * self.cof_without_film / self.cof
             sheared = 1.0 if math.isnan(touching) else 1.0 - touching
-            limit = f"shearing the fluid makes {100 * sheared:.0f} % of this COF."
-        return f"The film carries {100 * self.film_share:.0f} % of the load{regime}; {limit}"
+            limit = f"shearing the fluid makes {percent(sheared)} of this COF."
+        return f"The film carries {percent(self.film_share)} of the load{regime}; {limit}"
 
     def __str__(self) -> str:
         return self.sentence()

@@ -196,7 +196,7 @@ def quantity_text(value: float, unit: str, uncertainty: float | None = None) -> 
     """Return a number, and its uncertainty, in one unit people read; forces in newtons."""
     newtons = unit == "N" and unit_system() == "si"
     factor, name = (1.0, "N") if newtons else display_unit(value, unit)
-    if newtons and 0.0 < abs(value) < 0.005:
+    if newtons and 0.0 < abs(value) < 0.01:
         return "below 0.01 N"
     text = number_text(value / factor, 3)
     if uncertainty is not None:

@@ -79,6 +79,9 @@ BINS = 10
 """Readings, equally likely, of which it is counted how many change the choice."""
 MOST_RATIO = 100.0
 """Ratio of slips beyond which no number is printed."""
+WORN_EVENLY = "Shoes are worn evenly over their months; half of them are new on the mean day"
+TOSS_UP = 0.05
+"""Distance of a chance from one half below which a change is none that helps."""
 IDLE = 5e-3
 """Share of the slips that a change moves at least: a smaller one does nothing."""
 CHECKED = (("pendulum-96", "PTV of"), ("tile_glycerine", "EN value, tile with glycerine, of"))
@@ -177,14 +180,14 @@ class Choice(Presentable):
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
             )
-        if self.levers and self.levers[0].left[1] < 1:
-            most = self.levers[0]
+        most = self.levers[0] if self.levers else None
+        if most is not None and most.left[1] < 1 and most.fewer > 0.5 + TOSS_UP:
             lines.append(
                 f"Most is gained by {most.name}: it leaves {_share(most.left)} of the slips of "
                 f"today, fewer with a probability of {drawn_probability_text(most.fewer)}."
             )
         else:
-            lines.append("No change that was tried leaves fewer slips.")
+            lines.append("No change that was tried surely leaves fewer slips.")
         if self.measurements and self.measurements[0].changes >= 0.05:
             one = self.measurements[0]
             lines.append(
@@ -248,9 +251,9 @@ class Choice(Presentable):
             (one.name, _of_bins(one.changes), probability_text(one.saves))
             for one in self.measurements
         ]
-        where = [(name, probability_text(share)) for name, share in self.sources]
+        where = [(name, percent(share)) for name, share in self.sources]
         cofs = [
-            (*names, f"{median:.2f}", f"{low:.2f} to {high:.2f}", probability_text(film))
+            (*names, f"{median:.2f}", f"{low:.2f} to {high:.2f}", percent(film))
             for *names, low, median, high, film in self.cofs
         ]
         tables = [
@@ -282,7 +285,7 @@ class Choice(Presentable):
             "Assumed": (
                 *self.place.assumed,
                 *([f"Readings leave {self.effective:.0f} of the draws"] if read else []),
-                "Shoes are worn evenly over their months; half of them are new on the mean day",
+                *([WORN_EVENLY] if any(s.wear_depth > 0 for s in self.place.shoes) else []),
             ),
             "Machines": notes,
         }
@@ -722,8 +725,14 @@ def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
 
 
 def _left(after: Array, before: Array) -> tuple[float, float, float]:
-    """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws."""
-    low, _, high = interval(after / np.maximum(before, 1e-300))
+    """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws.
+
+    Draws in which nobody slips, before and after, have no ratio.
+    """
+    known = (after > 0) | (before > 0)
+    if not known.any():
+        return 1.0, 1.0, 1.0
+    low, _, high = interval(after[known] / np.maximum(before[known], 1e-300))
     middle = float(after.mean() / max(before.mean(), 1e-300))
     return min(low, middle), middle, max(high, middle)
 

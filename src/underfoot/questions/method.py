@@ -15,6 +15,7 @@ from underfoot.core import InputError, Progress, SourcedValue, display, silent, 
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
 from underfoot.core.remark import Remark, subjects
+from underfoot.slip import MODELS
 
 from .ask import ask
 from .outcomes import Outcome, outcomes
@@ -85,11 +86,16 @@ class Condition:
     band: Band | None
     outcome: Outcome
 
+    @property
+    def breaches(self) -> list[Remark]:
+        """Return what left a tested range; that of a slip model is no matter of a method."""
+        return [each for each in self.outcome.breaches if each.about not in MODELS]
+
     def __str__(self) -> str:
         if self.cof.value is None or self.low is None:
             return f"{self.title}: not determined: {self.cof.reason}."
         text = (
-            f"{self.title}: COF {value_text('cof', self.cof)} (95 %: {self.low:.2f} to "
+            f"{self.title}: COF {self.cof.value:.3f} (95 %: {self.low:.2f} to "
             f"{self.high:.2f}; {self.cof.note})"
         )
         if self.probability is None or self.limit is None:
@@ -143,7 +149,7 @@ class MethodPrediction(Presentable):
                 each.title,
                 each.floor,
                 each.contaminant,
-                value_text("cof", each.cof),
+                value_text("cof", each.cof) if each.cof.value is None else f"{each.cof.value:.3f}",
                 "" if each.low is None else f"{each.low:.2f} to {each.high:.2f}",
                 "none" if each.limit is None else f"{each.limit.value:g}",
                 "" if each.probability is None else drawn_probability_text(each.probability),
@@ -168,7 +174,13 @@ class MethodPrediction(Presentable):
 
     def remarks(self) -> dict[str, Sequence[str]]:
         notes = (self.note,) if self.note else ()
-        return {"Notes": notes, "Outside the tested range": self._breaches()}
+        return {
+            "Notes": notes,
+            "Outside the tested range": self._breaches(),
+            "Assumptions": list(
+                dict.fromkeys(line for each in self.conditions for line in each.outcome.assumptions)
+            ),
+        }
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -187,7 +199,7 @@ class MethodPrediction(Presentable):
                     "limit": None if each.limit is None else each.limit.to_dict(),
                     "probability_of_passing": each.probability,
                     "status": str(each.outcome.status),
-                    "breaches": list(each.outcome.breaches),
+                    "breaches": each.breaches,
                     "assumptions": list(each.outcome.assumptions),
                 }
                 for each in self.conditions
@@ -223,7 +235,7 @@ class MethodPrediction(Presentable):
         }
 
     def _breaches(self) -> list[Remark]:
-        return list(dict.fromkeys(b for each in self.conditions for b in each.outcome.breaches))
+        return list(dict.fromkeys(b for each in self.conditions for b in each.breaches))
 
 
 def method_name(name: str, case: Case) -> str:

@@ -28,6 +28,7 @@ from underfoot.slip.dynamics import (
     GaitHistory,
     SlipMotion,
     SlipStudy,
+    error_text,
     load_history,
     recorded_histories,
 )
@@ -76,6 +77,11 @@ class SlipPopulation(Presentable):
         """Whether there is a fluid on the floor."""
         return self.study.setting.viscosity is not None
 
+    @property
+    def heard(self) -> bool:
+        """Whether a sensor read anybody's film above its own noise."""
+        return self.wet and any(each.seen.duration is not None for each in self.study.subjects)
+
     def headline(self) -> tuple[str, ...]:
         study = self.study
         count = len(study.subjects)
@@ -96,11 +102,12 @@ class SlipPopulation(Presentable):
                 "when loading begins, which is not drawn."
             )
         spread = "walkers" if study.by_friction is None else "walkers and friction"
+        middle = "" if study.by_friction is None else ", at the middle of the friction"
         return (
             f"{probability_text(share)} of simulated steps slip (heel faster than 0.2 m/s; 95 % of "
             f"{count} {spread}: {probability_text(low)} to {probability_text(high)}).",
             f"Peak heel speed {_value_text(study.mean('peak_speed', 'm/s'))} (mean and standard "
-            f"deviation between walkers).{floor}",
+            f"deviation between walkers{middle}).{floor}",
         )
 
     def cautions(self) -> tuple[str, ...]:
@@ -113,13 +120,8 @@ class SlipPopulation(Presentable):
         lower = sum(subject.motion.still_sliding for subject in study.subjects)
         if lower:
             reasons.append(f"{lower} still slide when their step ends: lower bounds.")
-        if study.fit is not None and study.fit.at_bound:
-            names = ", ".join(study.fit.at_bound)
-            reasons.append(
-                f"Constants of the reduced model not identified by these slips: {names}."
-            )
         seen = study.highest_seen()
-        if seen is not None and seen < BLIND:
+        if self.heard and seen is not None and seen < BLIND:
             reasons.append(
                 f"Inlets of {1e3 * study.array.inlet_diameter:.3g} mm read at most {percent(seen)} "
                 "of the film's highest pressure: a low reading does not show that there is no film."
@@ -129,7 +131,10 @@ class SlipPopulation(Presentable):
                 "The interval holds the number of walkers alone, not the spread of the friction."
             )
         if study.failed:
-            reasons.append(f"{study.failed} slips could not be solved and are left out.")
+            reasons.append(
+                f"Slips that could not be solved and are left out: {study.failed} of "
+                f"{study.failed + len(study.full_runs)} full runs."
+            )
         return tuple(reasons)
 
     def _other_model(self) -> tuple[str, ...]:
@@ -149,16 +154,22 @@ class SlipPopulation(Presentable):
         for outcome, (share, low, high) in study.shares().items():
             interval = "" if single else f"95 %: {percent(low)} to {percent(high)}"
             rows.append((f"Distance slipped: {outcome}", percent(share), interval))
+        middle = "" if study.by_friction is None else ", at the middle of the friction"
         for name, (label, unit) in NUMBERS.items():
-            if self.wet or name not in AT_SENSORS:
+            if self.heard or name not in AT_SENSORS:
                 value = study.mean(name, unit, crossed=name in AT_SENSORS)
-                rows.append((label, _value_text(value), self._range(name, unit) or value.reason))
-        if self.wet:
+                range_text = self._range(name, unit)
+                remark = f"{range_text}{middle}" if range_text else value.reason
+                rows.append((label, _value_text(value), remark))
+        if self.heard:
             rows += self._sensor_rows()
+        elif self.wet:
+            rows.append((NUMBERS["peak_pressure"][0], "not above their noise", "of no walker"))
         if study.fit is not None:
             error, fitted = study.fit.held_out, study.fit.fitted.peak_speed
-            label, value = "Reduced model on full runs held out", f"± {error.peak_speed:.2g} m/s"
-            rows.append((label, value, f"{error}; on fitted runs ± {fitted:.2g} m/s"))
+            label = "Reduced model on full runs held out"
+            remark = f"{error}; on fitted runs {error_text(fitted, 'm/s')}"
+            rows.append((label, error_text(error.peak_speed, "m/s"), remark))
             if study.pressure_error is not None:
                 rows.append(("  peak pressure", f"± {percent(study.pressure_error)}", "relative"))
         if (start := study.slip_start()) is not None:
@@ -168,9 +179,11 @@ class SlipPopulation(Presentable):
         for name, (label, unit, _, values) in BANDS.items():
             speeds = self._by(name)
             if None not in speeds.values():
-                text = " / ".join(f"{speed:.2f}" for speed in speeds.values())
-                shares = " / ".join(f"{value:g}" for value in values)
-                rows.append((f"Peak speed by {label}", f"{text} m/s", f"{shares} {unit}"))
+                text = " / ".join(f"{speed:.2f}" for speed in speeds.values()) + " m/s"
+                if max(speed or 0.0 for speed in speeds.values()) < 0.005:
+                    text = "below 0.01 m/s"
+                remark = f"{' / '.join(f'{value:g}' for value in values)} {unit}; without marker"
+                rows.append((f"Peak speed by {label}", text, remark))
         return Table("Population", ("Quantity", "Value", "Remark"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
@@ -179,6 +192,9 @@ class SlipPopulation(Presentable):
         model = "full model for every walker" if study.full else "reduced model fitted to full runs"
         low, high = people.weight_transfer
         lines = [f"model: {model}"] if self.wet else []
+        if study.fit is not None and study.fit.at_bound:
+            names = ", ".join(study.fit.at_bound)
+            lines.append(f"constants of the reduced model that no slip moves: {names}")
         lines += [
             f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)",
             f"a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
@@ -386,9 +402,13 @@ def _value_text(value: SourcedValue) -> str:
     if value.value is None:
         return f"not determined: {value.reason}"
     if value.unit == "m/s":
-        spread = "" if value.uncertainty is None else f" ± {value.uncertainty:.2f}"
+        spread = "" if value.uncertainty is None else f" ± {_speed(value.uncertainty)}"
         return f"{value.value:.2f}{spread} m/s"
     return quantity_text(value.value, value.unit, value.uncertainty)
+
+
+def _speed(value: float) -> str:
+    return f"{value:.2f}" if value >= 0.005 else "below 0.01"
 
 
 def _text(value: float, unit: str) -> str:

@@ -79,7 +79,8 @@ class LugDrainage:
                 f"{quantity_text(self.groove[0], 'm')} relieves most"
             )
         place = f"{quantity_text(self.x[0], 'm')} from the rear, {across_text(self.y[0])}"
-        load = f"{quantity_text(self.load[0], 'N')} of film, {percent(self.share[0])} of all"
+        every = quantity_text(self.load[0] / self.share[0], "N")
+        load = f"{quantity_text(self.load[0], 'N')} of film, {percent(self.share[0])} of {every}"
         way_out = f"{quantity_text(way, 'm')} to go to the {SIDES[self.side[0]]}"
         return f"the lug {place}, carries {load}; its fluid has {way_out}: {advice}"
 

@@ -40,6 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.presentation import percent
 from underfoot.friction import FrictionLaw, FrictionParts
 from underfoot.friction.two_states import TwoStateLaw, between_states
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
@@ -149,8 +150,9 @@ class LugFriction:
         weight = self.load / max(self.load.sum(), 1e-30)
         pull, wiped = (float(weight @ each) for each in (self.suction, self.wiped))
         return (
-            f"suction behind the edges of {np.count_nonzero(self.load)} lugs adds {pull:.0%} of "
-            "their load" + (f"; {wiped:.0%} of it is wiped nearly dry" if wiped > 0.005 else "")
+            f"suction behind the edges of {np.count_nonzero(self.load)} lugs adds "
+            f"{percent(pull)} of their load"
+            + (f"; {percent(wiped)} of it is wiped nearly dry" if wiped > 0.005 else "")
         )
 
 

@@ -90,7 +90,11 @@ class Split:
 def draws_of(split: Split) -> Mapping[str, Any]:
     """Return draws of ln COF of the laboratory left out, their mean, and the rest of each source
     given one of its readings."""
-    law = split.law if split.law in FEATURE_RIVALS else law_named(split.law.split(", priors")[0])
+    law = (
+        split.law
+        if split.law in FEATURE_RIVALS
+        else law_named(LAW if split.law == PRIORS else split.law)
+    )
     left = laboratory_left_out(
         law, readings(), split.laboratory, steps=split.steps, data=split.law != PRIORS
     )

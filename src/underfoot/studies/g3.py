@@ -370,6 +370,7 @@ def _split_table(splits: Mapping[tuple[str, str], Split]) -> Table:
     return Table.of("default_split", title, rows)
 
 
+EFFECTS = {"sole": "sole", "floor": "floor", "sole:floor": "sole with floor"}
 PRINTED_EFFECTS = {
     "adhesion": {"sole": "p < 0.01", "floor": "not named", "sole:floor": "p < 0.01"},
     "hysteresis": {"sole": "affected", "floor": "affected", "sole:floor": "not named"},
@@ -406,7 +407,7 @@ def _analysis_table(splits: Mapping[tuple[str, str], Split]) -> Table:
     rows = [
         {
             "force": name,
-            "effect": term.replace(":", " with "),
+            "effect": EFFECTS[term],
             "p": f"{p:.2g}" if p >= 1e-4 else "below 0.0001",
             "printed": PRINTED_EFFECTS[take].get(term, "-"),
         }

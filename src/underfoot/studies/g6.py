@@ -61,10 +61,8 @@ TIE = 0.008
 TRIALS = 52
 """29 persons, two slips each, less 6 that did not hit the plate cleanly (G.6.1)."""
 SUBJECTS, QUICK_SUBJECTS = 200, 60
-STEPS = {
-    "constant": "ACOF as printed, at every speed",
-    "falling": "ACOF as printed, falling with speed",
-}
+SPEEDS = {"constant": "at every speed", "falling": "falling with speed"}
+STEPS = {name: f"ACOF as printed, {speeds}" for name, speeds in SPEEDS.items()}
 SOLE_COLOURS = ("#e08a2e", "#e8c93c", "#c9c3b0")
 """Nearly those of the report's Fig. 36."""
 
@@ -535,7 +533,7 @@ def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]
     style: dict[str, Any] = {"colour": PRINTED, "style": "horizontal"}
     band = Layer("span", low=0.159, high=0.182, label="report, hard to soft", **style)
     bars = grouped_bars(acof, colours=SOLE_COLOURS, low=low, high=high)
-    computed = [label.replace("ACOF as printed, ", "computed,\n") for label in STEPS.values()]
+    computed = [f"computed,\n{speeds}" for speeds in SPEEDS.values()]
     return Figure(
         (
             Panel(

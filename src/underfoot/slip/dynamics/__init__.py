@@ -25,6 +25,7 @@ from .reduced_model import ReducedSole as ReducedSole
 from .reduced_model import cof_table as cof_table
 from .reduced_model import design as design
 from .reduced_model import error_of as error_of
+from .reduced_model import error_text as error_text
 from .reduced_model import fitted_reduced as fitted_reduced
 from .sensors import FloorSensors as FloorSensors
 from .sensors import PressureShape as PressureShape

@@ -259,6 +259,11 @@ FIRST_LOOK, POLISH = 8, 40  # evaluations of the slope from each start, and from
 LEAST_LOAD = 30.0  # N, below which shares say nothing
 
 
+def error_text(value: float, unit: str) -> str:
+    """Return an error as "± 0.02 m/s"; one below a thousandth of the unit is told as that."""
+    return f"below 0.001 {unit}" if value < 1e-3 else f"± {value:.2g} {unit}"
+
+
 @dataclass(frozen=True, slots=True)
 class FitError:
     """How far the reduced model is from full runs; SI."""
@@ -272,9 +277,10 @@ class FitError:
 
     def __str__(self) -> str:
         return (
-            f"{self.runs} runs: peak speed ± {self.peak_speed:.2g} m/s, speed in time ± "
-            f"{self.speed:.2g} m/s, distance ± {1e3 * self.distance:.2g} mm, load on the film ± "
-            f"{100 * self.fluid_share:.2g} % of the load, same side of 0.2 m/s in "
+            f"{self.runs} runs: peak speed {error_text(self.peak_speed, 'm/s')}, speed in time "
+            f"{error_text(self.speed, 'm/s')}, distance {error_text(1e3 * self.distance, 'mm')}, "
+            f"load on the film {error_text(100 * self.fluid_share, '%')} of the load, same side of "
+            "0.2 m/s in "
             f"{100 * self.same_outcome:.0f} %"
         )
 

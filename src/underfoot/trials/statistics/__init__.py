@@ -62,6 +62,7 @@ from .samples import precision as precision
 from .samples import regression_line as regression_line
 from .samples import resolved as resolved
 from .samples import share_interval as share_interval
+from .samples import standard_deviation as standard_deviation
 from .samples import t_test as t_test
 from .shares import ShareDifference as ShareDifference
 from .shares import share_difference as share_difference

@@ -52,6 +52,16 @@ def resolved(values: ArrayLike) -> np.ndarray:
     return made.reshape(x.shape)
 
 
+def standard_deviation(values: ArrayLike) -> float | None:
+    """Return the standard deviation of a sample (n,), or None where it can't be told.
+
+    A single value has none; values that are all alike scatter by less than their resolution, which
+    is not the same as 0.
+    """
+    x = resolved(values)
+    return float(x.std(ddof=1)) if len(x) > 1 and np.ptp(x) > 0 else None
+
+
 def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
     """Return p corrected for their number: Holm's method, or another of statsmodels."""
     if not p:
@@ -225,28 +235,29 @@ class Precision:
     """Precision of a method at one level.
 
     ``repeatability`` and ``reproducibility``: standard deviations s_r (same laboratory, operator,
-    machine) and s_R (any of them). ``between``: standard deviation s_L between laboratories.
+    machine) and s_R (any of them); None where the readings are equal, so that it is below their
+    resolution. ``between``: standard deviation s_L between laboratories.
     ``outliers``: Cochran's test of the largest variance, Grubbs' of the largest and the smallest
     mean.
     """
 
     mean: float
-    repeatability: float
+    repeatability: float | None
     between: float
-    reproducibility: float
+    reproducibility: float | None
     laboratories: int
     n: int
     outliers: tuple[OutlierTest, ...]
 
     @property
-    def repeatability_limit(self) -> float:
+    def repeatability_limit(self) -> float | None:
         """Difference that two readings of one laboratory exceed in 5 % of cases, 2.8 s_r."""
-        return 2.8 * self.repeatability
+        return None if self.repeatability is None else 2.8 * self.repeatability
 
     @property
-    def reproducibility_limit(self) -> float:
+    def reproducibility_limit(self) -> float | None:
         """Difference that readings of two laboratories exceed in 5 % of cases, 2.8 s_R."""
-        return 2.8 * self.reproducibility
+        return None if self.reproducibility is None else 2.8 * self.reproducibility
 
 
 def precision(readings: Mapping[str, ArrayLike]) -> Precision:
@@ -265,7 +276,7 @@ def precision(readings: Mapping[str, ArrayLike]) -> Precision:
     reproduce the example of ASTM E691). Critical values are computed: Cochran's from F, Grubbs'
     from t.
     """
-    groups = {name: np.asarray(values, dtype=float) for name, values in readings.items()}
+    groups = {name: resolved(values) for name, values in readings.items()}
     if any(not len(v) or not np.isfinite(v).all() for v in groups.values()):
         raise DataError("missing readings", where="precision")
     p, total = len(groups), sum(map(len, groups.values()))
@@ -281,7 +292,12 @@ def precision(readings: Mapping[str, ArrayLike]) -> Precision:
     n0 = (total - float(np.sum(sizes**2)) / total) / (p - 1)
     spread = float(np.sum(sizes * (means - grand) ** 2)) / (p - 1)
     between = max(0.0, (spread - within) / n0)
-    s_r, s_l, both = np.sqrt([within, between, within + between]).tolist()
+    level = (ROUNDING * max(float(np.abs(v).max()) for v in groups.values())) ** 2
+    s_r, both = (
+        float(np.sqrt(variance)) if variance > level else None
+        for variance in (within, within + between)
+    )
+    s_l = float(np.sqrt(between))
     return Precision(grand, s_r, s_l, both, p, total, tuple(_outliers(groups, means)))
 
 

@@ -14,7 +14,7 @@ from underfoot.core import DataError
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import TesterCalibration
-from ..statistics import drift
+from ..statistics import drift, standard_deviation
 from .conditions import (
     LARGEST,
     QUANTITIES,
@@ -320,7 +320,7 @@ def _one_sample(
         flags.append(caution(f'unknown slider "{_slider(draft.conditions)}": 96 or 55?'))
     if quantity == "ptv" and abs(offset) > 1.0:
         flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
-    spread = float(readings.std(ddof=1)) if len(readings) > 1 else None
+    spread = standard_deviation(readings)
     value, middle = float(readings.mean()) - offset, float(np.median(readings)) - offset
     if value < 0.0 or (value == 0.0 and quantity == "cof"):
         draft.refusals.append(f"a mean of {value:g}: no floor reads that; sign, zero or decimals?")
@@ -334,7 +334,12 @@ def _one_sample(
     if quantity == "ptv":
         conventions["check surfaces"] = checked
     part = protocol.number("calibration_uncertainty", "1", 0.0) * abs(value)
-    scatter = (None, "a single reading has no scatter")
+    scatter = (
+        None,
+        "a single reading has no scatter"
+        if len(readings) < 2
+        else "equal readings scatter by less than their resolution",
+    )
     if spread is not None:
         scatter = (math.hypot(spread / math.sqrt(len(readings)), part), "")
         if part:

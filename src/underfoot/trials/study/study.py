@@ -400,8 +400,14 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
         "uncertainty, with the calibration where it is known."
     ]
-    if any(f.measurements[0]["spread"] is None for f in files):
+    untold = [f.measurements[0]["n"] for f in files if f.measurements[0]["spread"] is None]
+    if any(n < 2 for n in untold):
         notes.append("Of a single reading SD, interval and u are not estimated: it has no scatter.")
+    if any(n > 1 for n in untold):
+        notes.append(
+            "Of equal readings SD, interval and u are not resolved: they scatter by less than the "
+            "resolution of a reading."
+        )
     columns += ["class", "2 u reaches"] if schemes else []
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
     spreads = [f.measurements[0]["uncertainty"] for f in files]
@@ -518,6 +524,12 @@ def _lowest(
     return [Table("lowest", title, columns, tuple(rows), (note,), decimals)]
 
 
+_UNRESOLVED = (
+    "Where the readings are equal s_r or s_R is not resolved (–): it is below the resolution of a "
+    "reading, not 0."
+)
+
+
 def _precision(
     groups: Mapping[tuple[str, ...], Mapping[str, Sequence[float]]],
     by: str,
@@ -526,12 +538,13 @@ def _precision(
 ) -> list[Table]:
     """Return repeatability and reproducibility of each floor over laboratories or operators."""
     others = [k for k in keys if k != by]
-    rows, tests = [], []
+    rows, tests, tried = [], [], False
     for level, readings in groups.items():
         try:
             spread = precision(readings)
         except UnderfootError:
             continue
+        tried |= bool(spread.outliers)
         rows.append(
             (*level, spread.laboratories, spread.n, spread.mean, spread.repeatability,
              spread.reproducibility, spread.repeatability_limit, spread.reproducibility_limit)
@@ -550,10 +563,14 @@ def _precision(
                "s_R", "r = 2.8 s_r", "R = 2.8 s_R")  # fmt: skip
     notes = (
         f"Repeatability s_r and reproducibility s_R over each {by} (ISO 5725-2); nothing left out.",
-        *(tests or ("Cochran's and Grubbs' tests name no straggler or outlier.",)),
+        *(
+            tests
+            or (("Cochran's and Grubbs' tests name no straggler or outlier.",) if tried else ())
+        ),
+        *((_UNRESOLVED,) if any(None in row[-4:] for row in rows) else ()),
     )
     title = f"Repeatability and reproducibility by {by}"
-    places = max(tables.decimals_of(row[-3]) for row in rows)
+    places = max((tables.decimals_of(row[-3]) for row in rows if row[-3]), default=2)
     return [Table(f"precision_{by}", title, columns, tuple(rows), notes,
                   dict.fromkeys(columns[-5:], places))]  # fmt: skip
 

@@ -5,6 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import gamma
 from statistics import median
 from typing import Any
 
@@ -33,11 +34,12 @@ _STEP = ("contact", "peak_force")  # what tells one step from all others
 _TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
 """Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
 0.02 and more), correlation of the second differences of so many samples (by chance 0.09)."""
-_SAME, _COUNTED, _ODDS = 0.002, 3, 100.0
+_SAME, _COUNTED, _ODDS, _CHANCE = 0.002, 3, 100.0, 0.01
 _APART = {FORCE: 0.12, HEIGHT: 0.04, "": 0.04}
 """Scatter of a body's measures that is the least, and that between persons (relative; "" distances
 of markers); distances count as so many measures at most, for they grow together; likelihood of one
-body over that of two from which it is told, for each pair of persons; assumed."""
+body over that of two from which it is told, and chance that two of the study's persons have so
+much; assumed."""
 _SIDE = re.compile(
     r"(.*[^\W_])([ _-]?)(l|r|left|right|li|re|links|rechts|g|d|gauche|droite)", re.IGNORECASE
 )
@@ -412,16 +414,23 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     counted = _COUNTED if len(pairs) > 1 else 1
     for one, other in pairs:
         shared = [n for n in within if n in usual[one] and n in usual[other]]
-        evidence: dict[str, list[float]] = defaultdict(list)
+        evidence: dict[str, list[tuple[float, float]]] = defaultdict(list)
         for name in shared:
             apart = float(np.log(usual[one][name] / usual[other][name]))
             share = 1.0 / len(bodies[one]) + 1.0 / len(bodies[other])
             same = _SAME**2 + share * within[name] ** 2
             differ = same + 2.0 * _APART[_kind(name)] ** 2
-            ratio = 0.5 * (np.log(differ / same) - apart**2 * (1.0 / same - 1.0 / differ))
-            evidence[_kind(name)].append(float(ratio))
-        odds = sum(float(np.mean(own)) * min(len(own), counted) for own in evidence.values())
-        if odds > np.log(_ODDS * len(pairs)):
+            most = 0.5 * float(np.log(differ / same))
+            evidence[_kind(name)].append((most, 0.5 * apart**2 * (1.0 / same - 1.0 / differ)))
+        if not evidence:
+            continue
+        counts = [min(len(own), counted) for own in evidence.values()]
+        means = [np.mean(own, axis=0) for own in evidence.values()]
+        most, lost = np.sum([n * mean for n, mean in zip(counts, means, strict=True)], axis=0)
+        # chi-square of two bodies below 2 lost, by its density at 0, which is the highest
+        half = 0.5 * sum(counts)
+        chance = float(np.exp(-most) * lost**half / gamma(half + 1.0))
+        if most - lost > np.log(_ODDS) and chance * len(pairs) < _CHANCE:
             words = f"{one} and {other} have one body: {len(shared)} measures of it agree as those "
             words += "of one person's trials do; one person under two names?"
             yield Doubt(words, _names([f for f in files if str(f.conditions.get(person)) == other]))

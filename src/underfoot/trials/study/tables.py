@@ -313,8 +313,8 @@ def number_columns(name: str) -> list[str]:
 
 
 INTERVALS = (
-    "Intervals: t on the logarithm of a mean that can't be negative (none from two values, or from "
-    "values that are all alike), on the logit of a share."
+    "Intervals: t on the logarithm of a mean that can't be negative (none from two values), on the "
+    "logit of a share. Values that are all alike scatter by less than their resolution: no SD."
 )
 _SIGNED = ("acof_minus_rcof", "slip_margin")
 
@@ -322,17 +322,16 @@ _SIGNED = ("acof_minus_rcof", "slip_margin")
 def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[float | None, ...]:
     """Return mean, SD and the 95 % interval of the mean of a quantity; None from too few values.
 
-    Values that are all alike have no interval: they scatter by less than their resolution.
+    Values that are all alike have neither SD nor interval: they scatter by less than their
+    resolution.
     """
     if not len(values):
         return None, None, None, None
-    mean = float(np.mean(values))
-    if len(values) < 2:
+    mean, spread = float(np.mean(values)), statistics.standard_deviation(values)
+    if spread is None:
         return mean, None, None, None
-    alike = float(np.ptp(values)) <= statistics.ROUNDING * float(np.abs(values).max())
-    interval = None if alike else statistics.mean_interval(values, positive=name not in _SIGNED)
-    ends = interval or (None, None)
-    return mean, float(np.std(values, ddof=1)), *ends
+    ends = statistics.mean_interval(values, positive=name not in _SIGNED) or (None, None)
+    return mean, spread, *ends
 
 
 def counted_steps(result: FileResult) -> int:
