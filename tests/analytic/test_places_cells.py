@@ -1,5 +1,8 @@
 """A cell of a place, nothing solved: what parts of a contact add up to, and which end is which."""
 
+import tomllib
+from importlib import resources
+
 import numpy as np
 import pytest
 
@@ -7,6 +10,7 @@ from underfoot.core import InputError
 from underfoot.friction.shoe_class import slip_tests
 from underfoot.places import choice
 from underfoot.places.choice import _Solver, film_odds_over_positions, tread_place
+from underfoot.places.evidence import _of_file
 from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import FLUIDS, predicted_reading
 from underfoot.places.place import place_of
@@ -155,3 +159,14 @@ def test_a_reading_of_a_shoe_is_a_friction_that_a_machine_can_show(cof, right):
 def test_the_first_of_a_list_is_number_one():
     with pytest.raises(InputError, match=r"floor 1\.name"):
         place_of(TABLE | {"floor": [{"roughness": {"rq": "2 um"}}]})
+
+
+def test_a_printed_rz_is_four_to_eight_rq_and_a_range_of_rq_is_taken_as_it_stands():
+    text = resources.files("underfoot.places").joinpath("evidence.toml").read_text("utf-8")
+    entries = tomllib.loads(text)["reading"]
+    assert {"rz" in entry for entry in entries} == {True, False}
+    for entry, one in zip(entries, _of_file(), strict=True):
+        ends = [1e-6 * float(end.removesuffix(" um")) for end in entry.get("rz") or entry["rq"]]
+        wanted = (ends[0] / 8, ends[1] / 4) if "rz" in entry else tuple(ends)
+        assert one.rq == pytest.approx(wanted)
+        assert one.printed == ("rz" in entry)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.report.drawn_sole import DrawnSole
-from underfoot.report.light_mesh import SMALL, light_mesh, spacing_for
+from underfoot.report.light_mesh import SMALL, _shares, light_mesh, spacing_for
 from underfoot.report.surface_mesh import TOLERANCE, surface_mesh
 
 SIDE = 0.4e-3
@@ -71,3 +71,24 @@ def test_walls_are_apart_and_stand_where_the_design_has_them(light):
 
 def test_cells_of_a_small_sole_are_those_of_the_bound(light):
     assert TOLERANCE * spacing_for(light[0]) <= 0.05e-3
+
+
+def test_a_cell_is_shared_by_the_corners_of_the_triangle_of_its_kind_that_holds_it():
+    """Two triangles of land make a square; a third, of channel, lies beside it."""
+    x = np.arange(0.5, 12.0)
+    land = np.broadcast_to((x < 6.0)[:, None], (12, 6))
+    flat = np.zeros(land.shape)
+    sole = DrawnSole(x, x[:6], 1.0, flat, flat, land, EVERYWHERE, EVERYWHERE)
+    corners = [(0, 0), (6, 0), (0, 6), (6, 6), (6, 0), (12, 0), (6, 6)]
+    points = np.array([(*place, 0.0) for place in corners])
+    kinds = np.array([True] * 4 + [False] * 3)
+    triangles = np.array([[0, 1, 2], [1, 3, 2], [4, 5, 6]])
+    cells, owners, weights = _shares(sole, kinds, points, triangles)
+    assert (kinds[owners] == land.ravel()[cells]).all()
+    count = np.bincount(cells, weights)
+    assert count.min() == pytest.approx(1.0)  # two of a cell on the edge between two triangles
+    places = [np.bincount(cells, weights * points[owners, k]) / count for k in (0, 1)]
+    i, j = np.divmod(np.arange(72), 6)
+    # the upper half of the channel is in no triangle: its cells have the nearest corner
+    held = (i < 6) | (x[i] + x[j] <= 12)
+    np.testing.assert_allclose(np.array(places)[:, held], np.stack([x[i], x[j]])[:, held])

@@ -9,7 +9,7 @@ import pytest
 from underfoot.core import SourcedValue
 from underfoot.core.presentation import probability_text
 from underfoot.places import choice
-from underfoot.places.choice import BINS, Choice, ShoeAnswer, _measurements
+from underfoot.places.choice import BINS, Choice, ShoeAnswer, _floors, _measurements
 from underfoot.places.machines import MachinePrediction
 from underfoot.questions import comparison, separation
 from underfoot.questions.order import Order, Verdict
@@ -49,6 +49,18 @@ def test_one_shoe_alone_has_no_chance_of_being_best_and_no_empty_column():
 
 class Device:
     name, title, standard, entry = "m", "M", "S", SimpleNamespace(name="m")
+
+
+def test_a_floor_with_readings_has_its_roughness_before_and_after_them():
+    drawn = {("roughness of floor hall", (1e-6, 4e-6)): np.full(99, 2e-6)}
+    joint = SimpleNamespace(between=lambda name, ends: drawn[name, ends])
+    read, unread = (
+        SimpleNamespace(name=name, readings=readings)
+        for name, readings in (("hall", ("one",)), ("stair", ()))
+    )
+    place, ends = SimpleNamespace(floors=(read, unread)), {"hall": (1e-6, 4e-6)}
+    rows = _floors(cast(Any, place), cast(Any, joint), ends, {"hall": (1e-6, 2.5e-6, 4e-6)})
+    assert rows == (("hall", "2.5 (1 to 4)", "2 (2 to 2)"),)
 
 
 @pytest.mark.parametrize("where", ["floor", "shoe", "class", None])
