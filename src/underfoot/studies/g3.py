@@ -47,6 +47,8 @@ FLUIDS = {
     "canola oil": "canola_oil",
 }
 """Of Table 5, by the catalogue's names."""
+TICKS = ("water", "detergent", "gly. 25 %", "gly. 50 %", "gly. 75 %", "canola oil")
+"""The same, short below an axis."""
 OIL = "gear_oil_75w140"
 """Blocks most of the adhesion: what is left counts as hysteresis (Eq. 23)."""
 SCATTER, REPEATS = 0.82, 3
@@ -528,9 +530,7 @@ def _fluid_figure(
                 ),
                 y_label="adhesion (N)",
                 title=f"{sole}: printed {low:g} to {high:g} N",
-                x_ticks=[
-                    name.replace("glycerol ", "gly. ").replace(" 1.5 %", "") for name in FLUIDS
-                ],
+                x_ticks=list(TICKS),
             )
         )
         highest = max(highest, *(one[1] for one in ends))

@@ -241,7 +241,8 @@ def _on_page(table: Table, conditions: Collection[str] = ()) -> Table:
 
 def _compact(table: Table) -> Table:
     """Return a table of several quantities with mean, SD and interval of each in one cell."""
-    starts = [i - 2 for i, c in enumerate(table.columns) if c.endswith(" 95 % low")]
+    places = {column: i for i, column in enumerate(table.columns)}
+    starts = sorted(places[four[0]] for four in table.spreads if places.keys() >= set(four))
     if len(starts) < 2:
         return table
     inside = {i + k for i in starts for k in (1, 2, 3)}
@@ -250,8 +251,8 @@ def _compact(table: Table) -> Table:
     def cell(row: Sequence[Any], i: int) -> Any:
         if i not in starts:
             return row[i]
-        places = table.decimals.get(table.columns[i], 3)
-        texts = [f"{v:.{places}f}" for v in row[i : i + 4] if isinstance(v, int | float)]
+        decimals = table.decimals.get(table.columns[i], 3)
+        texts = [f"{v:.{decimals}f}" for v in row[i : i + 4] if isinstance(v, int | float)]
         if len(texts) < 4:
             return "".join(texts[:1])
         return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"

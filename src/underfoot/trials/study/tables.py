@@ -22,6 +22,7 @@ class Table:
     """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending.
 
     ``decimals`` are those a reader should see, by column, after the uncertainty; files keep all.
+    ``spreads`` names the columns of mean, SD and both ends of the interval of each quantity.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
     decimals: Mapping[str, int] = field(default_factory=dict)
+    spreads: tuple[tuple[str, ...], ...] = ()
 
     def filled(self, always: Collection[str] = ()) -> list[int]:
         """Return the numbers of the columns with content, and of those named in ``always``."""
@@ -302,7 +304,8 @@ def condition_table(
         for column in number_columns(number)
     }
     title = "By " + ", ".join(keys) if keys else "All trials"
-    table = Table(name, title, columns, tuple(rows), tuple(notes), decimals)
+    spreads = tuple(tuple(number_columns(number)) for number in numbers if number != "slip")
+    table = Table(name, title, columns, tuple(rows), tuple(notes), decimals, spreads)
     return table.only(table.filled(keys))
 
 
