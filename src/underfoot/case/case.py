@@ -165,6 +165,9 @@ class Case(Presentable):
         remarks = [sentence(old, new) for new, old in places.moved.items()]
         if older:
             edits = {"file_version": FILE_VERSION, **edits}
+        if places.file and "name" not in given:
+            edits = {**edits, "name": Path(places.file).stem}
+            given = {**given, "name": edits["name"]}
         changes = _with_name(given, _checked(settings))
         given = _edited(given, changes)
         case._compose(
@@ -557,6 +560,8 @@ def _told_change(path: str, value: Any) -> str:
         value = next((value[key] for key in ("value", "from", "model") if key in value), "changed")
     if isinstance(value, Section | list | tuple):
         value = "changed"
+    if isinstance(value, float):  # of a program, for people type texts: no false digits
+        value = f"{value:.3g}"
     return f"{words} {'as by default' if value is None else str(value).replace('_', ' ')}"
 
 
