@@ -17,7 +17,9 @@ from underfoot.questions.separation import Separation, of_conditions
 
 
 def answer(name, best, *, price=None, months=None):
-    shoe = SimpleNamespace(name=name, price=price, months=months, readings=(), known_class=None)
+    shoe = SimpleNamespace(
+        name=name, price=price, months=months, readings=(), known_class=None, wear_depth=0.0
+    )
     slips = SourcedValue(0.1 * best, "1", interval=(0.05 * best, 0.2 * best))
     return ShoeAnswer(cast(Any, shoe), slips, best, "", "")
 

@@ -260,7 +260,8 @@ def cautions(
     if "film_spread_basis" not in labels:
         left_out = {"interface": "interface roughness", **left_out}
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
-    filmed = friction_limit(scalars).kind in ("film", "shear")
+    mind = inputs or "film_inlet" in labels
+    filmed = bool(mind) and friction_limit(scalars).kind in ("film", "shear")
     if inputs and filmed:
         reasons.append(
             f"The film load depends on assumed values ({inputs}) that its interval leaves out; "
