@@ -112,14 +112,13 @@ def test_a_ranking_and_a_progress_line_fit_a_telephone(tmp_path):
         page.goto(app.base + "project")
         page.get_by_role("button", name="Compute all that is missing (2)").click()
         page.get_by_text("0 of 2 computed").wait_for()
-        name, row = (
-            page.locator(f".result-table tbody tr:first-child {part}").bounding_box()
-            for part in (".named", "td:nth-child(2)")
-        )
-        words, bar, stop = (
-            page.locator(f".task {part}").bounding_box()
-            for part in ("> :first-child", ".q-linear-progress", "button")
-        )
+        first = ".result-table tbody tr:first-child"
+        shown = [f"{first} .named", f"{first} td:nth-child(2)", ".task > :first-child"]
+        shown += [".task .q-linear-progress", ".task button"]
+        # at one instant: the table is drawn anew with each answer
+        boxes = """(shown) => { const all = shown.map((each) => document.querySelector(each));
+            return all.every(Boolean) && all.map((each) => each.getBoundingClientRect()); }"""
+        name, row, words, bar, stop = page.wait_for_function(boxes, arg=shown).json_value()
         assert page.evaluate(FAULTS) == []
         page.get_by_role("button", name="Stop all").click()
     assert name["width"] < 390 / 2
