@@ -9,7 +9,7 @@ from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, SoleSurface, Tread, WearPlane, heel_map, heel_surface
 from underfoot.shoe import surface_map as tilted
 from underfoot.shoe._kernels.covering_discs import local_width
-from underfoot.shoe.files.orientation import levelled, other_rest, resting_plane
+from underfoot.shoe.files.orientation import levelled, resting_plane
 from underfoot.shoe.tread_measures import (
     QUIET,
     height_noise,
@@ -248,33 +248,3 @@ def test_a_slice_of_a_lug_at_the_rim_is_land_where_it_lies_like_the_land_beside_
     land = tread_map(facet + rim + 3e-3 * channel, spacing).land
     assert np.unique(land[:4]).tolist() == [is_land]
     assert np.array_equal(land[6:], ~channel[6:])
-
-
-@pytest.mark.parametrize("slopes", [(10, 0), (-10, 4), (6, 6)])
-def test_lugs_of_a_grid_on_a_bevel_are_as_high_as_its_channels_are_deep(slopes):
-    """Where channels cross, no lug stands on either side: the land goes on over their arms."""
-    spacing, edge = 0.25e-3, 12e-3  # m: beyond, a channel that the rim cuts shows a wall alone
-    x, y = spacing * (np.indices((320, 280)) + 0.5)
-    along, across = np.tan(np.radians(slopes))
-    channel = (np.mod(x, 10e-3) < 4e-3) | (np.mod(y, 10e-3) < 4e-3)
-    found = tread_map(along * x + across * y + 3e-3 * channel, spacing)
-    cells = round(edge / spacing)
-    inner = np.zeros_like(channel)
-    inner[cells:-cells, cells:-cells] = True
-    assert np.array_equal(found.land[inner], ~channel[inner])
-    assert found.tread_depth[inner & ~channel] == pytest.approx(3e-3, abs=1e-6)
-    assert (found.base - along * x - across * y)[inner] == pytest.approx(0.0, abs=1e-6)
-
-
-def test_a_second_face_that_could_stand_on_the_floor_is_told():
-    """A heel that lies on its facet of 45 mm; no sole whose toe or bevel is a small part of it."""
-    spacing = 0.5e-3
-    x = spacing * (np.arange(150) + 0.5)[:, None] + np.zeros((1, 140))
-    other = other_rest(math.tan(math.radians(10)) * np.maximum(x - 45e-3, 0.0), spacing)
-    assert other is not None
-    share, angle = other
-    assert share == pytest.approx(30 / 75, abs=0.03)
-    assert angle == pytest.approx(math.radians(10), abs=math.radians(0.3))
-    assert other_rest(np.zeros_like(x), spacing) is None
-    assert other_rest(math.tan(math.radians(10)) * np.maximum(x - 65e-3, 0.0), spacing) is None
-    assert other_rest((np.maximum(x - 30e-3, 0.0)) ** 2 / (2 * 0.15), spacing) is None

@@ -83,32 +83,21 @@ def carried_on(height: Array, land: Mask) -> Array:
     """Return heights known on ``land`` carried on across the other cells of the plan form.
 
     Between two pieces of land, linear along x and along y, weighted by the inverse of the gap;
-    where channels cross, the same between what was carried on over all their arms. At the rim
-    the nearest land counts.
+    at the rim the nearest land counts.
     """
     inside = np.isfinite(height)
     if not land.any():
         return np.where(inside, height, np.nan)
-    filled, ways = _between(height, land)
-    arms = inside & (ways > 0)
-    filled, ways = _between(filled, arms)
-    known = arms | (ways == 2)
-    filled = np.where(known, filled, height[nearest_true(land)])
-    return np.where(inside, filled, np.nan)
-
-
-def _between(height: Array, known: Mask) -> tuple[Array, Array]:
-    """Return heights carried on between cells where they are known, and along how many axes."""
+    fallback = height[nearest_true(land)]
     total, weights = np.zeros_like(height), np.zeros_like(height)
-    ways = np.where(known, 2, 0)
     for axis in (0, 1):
-        value, gap = between_land(np.moveaxis(height, axis, 0), np.moveaxis(known, axis, 0))
-        told = np.isfinite(value)
-        weight = np.where(told, 1.0 / np.maximum(gap, 1.0), 0.0)
-        total += np.moveaxis(np.where(told, value, 0.0) * weight, 0, axis)
+        value, gap = between_land(np.moveaxis(height, axis, 0), np.moveaxis(land, axis, 0))
+        known = np.isfinite(value)
+        weight = np.where(known, 1.0 / np.maximum(gap, 1.0), 0.0)
+        total += np.moveaxis(np.where(known, value, 0.0) * weight, 0, axis)
         weights += np.moveaxis(weight, 0, axis)
-        ways += np.moveaxis(told & ~np.moveaxis(known, axis, 0), 0, axis)
-    return np.where(known, height, total / np.maximum(weights, 1e-30)), ways
+    filled = np.where(weights > 0, total / np.maximum(weights, 1e-30), fallback)
+    return np.where(inside, np.where(land, height, filled), np.nan)
 
 
 def between_land(height: Array, land: Mask) -> tuple[Array, Array]:
