@@ -9,7 +9,7 @@ from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, SoleSurface, Tread, WearPlane, heel_map, heel_surface
 from underfoot.shoe import surface_map as tilted
 from underfoot.shoe._kernels.covering_discs import local_width
-from underfoot.shoe.files.orientation import levelled, resting_plane
+from underfoot.shoe.files.orientation import levelled, other_rest, resting_plane
 from underfoot.shoe.tread_measures import (
     QUIET,
     height_noise,
@@ -248,3 +248,17 @@ def test_a_slice_of_a_lug_at_the_rim_is_land_where_it_lies_like_the_land_beside_
     land = tread_map(facet + rim + 3e-3 * channel, spacing).land
     assert np.unique(land[:4]).tolist() == [is_land]
     assert np.array_equal(land[6:], ~channel[6:])
+
+
+def test_a_second_face_that_could_stand_on_the_floor_is_told():
+    """A heel that lies on its facet of 45 mm; no sole whose toe or bevel is a small part of it."""
+    spacing = 0.5e-3
+    x = spacing * (np.arange(150) + 0.5)[:, None] + np.zeros((1, 140))
+    other = other_rest(math.tan(math.radians(10)) * np.maximum(x - 45e-3, 0.0), spacing)
+    assert other is not None
+    share, angle = other
+    assert share == pytest.approx(30 / 75, abs=0.03)
+    assert angle == pytest.approx(math.radians(10), abs=math.radians(0.3))
+    assert other_rest(np.zeros_like(x), spacing) is None
+    assert other_rest(math.tan(math.radians(10)) * np.maximum(x - 65e-3, 0.0), spacing) is None
+    assert other_rest((np.maximum(x - 30e-3, 0.0)) ** 2 / (2 * 0.15), spacing) is None
