@@ -120,6 +120,11 @@ class SlipPopulation(Presentable):
         lower = sum(subject.motion.still_sliding for subject in study.subjects)
         if lower:
             reasons.append(f"{lower} still slide when their step ends: lower bounds.")
+        if study.fit is not None and study.fit.at_bound:
+            names = ", ".join(study.fit.at_bound)
+            reasons.append(
+                f"Constants of the reduced model not identified by these slips: {names}."
+            )
         seen = study.highest_seen()
         if self.heard and seen is not None and seen < BLIND:
             reasons.append(
@@ -192,9 +197,6 @@ class SlipPopulation(Presentable):
         model = "full model for every walker" if study.full else "reduced model fitted to full runs"
         low, high = people.weight_transfer
         lines = [f"model: {model}"] if self.wet else []
-        if study.fit is not None and study.fit.at_bound:
-            names = ", ".join(study.fit.at_bound)
-            lines.append(f"constants of the reduced model that no slip moves: {names}")
         lines += [
             f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)",
             f"a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
