@@ -24,7 +24,8 @@ def written(folder, ending, data):
 
 def form(folder, name):
     ending, make = made.FORMS[name]
-    pytest.importorskip({"3dm": "rhino3dm"}.get(ending, "shapely"))
+    if ending == "3dm":
+        pytest.importorskip("rhino3dm")
     if "draco" in name:
         pytest.importorskip("DracoPy")
     return written(folder, ending, make(folder) if ending == "3dm" else make())

@@ -13,6 +13,15 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
 START = 0.2  # of the CPU time of NumPy, SciPy and pydantic that `import underfoot` may take
 SAY_NOTHING = {"found", "kept", "one", "own", "said", "there", "words"}
+WITH_AN_EXTRA = {
+    "underfoot.app": {"fastapi", "nicegui", "uvicorn"},  # the command asks for them
+    "underfoot.block._kernels": {"numba"},  # the package asks for it
+    "underfoot.core.compiled": {"numba"},  # loops run interpreted without
+    "underfoot.explore.store": {"duckdb"},
+    "underfoot.sole_contact.finite_element.elasticity": {"ngsolve"},  # its mesh asks for it
+}
+"""What imports a package that a bare installation lacks, other than by ``optional_module``."""
+BROUGHT = {"PIL": "matplotlib", "pydantic_core": "pydantic"}
 FIRST = 2.2  # of it until a case is read and all that `run` needs is imported
 
 
@@ -84,6 +93,28 @@ def test_no_files_import_each_other_in_a_circle():
 def test_circle_is_told_as_a_path():
     assert circle({"a": {"b"}, "b": {"c"}, "c": set()}) is None
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}}).count("<-") == 3
+
+
+def test_a_bare_installation_has_what_is_imported_without_a_word():
+    """Pages drew with a package of an extra once: the main job then failed where it was missing."""
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]
+    bare = {re.split(r"[^\w-]", line)[0].replace("-", "_") for line in project["dependencies"]}
+    bare |= {name for name, above in BROUGHT.items() if above in bare}
+    lacking = set()
+    for name, path in files().items():
+        allowed = {p for room, some in WITH_AN_EXTRA.items() for p in some if is_in(name, room)}
+        for node in statements(path):
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and not node.level:
+                modules = [node.module]
+            tops = {module.partition(".")[0] for module in modules} - set(sys.stdlib_module_names)
+            lacking |= {(name, top) for top in tops - {"underfoot"} - bare - allowed}
+    assert not lacking
+
+
+def is_in(name, room):
+    """Return whether a module is this one or lies in this package."""
+    return f"{name}.".startswith(f"{room}.")
 
 
 def test_what_is_loaded_takes_little_time_beside_numpy_scipy_and_pydantic():

@@ -23,7 +23,6 @@ _OPTIONAL = (
     ("mkl", "mkl", "fast", "faster sparse systems and Fourier transforms"),
     ("numba", "numba", "fast", "compiled kernels; soles from files, the block of finite elements"),
     ("netgen", "ngsolve", "cad", "STEP, compliance by finite elements"),
-    ("shapely", "shapely", "cad", "OBJ, OFF and PLY of polygons; compliance by finite elements"),
     ("trimesh", "trimesh", "cad", "writing solids"),
     ("emcee", "emcee", "study", "the law of a pair from others' measurements"),
     ("SurfaceTopography", "SurfaceTopography", "instruments", "files of surface instruments"),

@@ -12,23 +12,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from contourpy import FillType, contour_generator
 from scipy.spatial import KDTree
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
-from underfoot.core.optional import optional_module
 
 from ._kernels.tread_pattern import outline_distance
 from .lettering import Lettering
-
-if TYPE_CHECKING:
-    import shapely
-else:
-    shapely = optional_module("shapely", "cad", "A free tread")
 
 NODES = 8
 """Nodes across the smallest width. Outlines are linear between them: 0.4 % of it where roundest."""

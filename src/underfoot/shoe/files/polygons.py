@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.optional import optional_module
 
 Ints = NDArray[np.integer]
 
@@ -90,7 +89,8 @@ def _convex(rings: Array) -> Mask:
 
 def _within(vertices: Array, rings: Ints, numbers: Ints, where: str) -> tuple[Ints, Ints]:
     """Return triangles within the outlines of polygons, and the polygon of each."""
-    shapely = optional_module("shapely", "cad", "Reading faces of more than three corners")
+    import shapely
+
     places = vertices[rings]
     places = places - places.mean(axis=1, keepdims=True)
     extent = np.linalg.svd(places, compute_uv=False)

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import InputError
-from underfoot.core.optional import optional_module
 from underfoot.shoe.geometry import SoleMap
 
 Array = NDArray[np.float64]
@@ -37,7 +36,8 @@ class Plan:
 
 def plan_of(sole: SoleMap) -> Plan:
     """Return the plan form of a sole map as polygons that follow its cells."""
-    shapely = optional_module("shapely", "cad", "Compliance by finite elements")
+    import shapely
+
     rim = shapely.make_valid(shapely.Polygon(np.asarray(sole.outline)))
     height, depth = _heights(sole)
     cell = sole.spacing
