@@ -277,11 +277,7 @@ def site(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(folder))
 
     def ours():  # what else is installed on this machine is not tested here
-        return [
-            each
-            for each in metadata.distributions()
-            if each.name == "underfoot" or Path(str(each.locate_file(""))) == folder
-        ]
+        return [metadata.distribution("underfoot"), *metadata.distributions(path=[str(folder)])]
 
     monkeypatch.setattr(registry, "metadata", SimpleNamespace(distributions=ours))
     all_offers.cache_clear()

@@ -5,7 +5,7 @@ Parvizian, Düster and Rank 2007), so that nothing is meshed and all moves smoot
 """
 
 import pickle
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -72,10 +72,12 @@ def work_of_hats(bricks: Bricks, hats: NDArray[np.int64]) -> Array:
 
     ``hats`` are numbers of corners of the plan, i (ny + 1) + j: bilinear, 1 at a corner and 0 at
     the others, 0 outside the body. [a, b] is the integral of hat a times the rise under a pressure
-    that is hat b. Small strain; reduced integration (2 x 2 x 2), so that nothing locks. The result
-    is read-only: cases that differ in fluid, floor or speed alone share the body, solved once.
+    that is hat b. Small strain; reduced integration (2 x 2 x 2), so that nothing locks. What comes
+    of a body is kept: cases that differ in fluid, floor, speed or hardness alone share it.
     """
-    return _work_of_hats(pickle.dumps((bricks, hats)))
+    stiff = bricks.modulus[0]  # what the work goes by: other rubber under a foot is known too
+    relative = replace(bricks, modulus=bricks.modulus / stiff)
+    return _work_of_hats(pickle.dumps((relative, hats))) / stiff
 
 
 @lru_cache(maxsize=8)
@@ -87,9 +89,7 @@ def _work_of_hats(pickled: bytes) -> Array:
     right = np.ascontiguousarray(load[:, hats].toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
     work = right.T @ factors.solve(right)
-    work = 0.5 * (work + work.T)
-    work.flags.writeable = False
-    return work
+    return 0.5 * (work + work.T)
 
 
 def _numbering(bricks: Bricks) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
