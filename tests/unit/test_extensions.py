@@ -7,7 +7,6 @@ import sys
 import textwrap
 from importlib import metadata
 from itertools import pairwise
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
