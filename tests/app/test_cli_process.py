@@ -13,7 +13,8 @@ from commands import COMMAND, called, process
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRY = EXAMPLES / "work_shoe_full_tread_dry.toml"
 WET = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
-FAST = ["--set", "numerics.grid_spacing=1.2 mm", "--set", "numerics.quick_grid_spacing=1.2 mm"]
+COARSE = {"grid_spacing": "1.2 mm", "quick_grid_spacing": "1.2 mm", "tread_positions": 1}
+FAST = [word for key in COARSE for word in ("--set", f"numerics.{key}={COARSE[key]}")]
 
 
 @pytest.fixture(scope="module")

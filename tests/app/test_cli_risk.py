@@ -136,7 +136,7 @@ def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
 def test_no_change_gives_back_the_result_and_other_walkers_take_its_friction() -> None:
     tread = {"pattern": "grid", "depth": "3 mm", "lug_width": "12 mm", "channel_width": "6 mm"}
     case = Case.from_text(TEXT).replace({f"shoe.tread.{key}": tread[key] for key in tread})
-    fine = case.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 4})
+    fine = case.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 2})
     result = run(fine)
     viscosity = fine.value("contaminant.viscosity")
     same = Change("same", "same", "cleaning", {"contaminant.viscosity": viscosity})

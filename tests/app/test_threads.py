@@ -40,12 +40,10 @@ def options(settings):
     return [word for pair in settings.items() for word in ("--set", "=".join(map(str, pair)))]
 
 
-SQUARES = CHANGES | {
-    "numerics.cells_along": 1,
-    "numerics.tread_positions": 1,
-}  # what solves the sole a dozen times
+ONE = {"numerics.tread_positions": 1}
+SQUARES = CHANGES | ONE | {"numerics.cells_along": 1}  # what solves the sole a dozen times
 QUESTIONS = {
-    "run": [*COMMAND, "run", CASE, *options(CHANGES), "--quick", "--json"],
+    "run": [*COMMAND, "run", CASE, *options(CHANGES | ONE), "--quick", "--json"],
     "risk": [*COMMAND, "risk", CASE, *options(SQUARES), "--json"],
     "validate": [*COMMAND, "validate", "--json"],
     "slip": [*COMMAND, "slip", CASE, *options(SQUARES | FEW_RUNS), "--subjects", "4", "--json"],

@@ -7,7 +7,6 @@ import sys
 import textwrap
 from importlib import metadata
 from itertools import pairwise
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -277,11 +276,7 @@ def site(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(folder))
 
     def ours():  # what else is installed on this machine is not tested here
-        return [
-            each
-            for each in metadata.distributions()
-            if each.name == "underfoot" or Path(str(each.locate_file(""))) == folder
-        ]
+        return [metadata.distribution("underfoot"), *metadata.distributions(path=[str(folder)])]
 
     monkeypatch.setattr(registry, "metadata", SimpleNamespace(distributions=ours))
     all_offers.cache_clear()

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -35,21 +36,24 @@ def files(folders=(SOURCE,)):
     return paths
 
 
-def statements(path):
-    """Yield the statements of a file, at any depth."""
-    waiting = [ast.parse(path.read_text(encoding="utf-8"))]
+@cache
+def import_statements(path):
+    """Return the import statements of a file, at any depth."""
+    waiting, statements = [ast.parse(path.read_text(encoding="utf-8"))], []
     while waiting:
         node = waiting.pop()
-        yield node
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            statements.append(node)
         for inside in ("body", "orelse", "finalbody", "handlers", "cases"):
             waiting += getattr(node, inside, ())
+    return statements
 
 
 def imports(name, path, known):
     """Return which known modules a file names in import statements, wherever they stand."""
     package = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
     needed = set()
-    for node in statements(path):
+    for node in import_statements(path):
         if isinstance(node, ast.Import):
             needed |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -103,7 +107,7 @@ def test_a_bare_installation_has_what_is_imported_without_a_word():
     lacking = set()
     for name, path in files().items():
         allowed = {p for room, some in WITH_AN_EXTRA.items() for p in some if is_in(name, room)}
-        for node in statements(path):
+        for node in import_statements(path):
             modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and not node.level:
                 modules = [node.module]
@@ -194,7 +198,7 @@ def test_each_package_that_the_source_imports_is_declared():
 
 def imported_names(path):
     """Yield the modules that statements import and calls of ``optional_module`` name."""
-    for node in statements(path):
+    for node in import_statements(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and not node.level:
