@@ -460,6 +460,13 @@ def test_an_averaged_run_is_estimated_at_as_many_marches_as_it_takes(bars):
         assert more.memory == one.memory
 
 
+def test_a_sole_without_lugs_is_estimated_at_what_its_wet_cells_take(bars):
+    """The report's four took 8 to 20 s on the quick grid where 1 to 4 were told."""
+    plain = bars.replace({"shoe.tread": {"pattern": "none"}, "numerics.tread_positions": 1})
+    lugs = run_cost(bars.replace("numerics.tread_positions", 1), quick=True)
+    assert run_cost(plain, quick=True).seconds == pytest.approx(np.multiply(5, lugs.seconds))
+
+
 @pytest.mark.slow
 def test_a_sole_without_tread_holds_a_degree_of_angle_in_its_interval(worn_shoe_case, monkeypatch):
     monkeypatch.setattr(  # the angles alone

@@ -10,7 +10,7 @@ AT_REST = 130e6
 BYTES_PER_CELL = 5e3
 """Of peak memory, per cell under the sole: factors and Krylov basis."""
 SECONDS_PER_CELL = (0.05e-3, 0.19e-3)
-"""CPU seconds per cell under the sole on 0.5 mm: easiest and hardest of the report's twelve."""
+"""CPU seconds per cell under a sole with lugs on 0.5 mm: easiest and hardest of the report's."""
 GROWTH = 0.2
 """Exponent by which the time per cell grows with the cells."""
 CELLS_MEASURED = 14400.0
@@ -35,9 +35,9 @@ class Cost:
 def solution_cost(plan_area: float, spacing: float) -> Cost:
     """Return what a sole of ``plan_area`` (m^2) on cells of ``spacing`` (m) will take.
 
-    Measured on the report's slip-tester heels (60 mm x 60 mm, half of it wet) at 1 to 0.25 mm:
-    memory grows as the cells, time as cells^1.2. A sole wet all over takes up to twice as much, a
-    history of the motion more in proportion to its steps.
+    Measured on the report's slip-tester heels with lugs (a quarter of the cells wet) at 1 to
+    0.25 mm: memory grows as the cells, time as cells^1.2. A history of the motion takes more in
+    proportion to its steps.
     """
     cells = math.ceil(plan_area / spacing**2)
     growth = cells * (cells / CELLS_MEASURED) ** GROWTH
