@@ -262,3 +262,20 @@ def test_a_second_face_that_could_stand_on_the_floor_is_told():
     assert other_rest(np.zeros_like(x), spacing) is None
     assert other_rest(math.tan(math.radians(10)) * np.maximum(x - 65e-3, 0.0), spacing) is None
     assert other_rest((np.maximum(x - 30e-3, 0.0)) ** 2 / (2 * 0.15), spacing) is None
+
+
+@pytest.mark.parametrize("slopes", [(10, 0), (-10, 4), (6, 6)])
+def test_lugs_of_a_grid_on_a_bevel_are_as_high_as_its_channels_are_deep(slopes):
+    """Where channels cross, land is on both sides along the diagonals alone."""
+    spacing, edge = 0.25e-3, 12e-3  # m: beyond, a channel that the rim cuts shows a wall alone
+    x, y = spacing * (np.indices((320, 280)) + 0.5)
+    along, across = np.tan(np.radians(slopes))
+    channel = (np.mod(x, 10e-3) < 4e-3) | (np.mod(y, 10e-3) < 4e-3)
+    plane = along * x + across * y
+    tread = tread_map(plane + 3e-3 * channel, spacing)
+    cells = round(edge / spacing)
+    inner = np.zeros_like(channel)
+    inner[cells:-cells, cells:-cells] = True
+    assert np.array_equal(tread.land[inner], ~channel[inner])
+    assert tread.tread_depth[inner & ~channel] == pytest.approx(3e-3, abs=1e-6)
+    assert (tread.base - plane)[inner] == pytest.approx(0.0, abs=1e-6)

@@ -162,6 +162,7 @@ def test_wear_of_a_hexagon_heel(tmp_path):
         ("transverse", "45 mm"),  # of the default heel: channels run out over the rounded rim
         ("longitudinal", "45 mm"),
         ("hexagons", "45 mm"),
+        ("grid", "45 mm"),  # channels cross on the bevel
     ],
 )
 def test_a_bevelled_sole_from_a_file_wears_as_that_of_its_lengths(tmp_path, pattern, bevel):

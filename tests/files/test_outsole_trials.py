@@ -1,12 +1,15 @@
 """Outsole files as designers have them: read right without an option, or refused in words."""
 
+import itertools
 import math
 import os
 import zipfile
 
 import numpy as np
 import pytest
+import shapely
 import trimesh
+from scipy.spatial.transform import Rotation
 
 import trial_soles as made
 from outsole_bodies import heel_body, sole_body, triangles
@@ -509,3 +512,47 @@ def test_width_of_an_oblique_channel_has_no_bias(degrees):
         band = np.abs(across - offset) < width / 2
         found.append(np.median(channel_width(band, spacing)[band]))
     assert np.mean(found) == pytest.approx(width, abs=spacing / 3)
+
+
+def test_a_sole_that_lies_far_tilted_on_its_land_is_turned_level():
+    """15 degrees off: more than one stands on a stud, but its land lies all in that plane."""
+    turn = Rotation.from_euler("xy", (13, -7), degrees=True).as_matrix().T
+    body, land = made.treaded(PLAN, made.hexagons(PLAN, 9, 4), 3.0)
+    tilted = read(body @ turn)
+    measures = tread_measures(tilted.surface)
+    assert measures.land_ratio == pytest.approx(land / PLAN.area, abs=0.005)
+    assert np.array(measures.channel_depth) * 1e3 == pytest.approx(3.0, abs=0.02)
+    assert "Turned by 15" in said(tilted)
+
+
+def test_lower_lugs_are_no_floor_of_the_channels_beside_them():
+    """Bars 7/3.5, each other one 0.8 mm lower: channels stay 4 mm deep and 3.5 mm wide."""
+    lugs = made.bars(PLAN, 7, 3.5)
+    high, land = made.treaded(PLAN, lugs[::2], 4.0)
+    parts = [p for lug in lugs[1::2] for p in shapely.get_parts(lug.intersection(PLAN))]
+    lower = [p for p in parts if p.area > 1]
+    body = np.concatenate([high, *(made.prism(p, 0.8, 4.0 + made.SUNK) for p in lower)])
+    outsole = read(body, HALF)
+    measures = tread_measures(outsole.surface)
+    assert measures.land_ratio == pytest.approx(land / PLAN.area, abs=0.01)
+    assert np.array(measures.channel_depth) * 1e3 == pytest.approx(4.0, abs=0.02)
+    assert measures.channel_width[1] * 1e3 == pytest.approx(3.5, abs=0.26)
+    lug_height = outsole.surface.tread_depth[outsole.surface.land]
+    assert float(np.percentile(lug_height, 5)) == pytest.approx(4e-3, abs=0.02e-3)
+    assert "Lugs that stand 0.8 mm lower" in said(outsole)
+
+
+def test_lugs_with_rounded_edges_are_as_high_as_drawn():
+    """Bars 8/4 on a heel, 3.5 mm high, edges of 1.5 mm: the land between edges tells the height."""
+    plan, high, radius = shapely.box(0, -33, 70, 33), 3.5, 1.5
+    turn = np.linspace(0, np.pi / 2, 9)
+    layers = [made.slab(plan, high, high + 4)]
+    for lug in made.bars(plan, 8, 4):
+        inner = lug.intersection(plan)
+        layers.append(made.prism(inner, radius, high + made.SUNK))
+        for a, b in itertools.pairwise(turn):
+            cut = inner.buffer(radius * (np.cos((a + b) / 2) - 1), join_style="mitre")
+            low, top = radius * (1 - np.sin([b, a]))
+            layers.append(made.prism(cut, low, top + 0.02))
+    measures = tread_measures(read(np.concatenate(layers), FileSettings()).surface)
+    assert measures.channel_depth[1] * 1e3 == pytest.approx(high, abs=0.05)

@@ -36,6 +36,10 @@ def test_a_plain_number_is_dimensionless_only():
         to_si(3, "m", where="shoe.tread.depth")
 
 
+NO_UNITS = ("5\u00b11", "5 +/- 1", "5-6", "5..6", "0x10", "0b11", "5:6", "5?", "5*10")
+"""Ranges, tolerances, codes: no number and a unit that could be left away."""
+
+
 @pytest.mark.parametrize(
     ("text", "unit", "message"),
     [
@@ -45,6 +49,7 @@ def test_a_plain_number_is_dimensionless_only():
         ("inf m", "m", "is not a number"),
         ("1e999 m", "m", "not finite"),
         ("", "m", "is not a number"),
+        *((text, unit, "is not a number") for text in NO_UNITS for unit in ("1", "m")),
         (True, "1", "is not a number"),
         ([1], "1", "is not a quantity"),
     ],
@@ -53,6 +58,11 @@ def test_bad_text_is_refused_with_an_example(text, unit, message):
     with pytest.raises(InputError, match=message) as caught:
         to_si(text, unit, where="here")
     assert str(caught.value).startswith("here: ")
+
+
+def test_a_field_is_answered_in_its_own_unit():
+    with pytest.raises(InputError, match='is not a value in cP. Allowed: for example "5 cP"'):
+        to_si("3 mm", "Pa*s", where="", usual="cP")
 
 
 def test_a_misspelt_unit_gets_the_nearest_match():

@@ -78,6 +78,8 @@ _SIGNS = str.maketrans(
     {"µ": "u", "μ": "u", "°": "deg", "²": "^2", "³": "^3", "⁻": "^-", "¹": "1",
      "·": "*", "⋅": "*", "∙": "*", "×": "*", "″": '"', "”": '"'}
 )  # fmt: skip
+_NO_UNIT = re.compile(r"(?!1 ?/)[\d+\-/*.,;:=<>~#±≈≤≥!?]|[A-Za-z]+\d\d")
+"""What no unit begins with: behind a number it makes of it a range, a tolerance, a sum, a code."""
 _KNOWN = (
     "m mm um nm cm inch N kN mN kgf lbf Pa kPa MPa GPa psi bar cP mPa*s Pa*s P m/s mm/s cm/s "
     "s ms us min rad deg degC degF K kg g Hz kHz rad/s mm^2 cm^2 m^2 cm^3 N/mm 1/s 1/mm kg/m^3 "
@@ -137,7 +139,7 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
     >>> to_si("219 cP", "Pa*s", where="contaminant.viscosity")
     0.219
     """
-    example = _EXAMPLES.get(unit, f"1 {unit}")
+    example = f"5 {usual}" if usual else _EXAMPLES.get(unit, f"1 {unit}")
     if isinstance(given, bool):
         raise InputError(
             f"{given} is not a number", where=where, allowed=f'for example "{example}"'
@@ -158,7 +160,8 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
         return _finite(number, given, where)
     if unit == "K" and text in ("C", "F"):
         text = "deg" + text
-    return _finite(_convert(number, text, unit, given, where, example), given, where)
+    value = _convert(number, text, unit, given, where, example, usual or unit)
+    return _finite(value, given, where)
 
 
 def display(value: float, unit: str, digits: int = 3) -> str:
@@ -269,7 +272,7 @@ def _split(given: str, where: str, comma: bool, example: str) -> tuple[float, st
     except InputError as error:
         error.where = where
         raise
-    if parts is None:
+    if parts is None or _NO_UNIT.match(parts[1]):
         raise InputError(
             f'"{given}" is not a number with a unit',
             where=where,
@@ -282,7 +285,9 @@ def _split(given: str, where: str, comma: bool, example: str) -> tuple[float, st
     return number, _ALIASES.get(text, text)
 
 
-def _convert(number: float, text: str, unit: str, given: str, where: str, example: str) -> float:
+def _convert(
+    number: float, text: str, unit: str, given: str, where: str, example: str, shown: str
+) -> float:
     power = _POWERS.get(unit, {}).get(text)
     if power is not None:
         return float(Decimal(repr(number)).scaleb(power))
@@ -311,7 +316,7 @@ def _convert(number: float, text: str, unit: str, given: str, where: str, exampl
         ) from error
     target = {"K": "kelvin"}.get(unit, unit)
     refused = InputError(
-        f'"{given}" is not a value in {unit}', where=where, allowed=f'for example "{example}"'
+        f'"{given}" is not a value in {shown}', where=where, allowed=f'for example "{example}"'
     )
     try:
         value = float(quantity.to(target).magnitude)

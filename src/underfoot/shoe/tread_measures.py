@@ -11,6 +11,7 @@ from underfoot.core.arrays import Array, Mask
 from ._kernels.covering_discs import channel_width, covering_value, local_width
 from ._kernels.regions import (
     Labels,
+    across_channels,
     carried_on,
     distance_to,
     distance_within,
@@ -54,6 +55,8 @@ SMALLEST_PIECE = 1e-6
 """A channel or lug of less area is a speck, m^2."""
 _SMOOTHED = 1e-3
 """m between the cells that the usual height of lugs is taken of."""
+_LOWER = (0.5, 1e-3)
+"""A lower lug stands up from half of the channels' depth beside it, and is wider than this, m."""
 LUG_REACH = 10e-3
 """Land farther than this from every channel is untreaded, m."""
 
@@ -125,19 +128,26 @@ def tread_map(
     channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
+    # the edges of lugs and the rim may be rounded: what lies between other land is known best
+    with np.errstate(invalid="ignore"):
+        flat = land & (raised <= _reached(noise))
+    sound = across_channels(height, flat & ~rim(inside, steps))
     base = carried_on(height, land)
+    base = np.where(land | ~np.isfinite(sound), base, sound)
     if not channel.any():
         return TreadMap(land, np.zeros_like(height), base, level, noise)
-    depth = np.where(channel, np.maximum(height - base, 0.0), 0.0)
+    depth = np.where(inside, np.where(channel, np.maximum(height - base, 0.0), 0.0), np.nan)
     far = distance_to(channel) * spacing > LUG_REACH
     # of a channel that the rim cuts the nearest cells may show nothing but its wall
     window = 1 + 2 * max(1, round(BESIDE_A_WALL / spacing))
-    floor = maximum_filter(floor_depth(depth, channel), window)
+    floor = maximum_filter(floor_depth(depth, channel, spacing), window)
     lugs = np.where(land & ~far, floor[nearest_true(channel)], 0.0)
-    # what falls away at the rim is no floor of a channel where another is within reach
-    if (floors := channel & ~steep).any():
-        near = land & (distance_to(floors) * spacing <= LUG_REACH)
-        lugs = np.where(near, floor[nearest_true(floors)], lugs)
+    # what falls away at the rim is no floor of a channel where another is within reach, nor does
+    # one with land on one side alone count where there is a better
+    for floors in (channel & ~steep, channel & ~steep & np.isfinite(sound)):
+        if floors.any():
+            near = land & (distance_to(floors) * spacing <= LUG_REACH)
+            lugs = np.where(near, floor[nearest_true(floors)], lugs)
     treaded = land & (lugs > 0)
     lugs = _without_ends(lugs, treaded, inside, spacing)
     return TreadMap(land, lugs, base, level, noise)
@@ -209,7 +219,11 @@ def reached_by_floor(height: Array, land: Mask, spacing: float) -> Mask:
     above = np.minimum(height - rolled, _rounded_rim(height, spacing))
     noise = height_noise(np.where(land, height, np.nan))
     with np.errstate(invalid="ignore"):
-        return land & (above <= max(_REACHED, NOISE_FACTOR * noise))
+        return land & (above <= _reached(noise))
+
+
+def _reached(noise: float) -> float:
+    return max(_REACHED, NOISE_FACTOR * noise)
 
 
 def _rounded_rim(height: Array, spacing: float) -> Array:
@@ -334,12 +348,14 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
     depth = width = drained = None
     sipe_count, sipe_length = 0, 0.0
     if channel.any():
-        widths = channel_width(channel, spacing)
-        counted = channel & (widths <= WIDEST_CHANNEL)
-        counted = counted if counted.any() else channel
-        floor = floor_depth(channel_depth(surface), channel)
+        deep = channel_depth(surface)
+        open_ground = channel & ~lower_lugs(deep, channel, spacing)
+        widths = channel_width(open_ground, spacing)
+        counted = open_ground & (widths <= WIDEST_CHANNEL)
+        counted = counted if counted.any() else open_ground
+        floor = floor_depth(deep, channel, spacing)
         depth = _shares(floor[counted])
-        sipe_count, sipe_length = _sipes(channel, surface.inside, widths, spacing)
+        sipe_count, sipe_length = _sipes(open_ground, surface.inside, widths, spacing)
         width = _shares(widths[counted])
         drained = float(
             np.count_nonzero(draining(surface.inside, channel)) / np.count_nonzero(channel)
@@ -455,7 +471,7 @@ def surface_without_slits(
     mask = numbers > 0
     nearest = nearest_true(mask)
     each = np.arange(1, count + 1)
-    floor = floor_depth(channel_depth(surface), channel)
+    floor = floor_depth(channel_depth(surface), channel, spacing)
     _, mean_widths = _slit_widths(numbers, count, spacing)
     of_each = mean_widths, np.asarray(median(floor, numbers, each))
     width, depth = (np.append(0.0, values)[numbers][nearest] for values in of_each)
@@ -496,13 +512,41 @@ def channel_depth(surface: SoleSurface) -> Array:
     return np.where(surface.inside, below, np.nan)
 
 
-def floor_depth(depth: Array, channel: Mask) -> Array:
+def floor_depth(depth: Array, channel: Mask, spacing: float) -> Array:
     """Return, per cell of the channels, the depth (m) at the middle of the channel over the cell.
 
     That of the middle of the largest disc in the channel that covers the cell: drafted walls and
-    fillets take the depth of the floor beside them.
+    fillets take the depth of the floor beside them. On a lower lug its own depth below the land.
     """
-    return np.where(channel, covering_value(channel, np.where(channel, depth, 0.0)), depth)
+    lower = lower_lugs(depth, channel, spacing)
+    floor = np.zeros_like(depth)
+    for each in (channel & ~lower, lower):
+        floor = np.where(each, covering_value(each, np.where(each, depth, 0.0)), floor)
+    return floor
+
+
+def lower_lugs(depth: Array, channel: Mask, spacing: float) -> Mask:
+    """Return what stands in the channels between deeper ones: lugs that are lower than others.
+
+    Higher than half of the deepest channel within ``LUG_REACH``, wider than 1 mm, and with more
+    channel than land along its border.
+    """
+    from scipy.ndimage import binary_opening, maximum_filter
+
+    deepest = maximum_filter(
+        np.where(channel, depth, 0.0), 1 + 2 * max(1, round(LUG_REACH / spacing))
+    )
+    shallow = channel & (depth < _LOWER[0] * deepest)
+    side = 1 + max(1, round(_LOWER[1] / spacing))
+    numbers, count = pieces(binary_opening(shallow, np.ones((side, side))))
+    beside = np.zeros((2, count + 1))
+    for axis in (0, 1):
+        for step in (1, -1):
+            own, next_to = np.pad(numbers, 1), np.roll(np.pad(numbers, 1), step, axis)
+            for n, ground in enumerate((channel, ~channel & np.isfinite(depth))):
+                met = (own == 0) & (next_to > 0) & np.pad(ground, 1)
+                beside[n] += np.bincount(next_to[met], minlength=count + 1)
+    return np.isin(numbers, np.flatnonzero(beside[0] > beside[1]))
 
 
 def arch_area(tread: TreadMap, inside: Mask, spacing: float) -> float:

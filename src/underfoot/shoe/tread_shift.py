@@ -215,7 +215,8 @@ def carried_base(surface: SoleSurface) -> Array:
     carried = np.where(open_ended, np.fmax(beyond, nearest), between)
     channel = surface.inside & ~surface.land
     over = np.where(channel, surface.height - carried, 0.0)
-    rounding = np.where(open_ended, np.maximum(over - floor_depth(over, channel), 0.0), 0.0)
+    floor = floor_depth(over, channel, surface.spacing)
+    rounding = np.where(open_ended, np.maximum(over - floor, 0.0), 0.0)
     return np.where(reached, surface.height, carried + rounding)
 
 

@@ -82,22 +82,48 @@ def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:
 def carried_on(height: Array, land: Mask) -> Array:
     """Return heights known on ``land`` carried on across the other cells of the plan form.
 
-    Between two pieces of land, linear along x and along y, weighted by the inverse of the gap;
-    at the rim the nearest land counts.
+    As ``across_channels`` does; where no land is on both sides, at the rim, the nearest counts.
     """
     inside = np.isfinite(height)
     if not land.any():
         return np.where(inside, height, np.nan)
-    fallback = height[nearest_true(land)]
-    total, weights = np.zeros_like(height), np.zeros_like(height)
-    for axis in (0, 1):
-        value, gap = between_land(np.moveaxis(height, axis, 0), np.moveaxis(land, axis, 0))
-        known = np.isfinite(value)
-        weight = np.where(known, 1.0 / np.maximum(gap, 1.0), 0.0)
-        total += np.moveaxis(np.where(known, value, 0.0) * weight, 0, axis)
-        weights += np.moveaxis(weight, 0, axis)
-    filled = np.where(weights > 0, total / np.maximum(weights, 1e-30), fallback)
-    return np.where(inside, np.where(land, height, filled), np.nan)
+    filled = across_channels(height, land)
+    filled = np.where(np.isfinite(filled), filled, height[nearest_true(land)])
+    return np.where(inside, filled, np.nan)
+
+
+def across_channels(height: Array, land: Mask) -> Array:
+    """Return heights on ``land`` and between two pieces of it; nan where it is on one side alone.
+
+    Linear along x and along y, weighted by the inverse of the gap; where channels cross and neither
+    meets land, the same along the diagonals.
+    """
+    filled = np.where(land, height, np.nan)
+    for diagonal in (False, True):
+        missing = ~np.isfinite(filled)
+        total, weights = np.zeros_like(height), np.zeros_like(height)
+        for turned in (False, True):
+            place = _columns(height.shape, diagonal, turned)
+            heights, lands = np.full((2, *(np.max(place, axis=(1, 2)) + 1)), np.nan)
+            heights[place], lands[place] = height, land
+            value, gap = (each[place] for each in between_land(heights, lands == 1))
+            told = np.isfinite(value)
+            weight = np.where(told, 1.0 / np.maximum(gap, 1.0), 0.0)
+            total += np.where(told, value, 0.0) * weight
+            weights += weight
+        missing &= weights > 0
+        filled[missing] = total[missing] / weights[missing]
+    return filled
+
+
+def _columns(
+    shape: tuple[int, ...], diagonal: bool, turned: bool
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the place of each cell in an array whose columns are rows along x, y or diagonals."""
+    i, j = np.indices(shape)
+    if diagonal:
+        return i, j - i + shape[0] if turned else j + i
+    return (j, i) if turned else (i, j)
 
 
 def between_land(height: Array, land: Mask) -> tuple[Array, Array]:

@@ -387,6 +387,7 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
 LEVEL = math.radians(0.05)
 """A tilt (rad) below it is that of noise and roundings."""
 _DRAWN_LEVEL = 0.2
+_BROAD = 0.5  # of the plan form: a sole's own land
 _OTHER_FACE, _ALIKE = math.radians(3.0), math.radians(1.0)
 
 
@@ -409,6 +410,20 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     if plan[level].sum() > _DRAWN_LEVEL * plan.sum():
         best = int(np.argmax(np.where(level, plan, 0.0)))
     return float(a[best]), float(b[best]), float(c[best])
+
+
+def broad_rest(height: Array, spacing: float, plane: tuple[float, float, float]) -> bool:
+    """Return whether the lower hull's faces in the direction of a plane are half of the plan form.
+
+    A sole that lies tilted in its file has its land there, one that stands on a stud a small face.
+    """
+    (a, b, _), plan, _ = _lower_faces(height, spacing)
+    normals, wanted = (
+        np.stack([-x, -y, np.ones_like(x)]) / np.sqrt(x**2 + y**2 + 1)
+        for x, y in ((a, b), (np.array(plane[0]), np.array(plane[1])))
+    )
+    alike = wanted @ normals > math.cos(_ALIKE)
+    return bool(plan[alike].sum() > _BROAD * plan.sum())
 
 
 def other_rest(height: Array, spacing: float) -> tuple[float, float] | None:

@@ -20,6 +20,7 @@ from ..tread_measures import (
     TreadMap,
     arch_area,
     height_noise,
+    lower_lugs,
     tread_map,
     without_noise,
 )
@@ -282,7 +283,7 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
         turned, angle = orientation.levelled(axes, plane)
         if angle < orientation.LEVEL:
             break
-        if angle > _MOST_TURN:
+        if angle > _MOST_TURN and not orientation.broad_rest(height, spacing, plane):
             remarks.append(
                 f"It would rest {math.degrees(angle):.0f}° off level, on few points: left as it "
                 "lies."
@@ -450,6 +451,15 @@ def _surface(
         remarks.append(
             f"Hollows wider than {WIDEST_CHANNEL * 1e3:.0f} mm ({arch * 1e4:.3g} cm², an arch) are "
             "no land; they don't count in depth and width of the channels."
+        )
+    below = np.where(inside, height - tread.base, np.nan)
+    lower = lower_lugs(below, inside & ~tread.land, spacing)
+    if np.count_nonzero(lower) > _ARCH * np.count_nonzero(inside):
+        less = float(np.median(below[lower])) * 1e3
+        remarks.append(
+            f"Lugs that stand {less:.2g} mm lower than those around "
+            f"them ({np.count_nonzero(lower) * spacing**2 * 1e4:.3g} cm²) are no land; channels "
+            "beside them count with their own depth and width."
         )
     surface = SoleSurface(
         x=x,
