@@ -19,6 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from scipy.signal import lfilter
 
 from underfoot.core import UnderfootError
 from underfoot.trials.recording.protocols import protocol
@@ -49,11 +50,8 @@ def coloured(rng: np.random.Generator, count: int, rate: float, corner: float) -
     """Return noise of unit variance with a corner frequency (Hz)."""
     keep = float(np.exp(-2 * np.pi * corner / rate))
     white = rng.normal(size=count)
-    out = np.empty(count)
-    out[0] = white[0]
-    for i in range(1, count):
-        out[i] = keep * out[i - 1] + np.sqrt(1 - keep**2) * white[i]
-    return out
+    after, _ = lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], white[1:], zi=[keep * white[0]])
+    return np.append(white[0], after)
 
 
 def sound_log(seed: int, *, preload: bool = True) -> Log:

@@ -18,7 +18,7 @@ shoe = "work_shoe_untreaded"
 floor = "vinyl_g4"
 contaminant = "glycerol_90pct"
 motion = "slip_tester_g4"
-numerics.quick_grid_spacing = "2.5 mm"
+numerics.quick_grid_spacing = "3 mm"
 numerics.cells_along = 1
 numerics.tread_positions = 1
 """

@@ -39,11 +39,12 @@ def test_a_scalar_by_its_name_or_the_nearest_one(worn_shoe_result):
     assert "0.0" in str(result)
 
 
-def test_a_run_of_a_file(worn_shoe_case, worn_shoe_result, tmp_path):
-    worn_shoe_case.save(tmp_path / "case.toml")
+def test_a_run_of_a_file(worn_shoe_case, tmp_path):
+    case = worn_shoe_case.replace({"numerics.tread_positions": 1, "numerics.cells_along": 1})
+    case.save(tmp_path / "case.toml")
     for file in (tmp_path / "case.toml", str(tmp_path / "case.toml")):
         result = uf.run(file, quick=True)
-        assert result.provenance.case_hash == worn_shoe_result.provenance.case_hash
+        assert result.provenance.case_hash == case.hash
 
 
 def test_folders_of_older_and_newer_versions_are_read(worn_shoe_result, tmp_path):
