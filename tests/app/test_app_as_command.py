@@ -209,3 +209,15 @@ def test_a_midsole_that_is_added(project, of_the_app, tmp_path):
         f"shoe.sole.midsole.{key}": value for key, value in MIDSOLE["shoe.sole.midsole"].items()
     }
     assert_same(of_the_app("foam"), of_the_command("case.toml", tmp_path, **WIDE | LAYERED | foam))
+
+
+@pytest.mark.parametrize("grid", ["0.7 mm", "1.2 mm"])
+def test_the_design_page_has_the_land_of_outsole_make(tmp_path, grid):
+    """On the grid of a quick run land was off by 2 points, and another after each change of it."""
+    path = tmp_path / "case.toml"
+    path.write_text(template(**USUAL, catalogue=Catalogue.load(), name="heel"), encoding="utf-8")
+    made = called("outsole", "make", path, "--json")
+    assert made.returncode == 0, made.stderr
+    changes = {"numerics.quick_grid_spacing": grid}
+    shown = work.sole(str(path), changes, progress=lambda *_: None)["measures"]["land"]
+    assert shown == f"{100 * json.loads(made.stdout)['land_ratio']:.0f}"

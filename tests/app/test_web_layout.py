@@ -127,3 +127,24 @@ def test_a_ranking_and_a_progress_line_fit_a_telephone(tmp_path):
     assert words["y"] + words["height"] <= bar["y"]
     assert bar["width"] > 390 / 2
     assert stop["x"] + stop["width"] <= 390
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_name_and_settings_share_a_row_of_a_telephone(tmp_path, language):
+    made = project_of(tmp_path / "project", "Heel")
+    rows = """[...document.querySelectorAll('.app-bar button, .app-bar nav')].map((e) => {
+    const box = e.getBoundingClientRect(); return [box.top, box.bottom, e.tagName]; })"""
+    with (
+        served(made.folder, tmp_path / "home") as app,
+        page_of(app.link, width=390, height=844) as page,
+    ):
+        page.context.add_cookies([{"name": "language", "value": language, "url": app.base}])
+        page.goto(app.base + "place")
+        page.locator(".app-bar .idle").wait_for()
+        boxes = page.evaluate(rows)
+        (nav,) = (box for box in boxes if box[2] == "NAV")
+        buttons = [box for box in boxes if box[2] == "BUTTON"]
+        assert len(buttons) >= 3
+        assert max(bottom for _, bottom, _ in buttons) <= nav[0] + 1
+        assert max(top for top, *_ in buttons) < min(bottom for _, bottom, _ in buttons)
+        assert page.locator(".app-bar .idle").get_attribute("aria-label")

@@ -61,7 +61,7 @@ def test_bad_text_is_refused_with_an_example(text, unit, message):
 
 
 def test_a_field_is_answered_in_its_own_unit():
-    with pytest.raises(InputError, match='is not a value in cP. Allowed: for example "5 cP"'):
+    with pytest.raises(InputError, match=r'is not a value in cP\. Allowed: for example "5 cP"'):
         to_si("3 mm", "Pa*s", where="", usual="cP")
 
 

@@ -109,6 +109,7 @@ def _jobs_button(session: Session) -> None:
     """Show how many jobs are open; its menu shows each with its progress and how to stop it."""
     text, jobs = session.text, session.jobs
     button = ui.button(text("jobs.none"), icon="hourglass_empty").props("flat dense no-caps")
+    button.props(f'aria-label="{button.text}"').classes("idle")
     with button, ui.menu().classes("jobs").props("auto-close=false"):
         listed = ui.element("div").classes("job-list")
     seen: list[tuple[object, ...]] = []
@@ -120,6 +121,9 @@ def _jobs_button(session: Session) -> None:
         seen[:] = now
         count = sum(task.open for task in jobs.tasks.values())
         button.text = text("jobs.open", count=count) if count else text("jobs.none")
+        button.props(f'aria-label="{button.text}"').classes(
+            **{"remove" if count else "add": "idle"}
+        )
         listed.clear()
         with listed:
             tasks = sorted(jobs.tasks.values(), key=_place)

@@ -23,12 +23,12 @@ from underfoot.shoe.lug_drainage import GROOVE
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
 
 from .inputs import GROOVES, grooves_of
-from .work import Drawn, presented, sole_html
+from .work import LAND_SPACING, Drawn, presented, sole_html
 
 DRAWN_SPACING = 0.75e-3
 """m between the cells of a file's sole as it is drawn."""
-LAND_SPACING, LAND_EQUAL = 0.25e-3, 0.005
-"""m between the cells on which land is measured, and the difference of equal shares of land."""
+LAND_EQUAL = 0.005
+"""The most by which equal shares of land differ."""
 CHANNEL = "shoe.tread.channel_width"
 STEP, WIDEST, HALVINGS = 1.1, 60e-3, 10
 """Ratio of the channel widths (m) tried one after the other until one lies beyond what is sought,

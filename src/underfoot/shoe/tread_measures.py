@@ -538,13 +538,15 @@ def lower_lugs(depth: Array, channel: Mask, spacing: float) -> Mask:
     )
     shallow = channel & (depth < _LOWER[0] * deepest)
     side = 1 + max(1, round(_LOWER[1] / spacing))
-    numbers, count = pieces(binary_opening(shallow, np.ones((side, side))))
+    opened = np.asarray(binary_opening(shallow, np.ones((side, side))), dtype=np.bool_)
+    numbers, count = pieces(opened)
     beside = np.zeros((2, count + 1))
     for axis in (0, 1):
         for step in (1, -1):
-            own, next_to = np.pad(numbers, 1), np.roll(np.pad(numbers, 1), step, axis)
+            padded = np.pad(numbers, 1)
+            next_to = np.roll(padded, step, axis)
             for n, ground in enumerate((channel, ~channel & np.isfinite(depth))):
-                met = (own == 0) & (next_to > 0) & np.pad(ground, 1)
+                met = (padded == 0) & (next_to > 0) & np.pad(ground, 1)
                 beside[n] += np.bincount(next_to[met], minlength=count + 1)
     return np.isin(numbers, np.flatnonzero(beside[0] > beside[1]))
 
