@@ -234,7 +234,8 @@ def test_a_column_that_says_the_same_ends_nothing():
         found = comparison_findings("rcof", values, {"shoe": shoe, "other": column}, persons)
         assert [one.name for one in found] == [one.name for one in alone]
         assert found[0].table.rows == alone[0].table.rows
-        assert any('"other"' in text for text in found[0].cautions)
+        told = [*found[0].cautions, *map(str, found[0].table.notes)]
+        assert any(text.startswith(('"other"', "other:")) for text in told)
     group = ["m" if who < "S04" else "w" for who in persons]
     some = [
         i for i, one in enumerate(shoe) if one == "medium" or (one == "hard") == (group[i] == "m")

@@ -21,6 +21,7 @@ from underfoot.film.operator import Upwinding
 from .problem import Problem
 
 SMALLEST_GAP = 2e-7  # m; the flow sees no thinner film (the pressure law does)
+HELD = 1e-3  # of the liquid in the film, which counts as moved in a step even where nothing moves
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ class FilmBalance:
 
         ``fluid`` is load per area of a cell, as are the columns by pressure. Which cells are full
         is judged on the balance of those that were, ``full``. Where Newton is ``stuck``, gaps that
-        are pressed shut and hold too much liquid count as fixed, as the flow sees them.
+        are pressed shut count as fixed, as the flow sees them.
         """
         faces, wet, give, problem = self._faces, self._wet, self._give, self._problem
         size = faces.size
@@ -131,7 +132,7 @@ class FilmBalance:
         pressure, fraction, net, cavity = self._balance(operator, fluid, before)
         by_gap = operator.by_gap(pressure, fraction)
         diagonal = by_pressure.diagonal[:size] * (1 + stiffness * give)
-        shut = (gap[:size] < SMALLEST_GAP) & (net > 0) & stuck
+        shut = (gap[:size] < SMALLEST_GAP) & stuck
         diagonal += np.abs(by_gap.diagonal[:size]) * give * ~shut
         lacks = by_fraction.diagonal[:size] * (1 - fraction[:size])
         # at rest nothing flows and nothing is pressed: such a cell counts as full
@@ -145,10 +146,12 @@ class FilmBalance:
         carried -= np.bincount(faces.east, through, faces.count)
         stored = self._storage * np.abs(operator.gap * fraction - self._content)
         wrong = np.where(full, np.abs(net), np.where(wet, overfull, 0.0)).sum()
-        moved = float((np.abs(carried) + stored)[self._film].sum()) + 1e-30
-        # a gap that is pressed shut can open again: rows that did not know had no solution
+        held = HELD * self._storage * self._content
+        moved = float((np.abs(carried) + stored + held)[self._film].sum()) + 1e-30
+        # a gap that is pressed shut can open again: rows that did not know had no solution; but
+        # where it stays shut, rows that wait for it to open creep
         moves = gap <= problem.largest_gap
-        moves[:size] &= (gap[:size] >= SMALLEST_GAP) | (net <= 0) | (not stuck)
+        moves[:size] &= (gap[:size] >= SMALLEST_GAP) | (not stuck)
         by_gap = by_gap.columns(moves.astype(np.float64))
         return FilmRows(
             full,

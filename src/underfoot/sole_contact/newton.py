@@ -38,9 +38,10 @@ from .row_compliance import RowCompliance
 
 STALL = 12  # Newton steps without halving the residual after which a shorter time step is tried
 FORCING = 0.3  # share of the residual to which GMRES solves, once the residual is small
-STUCK = 6  # such steps after which gaps that are pressed shut count as fixed
+STUCK = 3  # such steps after which gaps that are pressed shut count as fixed
 CYCLES = (2, 3, 4)  # Newton steps after which a balance may come again
 CYCLE = 0.05  # relative difference of such balances that counts as none
+SWING = 1.2  # largest over smallest balance within a cycle: one that only falls slowly has none
 THIN = 2e-4  # m; steps are limited where the film is thinner
 
 
@@ -296,6 +297,7 @@ def _cycling(balances: list[float]) -> bool:
     return any(
         len(balances) >= period + 3
         and bool((np.abs(now - balances[-3 - period : -period]) < CYCLE * now).all())
+        and max(balances[-period - 1 :]) > SWING * min(balances[-period - 1 :])
         for period in CYCLES
     )
 

@@ -599,7 +599,8 @@ def _groups(finding: Finding) -> TrialFigure:
     axes.margins(y=0.14)
     label = _NAMES.get(finding.response, finding.response.replace("_", " "))
     _finish(axes, ylabel=label, ylim=(0, None))
-    units = "means of persons (lines join one person)" if lines else "single values"
+    units = "means of persons" if finding.by_person else "single values"
+    units += " (lines join one person)" if lines else ""
     words = (
         f"{label} by {finding.factor}: means, standard deviations, {units}; groups that share a "
         "letter do not differ (Tukey, 0.05)"

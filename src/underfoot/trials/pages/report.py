@@ -135,6 +135,7 @@ def trials_page(
     noted = {name for one in analysis.files for name in one.conditions}
     return environment(__package__ or "").get_template("trials.html").render(
         analysis=analysis,
+        number=_counted(len(analysis.files), "files"),
         **study_parts(analysis),
         first=chapters["study"][:1],
         figures={**chapters, "study": chapters["study"][1:]},
@@ -179,12 +180,13 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     if not usable:
         return "No file gave usable numbers: see the reasons below."
     cautions = sum(one.verdict == "caution" for one in usable)
-    tail = f" {cautions} of {len(usable)} usable files carry a caution." if cautions else ""
+    of = f"{cautions} of {_counted(len(usable), 'usable files')}"
+    tail = f" {of} {'carries' if cautions == 1 else 'carry'} a caution." if cautions else ""
     tables = {table.name: table for table in analysis.study.tables}
     if kind == "human_slip":
         judged = [one for one in usable if "slip" in one.main]
         slips = int(sum(one.main["slip"] for one in judged))
-        text = f"{slips} slips in {len(judged)} trials"
+        text = f"{_counted(slips, 'slips')} in {_counted(len(judged), 'trials')}"
         if judged:
             text += f" ({100 * slips / len(judged):.0f} %)"
         near = sum(abs(one.main.get("slip_margin", 1.0)) < 0.05 for one in judged)
@@ -207,7 +209,7 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
         )
         places = table.decimals.get(column, 3)
         counted = ", ".join(
-            f"{row[unit]} {unit if row[unit] != 1 else unit[:-1]}"
+            _counted(row[unit], unit)
             for unit in ("persons", "files", "trials", "readings", "steps")
             if row.get(unit)
         )
@@ -220,12 +222,17 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
         return f"{text} ({counted}).{carried}{tail}"
     samples = tables.get("samples")
     if samples is not None:
-        return f"{len(samples.rows)} samples.{tail}"
+        return f"{_counted(len(samples.rows), 'samples')}.{tail}"
     cof = [one.main["cof"] for one in usable if "cof" in one.main]
     if cof:
-        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {len(cof)} usable runs."
+        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {_counted(len(cof), 'usable runs')}."
         return text + carried + tail
-    return f"{len(usable)} usable tests.{tail}"
+    return f"{_counted(len(usable), 'usable tests')}.{tail}"
+
+
+def _counted(number: int, things: str) -> str:
+    """Return a number with what it counts: 1 file, 2 files."""
+    return f"{number} {things if number != 1 else things[:-1]}"
 
 
 def _on_page(table: Table, conditions: Collection[str] = ()) -> Table:

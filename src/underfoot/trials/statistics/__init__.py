@@ -3,6 +3,7 @@
 from .agreement import bland_altman as bland_altman
 from .agreement import intraclass_correlation as intraclass_correlation
 from .confounding import Confounded as Confounded
+from .confounding import names_persons as names_persons
 from .confounding import told_apart as told_apart
 from .curves import paired_curve_test as paired_curve_test
 from .effects import detectable_difference as detectable_difference

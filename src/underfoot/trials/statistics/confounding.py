@@ -76,3 +76,9 @@ def told_apart(
             continue
         kept.append(name)
     return {name: levels for name, levels in factors.items() if name in kept}, left
+
+
+def names_persons(levels: Sequence[object], persons: Sequence[object]) -> bool:
+    """Return whether a factor has one level a person, another for each (who, in other words)."""
+    several = len(set(persons))
+    return 1 < several == len(set(levels)) == len(set(zip(levels, persons, strict=False)))

@@ -8,11 +8,10 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..statistics import ROUNDING, mixed_model, person_means
-from .conditions import NUMBERS
+from .conditions import ORDERS
 from .file_result import FileResult
 from .tables import Cell, Table, grouped, mean_and_interval
 
-ORDERS = (*NUMBERS, "order", "sequence", "reihenfolge")
 _SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
 """p below which, relative difference of speed from which, and share of the variance of the places
 in the session from which a condition goes with it; assumed."""

@@ -57,6 +57,16 @@ _SCALE = re.compile(
 _EMPTY = ("", "?", "-", "--", "n/a", "#n/a", "nan", "null", "unknown", "unbekannt", "tbd", "k.a.")
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
+ORDERS = (*NUMBERS, "order", "sequence", "reihenfolge")
+COUNTED = (*ORDERS, "reading", "swing", "test", "value", "pass", "cycle", "messung", "schwung",
+           "wert", "versuch", "lauf", "wiederholung")  # fmt: skip
+"""Columns that number the readings of a sample."""
+_MEASURED = ("age", "alter", "temperature", "temp", "temperatur", "humidity", "feuchte",
+             "luftfeuchte", "speed", "walking speed", "geschwindigkeit", "bmi", "slip", "slipped",
+             "fall", "fell", "outcome", "gerutscht", "sturz", "ergebnis")  # fmt: skip
+"""Columns whose numbers, equal or not, were measured or seen: their values are no levels."""
+MOST_LEVELS = 6
+"""Different numbers of a column that may be the codes of levels; assumed."""
 _NOT_TRIALS = re.compile(
     r"(conditions|edits|truth|synthetic|notes?|notizen|read[-_ ]?me|liesmich|licen[cs]e|protocol"
     r"|todo|session[-_ ]?metadata)([-_ .].*)?$",
@@ -373,8 +383,12 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     except DataError as error:
         raise InputError(error.what, where=path.name, remedy=error.remedy) from error
     # A person called 1, 2, 3 is a name, not a number.
+    persons = next((own for name, (_, own) in cells.items() if name in PERSON), ())
     columns = {
-        name: own if name in PERSON else _column(own, numbers[name], unit, lines, path.name, name)
+        name: own
+        if name in PERSON
+        else coded_levels(name, unit, numbers[name], persons)
+        or _column(own, numbers[name], unit, lines, path.name, name)
         for name, (unit, own) in cells.items()
         if name != files
     }
@@ -427,6 +441,43 @@ def numbers_of_columns(
     numeric = {n: own for n, own in cells.items() if all(map(is_written_number, filter(None, own)))}
     forms = dict(zip(numeric, number_forms(list(numeric.values()), where), strict=True))
     return {n: [_number(c, forms.get(n, NumberForm())) for c in own] for n, own in cells.items()}
+
+
+def coded_levels(
+    name: str,
+    unit: str,
+    numbers: Sequence[float | None],
+    persons: Sequence[str] = (),
+    *,
+    most: int = MOST_LEVELS,
+    fewest: int = 2,
+) -> list[str] | None:
+    """Return the levels that a column of numbers stands for (shoe 1, 2, 3; hardness 45, 60).
+
+    None where it holds measured numbers: a quantity with a unit or a known range, numbers that are
+    not whole, more than ``most`` of them, or one that comes less than ``fewest`` times (among
+    several persons: that fewer persons have).
+
+    Parameters:
+        name: Heading of the column, in small letters.
+        unit: Its unit as written, or nothing; numbers on a scale (Shore A) can be levels.
+        numbers: One a row, None in an empty cell.
+        persons: Who walked in each row; empty where nobody is named.
+        most: Different numbers that can be levels.
+        fewest: Rows, or persons, of each.
+    """
+    quantities = {*_RANGES, *_ANGLES, *_MEASURED, *COUNTED}
+    if name in quantities or (unit and not _SCALE.fullmatch(unit)):
+        return None
+    rows: dict[float, list[int]] = {}
+    for i, number in enumerate(numbers):
+        if number is not None:
+            rows.setdefault(number, []).append(i)
+    several = len(set(persons)) > 1
+    units_of = [len({persons[i] for i in own} if several else own) for own in rows.values()]
+    if not 1 < len(rows) <= most or min(units_of) < fewest or any(number % 1 for number in rows):
+        return None
+    return ["" if number is None else f"{number:g} {unit}".strip() for number in numbers]
 
 
 def first_text(cells: Sequence[str], numbers: Sequence[float | None]) -> int | None:

@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.presentation import p_text
 
 from .. import statistics
 from ..walking.gait_context import PERCENT
@@ -370,7 +371,7 @@ def curve_findings(
             percent = PERCENT[known]
             beyond = [
                 f"{percent[c.start]:.0f} to {percent[c.stop]:.0f} % "
-                f"(p of its length {c.p:.2g}, of its peak {c.p_peak:.2g})"
+                f"(p of its length {p_text(c.p)}, of its peak {p_text(c.p_peak)})"
                 for c in test.clusters
             ]
             wholes.append(test.p)

@@ -18,6 +18,7 @@ from ..statistics import drift, standard_deviation
 from .conditions import (
     LARGEST,
     QUANTITIES,
+    coded_levels,
     first_text,
     numbers_of_columns,
     one_spelling,
@@ -128,6 +129,13 @@ def reading_results(
         and k != column
         and (k not in numbers or k.casefold() in _LABELS)
     }
+    # floors 1, 2, 3 are samples, not one sample with a number beside its readings
+    coded = {
+        k.casefold(): coded_levels(k.casefold(), units[k], read[k], most=len(values) - 1, fewest=1)
+        for k in numbers
+        if k != column and k.casefold() not in (*texts, *_RUN, *_BOARD)
+    }
+    texts |= {name: levels for name, levels in coded.items() if levels is not None}
     walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
     if walker:
         texts = {"operator" if k == walker else k: v for k, v in texts.items()}

@@ -16,7 +16,7 @@ from ..statistics import precision
 from . import tables
 from .boundary import alpha_beta, friction_split
 from .circumstances import circumstance_table
-from .conditions import NUMBERS, person_condition
+from .conditions import MASS, NUMBERS, ORDERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
@@ -326,14 +326,24 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
             if isinstance(value, str) and key != person and key not in NUMBERS
         )
     )
+    numbers_noted = dict.fromkeys(
+        key
+        for f in with_rcof
+        for key, value in f.conditions.items()
+        if isinstance(value, float) and key not in (*keys, *ORDERS, *MASS)
+    )
     noted = columns_of(with_rcof, keys)
-    factors, _ = varying("rcof", noted)
     numbers = tuple(dict.fromkeys(["rcof", *(name for f in files for name in f.main)]))
     persons = persons_of(with_rcof, person)
+    factors, _ = varying("rcof", noted, persons)
     values, margin = [f.main["rcof"] for f in with_rcof], protocol.number("equivalence", "1", 0.0)
     findings = comparison_findings("rcof", values, noted, persons, margin=margin)
     findings += curve_findings(with_rcof, tuple(factors), person)
     table = condition_table(with_rcof, tuple(factors), numbers, person=person)
+    if table and numbers_noted:
+        listed = ", ".join(numbers_noted)
+        words = f"Measured numbers are no levels and are not compared: {listed}."
+        table = replace(table, notes=(*table.notes, words))
     made = [table] if table else []
     if len(factors) > 1:
         made += _condition_tables(with_rcof, tuple(factors), numbers, person)

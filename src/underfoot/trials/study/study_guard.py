@@ -13,9 +13,9 @@ import numpy as np
 
 from ..machines.slip_friction import UNCALIBRATED
 from ..recording.protocols import Protocol
-from ..statistics import drift, told_apart
-from .circumstances import ORDERS, gone_with, run_numbers
-from .conditions import MASS, NUMBERS, PERSON, person_condition, plain_spelling
+from ..statistics import drift, names_persons, told_apart
+from .circumstances import gone_with, run_numbers
+from .conditions import MASS, NUMBERS, ORDERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
 from .tables import Table, grouped
@@ -336,7 +336,12 @@ def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileRe
     return {
         key: having
         for key, having in _factors(files).items()
-        if key != person and 1 < len({one.conditions[key] for one in having}) < len(having)
+        if key != person
+        and 1 < len({one.conditions[key] for one in having}) < len(having)
+        and not names_persons(
+            [one.conditions[key] for one in having],
+            [one.conditions[person] for one in having if person in one.conditions],
+        )
     }
 
 

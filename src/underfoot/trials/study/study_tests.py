@@ -52,7 +52,7 @@ def comparison_findings(
     Rank tests follow where the scatter is not normal, tests of equivalence where there is a
     ``margin``, and the reliability of repeated trials.
     """
-    factors, left = varying(response, factors)
+    factors, left = varying(response, factors, persons)
     factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
     if not factors and (left or confounded):
@@ -218,7 +218,9 @@ def _tukey(
         decimals = {name: 2 if "g" in name.split() or "'" in name else places
                     for name in columns[2:] if name != "p adjusted"}  # fmt: skip
         table = Table(name, title, columns, rows, (note,), decimals)
-        findings.append(Finding(name, title, table, (), response, factor, marks, drawn))
+        findings.append(
+            Finding(name, title, table, (), response, factor, marks, drawn, by_person=bool(persons))
+        )
     return findings
 
 
@@ -266,16 +268,21 @@ def persons_of(files: Sequence[FileResult], person: str) -> tuple[str, ...]:
 
 
 def varying(
-    response: str, factors: Mapping[str, Sequence[str]]
+    response: str, factors: Mapping[str, Sequence[str]], persons: Sequence[str] = ()
 ) -> tuple[dict[str, Sequence[str]], list[Remark]]:
     """Return the factors with levels that can be compared, and why the others are not estimated.
 
     ``response``: name of the quantity. ``factors``: level of each of its values, by factor.
+    ``persons``: whose each value is; a factor that only says who it was (a date each) is told so.
     """
     compared: dict[str, Sequence[str]] = {}
     left = []
     for name, levels in factors.items():
         several = set(levels)
+        if statistics.names_persons(levels, persons):
+            what = "each person has one of their own: its effect is not estimated"
+            left.append(Remark(name, what))
+            continue
         if 1 < len(several) < len(levels):
             compared[name] = levels
             continue

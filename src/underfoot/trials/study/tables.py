@@ -52,9 +52,9 @@ class Finding:
     """One test: what was asked, the table, and cautions.
 
     Comparisons after Tukey name ``response`` and ``factor``; ``marks`` are the letters by level,
-    ``values`` the means of the persons (or the single values) by level. ``outcome``: what was
-    measured, where the p of the table are those that this outcome stands on. ``files``: text by
-    the name of a file from which other programs find the test again.
+    ``values`` the means of the persons (``by_person``, else single values) by level. ``outcome``:
+    what was measured, where the p of the table are those that this outcome stands on. ``files``:
+    text by the name of a file from which other programs find the test again.
     """
 
     name: str
@@ -67,6 +67,7 @@ class Finding:
     values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
     outcome: str = ""
+    by_person: bool = False
 
     @classmethod
     def of_anova(
