@@ -180,6 +180,8 @@ def test_p_of_several_tests_of_a_published_study():
     assert sum(each <= 0.05 for each in corrected_p(p, "fdr_bh")) == 4
     assert sum(each <= 0.05 for each in corrected_p(p)) == 3
     assert corrected_p(p)[:2] == pytest.approx([15 * 0.0001, 14 * 0.0004])
+    # Holm 1979: 4 x 0.005, 3 x 0.01, 2 x 0.03, and 0.04 no less than that
+    assert corrected_p([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
     assert corrected_p([]) == []
 
 
