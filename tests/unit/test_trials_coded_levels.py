@@ -104,3 +104,11 @@ def test_measured_numbers_that_are_not_compared_are_named():
     assert "Measured numbers are no levels and are not compared: age." in notes
     plain = study_of(files_of(crossed(6, "abc")), LEVEL).tables[0].notes
     assert not [note for note in plain if "not compared" in note]
+
+
+@pytest.mark.parametrize("blank", ["n.a.", "NA", "k.A.", "–", "keine Angabe", "."])
+def test_cells_that_say_nothing_are_empty(tmp_path, blank):
+    assert noted(tmp_path, "speed (m/s)", [1.2, blank, 1.3] * 12)[:3] == [1.2, None, 1.3]
+    (tmp_path / "conditions.csv").unlink()
+    rows = [("A", "wet", 96, value) for value in (36, blank, 38, 37, 37, 37)]
+    assert samples(tmp_path, "floor,condition,slider,PTV", rows) == {"A": 37.0}

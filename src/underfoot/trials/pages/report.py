@@ -230,7 +230,7 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     return f"{_counted(len(usable), 'usable tests')}.{tail}"
 
 
-def _counted(number: int, things: str) -> str:
+def _counted(number: object, things: str) -> str:
     """Return a number with what it counts: 1 file, 2 files."""
     return f"{number} {things if number != 1 else things[:-1]}"
 

@@ -54,7 +54,9 @@ _SCALE = re.compile(
     re.IGNORECASE,
 )
 """Scales that have no SI unit: their numbers stay as they are."""
-_EMPTY = ("", "?", "-", "--", "n/a", "#n/a", "nan", "null", "unknown", "unbekannt", "tbd", "k.a.")
+_EMPTY = ("", "?", "-", "--", "–", "—", ".", "n/a", "#n/a", "n.a.", "n. a.", "na", "nan", "null",
+          "missing", "unknown", "unbekannt", "tbd", "k.a.", "k. a.", "keine angabe",
+          "fehlt")  # fmt: skip
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
 ORDERS = (*NUMBERS, "order", "sequence", "reihenfolge")
@@ -366,10 +368,7 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     if path is None:
         return {}
     found, lines = table_columns(path)
-    cells = {
-        name.casefold(): (unit, ["" if cell.casefold() in _EMPTY else cell for cell in own])
-        for name, unit, own in found
-    }
+    cells = {name.casefold(): (unit, own) for name, unit, own in found}
     files = next((name for name in FILE if name in cells), "")
     if not files:
         raise InputError(
@@ -407,7 +406,8 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
 def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
     """Return (heading, unit, cells) of each column of a table, and the line number of each row.
 
-    Empty lines and columns without a heading are left out; the first line holds the headings. A
+    Empty lines and columns without a heading are left out; the first line holds the headings; cells
+    such as "n.a.", "-" and "k.A." are empty. A
     row with more cells than headings, and two columns of one name, are an `InputError`.
     """
     rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
@@ -424,7 +424,14 @@ def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[in
     if twice:
         raise InputError(f'two columns are called "{twice}"', where=path.name)
     columns = [
-        (name, unit, [row[i] if i < len(row) else "" for _, row in rows[1:]])
+        (
+            name,
+            unit,
+            [
+                row[i] if i < len(row) and row[i].casefold() not in _EMPTY else ""
+                for _, row in rows[1:]
+            ],
+        )
         for i, (name, unit) in enumerate(heads)
         if name
     ]
