@@ -15,6 +15,7 @@ from underfoot.slip.dynamics import (
     SoleFoot,
     array_pressures,
     cof_table,
+    design,
     full_run,
     full_runs,
     slip_motion,
@@ -110,3 +111,20 @@ def test_a_stopped_series_goes_on_where_it_was(tmp_path, wet, setting):
     assert len(list((tmp_path / "slip-test").iterdir())) == 1
     assert again.motion.walker is moved
     assert again.motion.peak_speed > 1.0
+
+
+@pytest.mark.slow
+def test_a_film_of_water_under_a_resting_foot_lets_its_steps_end():
+    """It ended unsolved after 16 instants: imbalance was measured against what moves, nothing."""
+    case = Case(
+        shoe="work_shoe_half_tread",
+        floor="quarry_tile",
+        contaminant="water",
+        motion="heel_strike_to_flat",
+    )
+    walker = design(slip_population(case), 16)[3]
+    motion = full_run(slip_setting(case), walker).motion
+    assert motion.status.usable
+    assert motion.time.size > 40
+    assert motion.distance[-1] < 2e-3  # the foot rests
+    assert motion.fluid_load.max() == pytest.approx(42.1, abs=0.5)

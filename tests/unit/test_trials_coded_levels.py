@@ -42,6 +42,7 @@ def test_numbers_that_stand_for_levels_are_levels(tmp_path, heading, cells, leve
     ("heading", "cells"),
     [
         ("age", [20 + i // 12 for i in range(36)]),
+        ("shoe size", [42 + i // 18 for i in range(36)]),
         ("order", [1, 2, 3] * 12),
         ("trial", [1, 2, 3] * 12),
         ("speed (m/s)", [1, 2, 3] * 12),

@@ -64,7 +64,8 @@ COUNTED = (*ORDERS, "reading", "swing", "test", "value", "pass", "cycle", "messu
            "wert", "versuch", "lauf", "wiederholung")  # fmt: skip
 """Columns that number the readings of a sample."""
 _MEASURED = ("age", "alter", "temperature", "temp", "temperatur", "humidity", "feuchte",
-             "luftfeuchte", "speed", "walking speed", "geschwindigkeit", "bmi", "slip", "slipped",
+             "luftfeuchte", "speed", "walking speed", "geschwindigkeit", "bmi", "size", "shoe size",
+             "eu size", "schuhgröße", "years", "experience", "jahre", "falls", "slip", "slipped",
              "fall", "fell", "outcome", "gerutscht", "sturz", "ergebnis")  # fmt: skip
 """Columns whose numbers, equal or not, were measured or seen: their values are no levels."""
 MOST_LEVELS = 6
