@@ -1,5 +1,7 @@
 """Faces of any number of corners as triangles within their outline."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -100,7 +102,7 @@ def _within(vertices: Array, rings: Ints, numbers: Ints, where: str) -> tuple[In
     area = np.abs(_shoelace(flat))
     triangles, owner = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     indices = np.broadcast_to(np.arange(rings.shape[1], dtype=float), rings.shape)
-    outlines = shapely.polygons(np.dstack([flat, indices]))
+    outlines: Any = shapely.polygons(np.dstack([flat, indices]))
     for ring, outline, points, own, number in zip(
         rings, outlines, flat, area, numbers, strict=True
     ):
