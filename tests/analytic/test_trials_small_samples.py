@@ -10,6 +10,7 @@ from scipy import stats
 from underfoot.core import DataError, InputError, MissingExtraError
 from underfoot.trials.statistics import (
     bland_altman,
+    corrected_p,
     equivalence,
     intraclass_correlation,
     letters,
@@ -269,6 +270,7 @@ def test_power_of_equivalent_shares_by_all_tables():
 @pytest.mark.parametrize(
     ("module", "ask"),
     [
+        ("statsmodels.stats.multitest", lambda: corrected_p([0.01, 0.2])),
         (
             "statsmodels.discrete.discrete_model",
             lambda: logistic_regression([0, 1, 0, 1, 1], {"x": [1.0, 2.0, 3.0, 4.0, 5.0]}),

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
+from underfoot.core.optional import optional_module
 
 ROUNDING = 1e-12
 """Differences below this share of the largest value are those of rounding: no instrument reads
@@ -61,18 +62,14 @@ def standard_deviation(values: ArrayLike) -> float | None:
     return float(x.std(ddof=1)) if len(x) > 1 and np.ptp(x) > 0 else None
 
 
-def corrected_p(p: Sequence[float], method: Literal["holm", "fdr_bh"] = "holm") -> list[float]:
-    """Return p corrected for their number: ``holm`` (1979), or ``fdr_bh`` (1995)."""
-    from scipy.stats import false_discovery_control
-
-    if method == "fdr_bh":
-        return false_discovery_control(p).tolist() if p else []
-    # that of statsmodels collects garbage first: half a second in the app
-    order, count = np.argsort(p), len(p)
-    corrected = np.empty(count)
-    rising = np.maximum.accumulate(np.asarray(p)[order] * np.arange(count, 0, -1))
-    corrected[order] = np.minimum(rising, 1.0)
-    return corrected.tolist()
+def corrected_p(p: Sequence[float], method: str = "holm") -> list[float]:
+    """Return p corrected for their number: Holm's method, or another of statsmodels."""
+    if not p:
+        return []
+    purpose = "Correcting p for the number of comparisons"
+    corrected = optional_module("statsmodels.stats.multitest", "trials", purpose)
+    corrected = corrected.multipletests(p, method=method)[1]
+    return [float(each) for each in corrected]
 
 
 def t_test(
