@@ -7,7 +7,7 @@ from underfoot import Case, run
 from underfoot.case import CaseError
 from underfoot.compute.positions import place_numbers
 from underfoot.compute.prepare import prepared
-from underfoot.compute.solve import solved_motion
+from underfoot.compute.solve import solved_motion, start_film
 from underfoot.compute.summary import headline
 from underfoot.core import SourcedValue, Status
 
@@ -125,6 +125,19 @@ def test_a_march_with_steps_beyond_the_memory_of_the_film_does_not_swing():
     _, contact = numbers(case)
     assert contact.counts.time_steps < 30
     assert np.ptp(contact.history.fluid_load[-2:]) < 3e-4 * contact.normal_force
+
+
+def test_a_step_lands_from_the_pool_and_a_deep_one_changes_nothing():
+    step = untreaded(shoe="work_shoe_half_tread", motion="heel_strike_to_flat")
+    assert start_film(step, steady=False) == pytest.approx(0.2e-3)
+    shallow = step.replace("contaminant.pool_depth", "0.15 mm")
+    assert start_film(shallow, steady=False) == pytest.approx(0.15e-3)
+    low, own, deep = (
+        numbers(step.replace(changes))[0]
+        for changes in ({"motion.start_film": "20 um"}, {}, {"contaminant.pool_depth": "2 mm"})
+    )
+    assert low["cof"] == pytest.approx(own["cof"], rel=5e-3)
+    assert deep["cof"] == pytest.approx(own["cof"], rel=0.01)
 
 
 @pytest.mark.slow
