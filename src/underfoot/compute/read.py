@@ -102,6 +102,9 @@ def readings(
         )
     else:
         labels["film_spread_basis"] = "with the roughness that lets fluid leak"
+    rocker = case.origins.get("shoe.heel.profile.radius")
+    if rocker is None or not rocker.leaf.assumed:
+        labels["film_heel_basis"] = "with lengths of the heel that nobody measured"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
