@@ -2,13 +2,12 @@
 
 ``python -m benchmarks heel_shapes``: by how much ln F / (W - F) moves, F the load on the film of W,
 where the shoe or its bevel is turned, and where lengths that nobody measured are others: each in
-three examples (two minutes), then all at once in soles drawn at random (``--soles 40``: ten).
+three examples (two minutes), then all at once in 40 soles drawn at random (ten minutes).
 """
 
 from __future__ import annotations
 
 import math
-from argparse import ArgumentParser
 
 import numpy as np
 
@@ -45,7 +44,7 @@ DEVIATIONS = {
 }
 """Standard deviations of what nobody measured, m, as ``underfoot sensitivity`` varies it."""
 LEAST = 0.2e-3  # m
-DRAWS, SEED = 2, 51
+SOLES, DRAWS, SEED = 40, 2, 51
 
 
 def film_odds(contact: SoleContact) -> float:
@@ -75,10 +74,10 @@ def mean_odds(case: Case) -> float:
     return float(log_film_odds(film, load - film))
 
 
-def joint_draws(count: int) -> None:
+def joint_draws() -> None:
     """Print what joint draws of the lengths do to the film of soles drawn at random."""
     rng, moved = np.random.default_rng(SEED), list[float]()
-    steadiness.SEED, steadiness.SOLES = SEED, count
+    steadiness.SEED, steadiness.SOLES = SEED, SOLES
     for name, case in steadiness.soles():
         own, here = mean_odds(case), list[float]()
         for _ in range(DRAWS):
@@ -100,12 +99,7 @@ def joint_draws(count: int) -> None:
 
 
 def main() -> None:
-    """Print the table of each example, or of soles drawn at random."""
-    parser = ArgumentParser()
-    parser.add_argument("--soles", type=int, default=0, help="soles drawn at random")
-    if count := parser.parse_args().soles:
-        joint_draws(count)
-        return
+    """Print the table of each example, and what joint draws do to soles drawn at random."""
     path = "shoe.heel.profile.angle"
     for name in EXAMPLES:
         case = Case.load(f"examples/{name}.toml")
@@ -119,6 +113,7 @@ def main() -> None:
                 f"{value} {march(case.replace(changed, value)) - own:+.2f}" for value in values
             ]
             print(f"  {changed}: {', '.join(moved)}")
+    joint_draws()
 
 
 if __name__ == "__main__":
