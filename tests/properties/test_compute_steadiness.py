@@ -10,6 +10,7 @@ from underfoot.compute.prepare import prepared
 from underfoot.compute.solve import solved_motion, start_film
 from underfoot.compute.summary import headline
 from underfoot.core import SourcedValue, Status
+from underfoot.studies.g6 import sole_case
 
 LONG_DRAINING = {
     "shoe.tread": {
@@ -138,6 +139,21 @@ def test_a_step_lands_from_the_pool_and_a_deep_one_changes_nothing():
     )
     assert low["cof"] == pytest.approx(own["cof"], rel=5e-3)
     assert deep["cof"] == pytest.approx(own["cof"], rel=0.01)
+
+
+def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
+    """Nothing holds it up, and one step did not find the floor from 0.2 mm: it begins lower."""
+    case = sole_case(70.0, "pair").replace("motion.duration", "0.2 s")
+
+    def landed(changes):
+        changed = case.replace(changes)
+        return solved_motion(prepared(changed, changed.numerics.grid_spacing))
+
+    high, low = landed({}), landed({"motion.start_film": "50 um"})
+    assert high.counts.rejected > 0
+    assert high.status is Status.CONVERGED
+    assert high.fluid_load == pytest.approx(low.fluid_load, abs=1e-4 * low.normal_force)
+    assert high.approach == pytest.approx(low.approach, rel=1e-3)
 
 
 @pytest.mark.slow
