@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks._drawn_walk_faults import FIRST_DRAWN_FAULTS, SECOND_DRAWN_FAULTS
 from benchmarks._instrument_walk_faults import INSTRUMENT_FAULTS
 from benchmarks._laboratory_walk_faults import LABORATORY_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
@@ -401,6 +402,8 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
     },
     "kinds of a laboratory": LABORATORY_FAULTS,
     "kinds of instruments, exports and feet": INSTRUMENT_FAULTS,
+    "first half of forty drawn kinds": FIRST_DRAWN_FAULTS,
+    "second half of forty drawn kinds": SECOND_DRAWN_FAULTS,
 }
 
 
