@@ -162,9 +162,7 @@ def _unclamped(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
 def _notched(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
     low = rng.uniform(1.5, 4.0)
     band = (low, low * rng.uniform(1.6, 2.5))
-    return np.asarray(
-        sosfiltfilt(butter(1, band, "bandstop", fs=rate, output="sos"), f, axis=0)
-    )
+    return np.asarray(sosfiltfilt(butter(1, band, "bandstop", fs=rate, output="sos"), f, axis=0))
 
 
 # ------------------------------------------------------------------ what numbers go through
@@ -257,9 +255,7 @@ def _parabola(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
 
 
 def _late_filter(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
-    return np.asarray(
-        sosfilt(bessel(2, rng.uniform(3.0, 9.0), fs=rate, output="sos"), f, axis=0)
-    )
+    return np.asarray(sosfilt(bessel(2, rng.uniform(3.0, 9.0), fs=rate, output="sos"), f, axis=0))
 
 
 # ------------------------------------------------------------------ people and things

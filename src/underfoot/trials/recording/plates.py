@@ -6,7 +6,7 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Flag, remark
+from .measurement import Choice, Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
 from .trial import REVERSED, Plate, Trial, once_a_record
 
@@ -227,7 +227,10 @@ def baseline_words(plate: Plate) -> str:
     if plate.baseline is None:
         return "not subtracted"
     size = ", ".join(f"{component:.1f}" for component in plate.baseline)
-    return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
+    return Choice(
+        "mean force of the unloaded plate subtracted",
+        text=f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)",
+    )
 
 
 def plate_normal(corners: np.ndarray | None) -> np.ndarray | None:
