@@ -51,6 +51,7 @@ PATTERNS = {
     "recording/axes.py": "axes that a user names",
     "recording/marker_names.py": "recordings",
     "recording/tester_calibration.py": "records of users",
+    "statistics/samples.py": "labels of users",
     "study/circumstances.py": "names of files of users",
     "study/conditions.py": "tables of users",
     "study/model_scripts.py": "names of columns of users",

@@ -99,7 +99,7 @@ def agreement_findings(
 
     ``groups``: readings by sample and by rater (operator, machine, laboratory).
     """
-    raters = sorted({rater for own in groups.values() for rater in own})
+    raters = statistics.ordered_levels(sorted({rater for own in groups.values() for rater in own}))
     whole = {sample: own for sample, own in groups.items() if len(own) == len(raters)}
     if len(raters) < 2 or len(whole) < 3:
         return []
@@ -355,7 +355,7 @@ def curve_findings(
                 own.setdefault(str(f.conditions[person]), []).append(ratio)
         rows: list[list[Cell]] = []
         wholes = []
-        for first, second in combinations(sorted(curves), 2):
+        for first, second in combinations(statistics.ordered_levels(sorted(curves)), 2):
             both = [who for who in curves[first] if who in curves[second]]
             if len(both) < _FEWEST:
                 continue

@@ -239,7 +239,7 @@ def slip_findings(
             findings += share_findings(judged, key, person)
         levels = {str(f.conditions.get(key)) for f in files if key in f.conditions}
         if "anova" not in wanted and len(levels) == 2:
-            findings += _t_tests(files, key, sorted(levels), person)
+            findings += _t_tests(files, key, statistics.ordered_levels(sorted(levels)), person)
     if "anova" in wanted:
         for name in ("rcof", "acof"):
             having = [f for f in files if name in f.main and all(k in f.conditions for k in keys)]

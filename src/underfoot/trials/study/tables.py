@@ -148,7 +148,23 @@ def grouped(
     for one in files:
         if all(key in one.conditions for key in keys):
             groups.setdefault(tuple(str(one.conditions[key]) for key in keys), []).append(one)
-    return groups
+    return in_order(groups)
+
+
+def in_order(
+    groups: Mapping[tuple[str, ...], list[FileResult]],
+) -> dict[tuple[str, ...], list[FileResult]]:
+    """Return groups by their levels; where no levels have an order of value, as they come."""
+    columns = [*zip(*groups, strict=True)]
+    levels = [statistics.ordered_levels(column) for column in columns]
+    if all(own == tuple(dict.fromkeys(of)) for own, of in zip(levels, columns, strict=True)):
+        return dict(groups)
+    places = [{level: i for i, level in enumerate(own)} for own in levels]
+
+    def place(key: tuple[str, ...]) -> list[int]:
+        return [known[level] for known, level in zip(places, key, strict=True)]
+
+    return {key: groups[key] for key in sorted(groups, key=place)}
 
 
 def file_table(files: Sequence[FileResult]) -> Table:
