@@ -159,12 +159,15 @@ def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
     kinds = {"protocol": str, "method": dict, "options": dict, "versions": dict, "page": str}
     try:
         settings = json.loads((bundle / SETTINGS).read_text(encoding="utf-8"))
-        lacking = [
-            name for name, kind in kinds.items() if not isinstance(settings.get(name), kind)
-        ] + [name for name in settings["options"] if name not in ("names", "merge_spelling")]
+    except (ValueError, RecursionError) as error:
+        settings, reason = None, str(error)
+    else:
+        reason = "no object with names"
+    if isinstance(settings, dict):
+        lacking = [name for name, kind in kinds.items() if not isinstance(settings.get(name), kind)]
+        options = () if "options" in lacking else settings["options"]
+        lacking += [name for name in options if name not in ("names", "merge_spelling")]
         reason = f"wrong or missing: {', '.join(lacking)}" if lacking else ""
-    except (ValueError, AttributeError, KeyError, TypeError) as error:
-        settings, reason = {}, str(error)
     if not reason:
         return settings
     others = [str(fault) for fault in faults if fault.about != SETTINGS]
