@@ -92,8 +92,8 @@ def test_three_spellings_of_a_day_are_one_sample_of_readings(tmp_path):
 
 
 def test_two_days_of_readings_are_two_samples(tmp_path):
-    rows = "".join(f"A,wet,96,{day},{ptv + i % 2}\n" for day, ptv in (("1.3.24", 24), ("2.3.24", 48))
-                   for i in range(5))  # fmt: skip
+    read = ("1.3.24", 24), ("2.3.24", 48)
+    rows = "".join(f"A,wet,96,{day},{ptv + i % 2}\n" for day, ptv in read for i in range(5))
     (tmp_path / "readings.csv").write_text("floor,condition,slider,date,PTV\n" + rows, "utf-8")
     files = analyse_folder(tmp_path, protocol("en_16165_pendulum")).files
     assert {one.conditions["date"]: one.main["ptv"] for one in files} == pytest.approx(
