@@ -99,3 +99,36 @@ def test_two_days_of_readings_are_two_samples(tmp_path):
     assert {one.conditions["date"]: one.main["ptv"] for one in files} == pytest.approx(
         {"2024-03-01": 24.4, "2024-03-02": 48.4}
     )
+
+
+def test_coded_levels_and_groups_are_tested_as_other_programs_do():
+    """Shoes 1 to 3 on floors 45 and 60: statsmodels, SciPy's Friedman; groups 1 to 3: its F."""
+    from pandas import DataFrame
+    from scipy.stats import f_oneway, friedmanchisquare
+    from statsmodels.stats.anova import AnovaRM
+
+    random = np.random.default_rng(5)
+    cells = [
+        (f"S{i:02d}", shoe, floor) for i in range(9) for shoe in "312" for floor in ("60", "45")
+    ]
+    level = dict(
+        zip(dict.fromkeys(who for who, *_ in cells), random.normal(0, 0.02, 9), strict=True)
+    )
+    y = np.array([0.2 + level[who] + 0.004 * int(shoe) for who, shoe, _ in cells])
+    y += random.normal(0, 0.008, len(y))
+    who, shoe, floor = map(list, zip(*cells, strict=True))
+    frame = DataFrame({"y": y, "who": who, "shoe": shoe, "floor": floor})
+    theirs = AnovaRM(frame, "y", "who", within=["shoe", "floor"]).fit().anova_table
+    ours = mixed_model(y, {"shoe": shoe, "floor": floor}, who).tests
+    assert [one.p for one in ours] == pytest.approx(list(theirs["Pr > F"]), rel=1e-5)
+
+    means = frame.groupby(["who", "shoe"], sort=True)["y"].mean().unstack()
+    ranked = rank_test(y, shoe, who)
+    assert ranked.statistic == pytest.approx(friedmanchisquare(*means.to_numpy().T).statistic)
+
+    group = [str(1 + int(one[1:]) % 3) for one in who]
+    frame["group"] = group
+    people = frame.groupby(["group", "who"])["y"].mean()
+    expected = f_oneway(*(people[one].to_numpy() for one in "123"))
+    between = next(one for one in mixed_model(y, {"group": group}, who).tests)
+    assert (between.f, between.p) == pytest.approx((expected.statistic, expected.pvalue), rel=1e-5)
