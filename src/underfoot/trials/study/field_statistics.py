@@ -87,7 +87,7 @@ def reliability_findings(
     )
     title = f"Reliability of {quantity_name(response)}: intraclass correlation"
     places = decimals_of(min(float(row[7]) for row in rows))
-    decimals = {name: 3 for name in columns if name.startswith(("ICC", "95", "low", "high"))}
+    decimals = dict.fromkeys(columns[1:7], 3)
     decimals |= {"SEM": places, "MDC95": places, "trials each": 1}
     return [finding(f"reliability_{response}", title, columns, rows, note, decimals=decimals)]
 

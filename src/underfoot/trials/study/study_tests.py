@@ -215,9 +215,9 @@ def _tukey(
             else "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
         places = decimals_of(min(c.standard_error for c in comparisons))
-        decimals = {name: 2 if "g" in name.split() or "'" in name else places
-                    for name in columns[2:] if name != "p adjusted"}  # fmt: skip
-        table = Table(name, title, columns, rows, (note,), decimals)
+        decimals = dict.fromkeys(columns[2:6], places) | dict.fromkeys(columns[7:], 2)
+        chances = frozenset({"p adjusted"})
+        table = Table(name, title, columns, rows, (note,), decimals, chances=chances)
         findings.append(
             Finding(name, title, table, (), response, factor, marks, drawn, by_person=bool(persons))
         )
