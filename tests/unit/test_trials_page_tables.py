@@ -28,4 +28,4 @@ def test_a_condition_called_as_a_column_of_ours_stays_what_it_is():
     assert cells["heel crossed the array"] == "0.25"
     assert cells["slip"] == "yes"
     made = finding("t", "T", ("factor", "p", "p (Holm)"), (("shoe", 1e-6, 0.02),))
-    assert page_table(made.table)["rows"] == [["shoe", "< 0.0001", "0.020"]]
+    assert page_table(made.table)["rows"] == [["shoe", "< 0.0001", "0.0200"]]
