@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks._drawn_walk_faults import FIRST_DRAWN_FAULTS, SECOND_DRAWN_FAULTS
 from benchmarks._instrument_walk_faults import INSTRUMENT_FAULTS
 from benchmarks._laboratory_walk_faults import LABORATORY_FAULTS
 from benchmarks._more_walk_faults import MORE_FAULTS, TrialFault
@@ -376,18 +377,19 @@ def faulty(trial: Trial, rng: np.random.Generator, *, fault: Fault) -> Trial:
     return finished(trial, forces, centres=centres)
 
 
-Verdicts = dict[tuple[str, int], tuple[float | None, frozenset[str], float]]
+Verdicts = dict[tuple[str, int], tuple[float | None, frozenset[str], float, float]]
 
 
 def _verdicts(trial: Trial) -> Verdicts:
-    """RCOF and names of the cautions by plate and number of the contact on it."""
+    """RCOF, names of the cautions, contact, bound of unseen gains; by plate and contact on it."""
     found = {}
     seen: dict[str, int] = defaultdict(int)
     for step in required_frictions(trial):
         own, plate = step.measurement, step.stance.plate
         seen[plate] += 1
         names = frozenset(flag.name for flag in own.caution_flags)
-        found[plate, seen[plate]] = own.value, names, step.stance.contact
+        bound = max((f.measured or 0.0 for f in own.flags if f.name == "unseen gain"), default=0.0)
+        found[plate, seen[plate]] = own.value, names, step.stance.contact, bound
     return found
 
 
@@ -401,6 +403,8 @@ _FAMILIES: dict[str, dict[str, TrialFault]] = {
     },
     "kinds of a laboratory": LABORATORY_FAULTS,
     "kinds of instruments, exports and feet": INSTRUMENT_FAULTS,
+    "first half of forty drawn kinds": FIRST_DRAWN_FAULTS,
+    "second half of forty drawn kinds": SECOND_DRAWN_FAULTS,
 }
 
 
@@ -415,7 +419,7 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
           f"{len({lab for lab, _ in cases})} laboratories; each judged by the others")  # fmt: skip
     flagged = {"recorded": [0, 0], "simulated from them": [0, 0]}
     why: dict[str, int] = defaultdict(int)
-    told = {family: {name: [0, 0, 0] for name in kinds} for family, kinds in _FAMILIES.items()}
+    told = {family: {name: [0, 0, 0, 0] for name in kinds} for family, kinds in _FAMILIES.items()}
     draws = {seed: np.random.default_rng(seed) for seed in seeds}
     for seed, (index, (laboratory, trial)) in itertools.product(seeds, enumerate(cases)):
         rng = draws[seed]
@@ -427,7 +431,7 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
                 ("simulated from them", [sound(trial, rng) for _ in range(VARIANTS)]),
             ):
                 for one in made:
-                    for value, names, _ in (plain if one is trial else _verdicts(one)).values():
+                    for value, names, *_ in (plain if one is trial else _verdicts(one)).values():
                         if value is not None:
                             flagged[kind][0] += bool(names)
                             flagged[kind][1] += 1
@@ -444,17 +448,19 @@ def main(seeds: Sequence[int] = (2031, 2033)) -> None:
         print(f"sound steps with a caution, {kind}: {bad} of {count} ({100 * bad / count:.1f} %)")
     print("  by", dict(sorted(why.items(), key=lambda item: -item[1])))
     pressure_plate_steps()
-    sums = [0, 0]
+    sums = [0, 0, 0]
     for family, kinds in told.items():
-        print(f"\n{family:<42}{'steps':>7}{'moved':>7}{'noticed':>9}")
-        for name, (count, moved, noticed) in kinds.items():
+        print(f"\n{family:<42}{'steps':>7}{'moved':>7}{'noticed':>9}{'within':>9}")
+        for name, (count, moved, noticed, within) in kinds.items():
             mark = "" if noticed == moved else "  <"
-            print(f"{name:<42}{count:>7}{moved:>7}{noticed:>9}{mark}")
-        count, moved, noticed = (sum(column) for column in zip(*kinds.values(), strict=True))
+            print(f"{name:<42}{count:>7}{moved:>7}{noticed:>9}{within:>9}{mark}")
+        count, moved, noticed, within = map(sum, zip(*kinds.values(), strict=True))
         print(f"{len(kinds)} kinds, {count} faulty steps, {moved} moved by more than {MOVED} or "
-              f"lost, {noticed} noticed ({100 * noticed / max(moved, 1):.1f} %)")  # fmt: skip
-        sums = [sums[0] + moved, sums[1] + noticed]
-    print(f"\nall: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %)")
+              f"lost, {noticed} noticed ({100 * noticed / max(moved, 1):.1f} %), {within} of the "
+              f"others within the bound of unseen gains")  # fmt: skip
+        sums = [a + b for a, b in zip(sums, (moved, noticed, within), strict=True)]
+    print(f"\nall: {sums[1]} of {sums[0]} noticed ({100 * sums[1] / max(sums[0], 1):.1f} %), "
+          f"{sums[2]} of the others within the bound")  # fmt: skip
 
 
 def pressure_plate_steps() -> None:
@@ -481,20 +487,27 @@ def pressure_plate_steps() -> None:
               f"force: {sum(of)} of {len(of)}")  # fmt: skip
 
 
-def _noticed(plain: Verdicts, after: Verdicts) -> tuple[int, int, int]:
-    """Number of steps, of those whose RCOF moved or was lost, and of those noticed among them."""
-    count = moved = noticed = 0
-    for key, (value, names, contact) in plain.items():
+def _noticed(plain: Verdicts, after: Verdicts) -> tuple[int, int, int, int]:
+    """Number of steps; of those whose RCOF moved or was lost; of those noticed among them.
+
+    And of the others that moved by no more than the bound that is printed beside RCOF.
+    """
+    count = moved = noticed = within = 0
+    for key, (value, names, contact, _) in plain.items():
         if value is None:
             continue
         near = [a for k, a in after.items() if k[0] == key[0] and abs(a[2] - contact) < 0.1]
         # With other clocks the contact has another time: the plate's contact of that number.
-        now, cautions, _ = near[0] if near else after.get(key, (None, frozenset(), 0.0))
+        lost = (None, frozenset(), 0.0, 0.0)
+        now, cautions, _, bound = near[0] if near else after.get(key, lost)
         count += 1
-        if now is None or abs(now - value) > MOVED:
+        off = math.inf if now is None else abs(now - value)
+        if off > MOVED:
             moved += 1
-            noticed += now is None or bool(cautions - names)
-    return count, moved, noticed
+            told = now is None or bool(cautions - names)
+            noticed += told
+            within += not told and off <= bound
+    return count, moved, noticed, within
 
 
 def learn() -> None:

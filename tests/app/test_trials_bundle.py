@@ -148,7 +148,8 @@ def test_what_is_damaged_in_a_bundle_is_named(bundle, name, content, told):
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        (b"", "Expecting value"), (b"[]", "no attribute"), (b"\xff", "can't decode"),
+        (b"", "Expecting value"), (b"[]", "no object"), (b"\xff", "can't decode"),
+        (b"[" * 100_000, "recursion"),
         (b"{}", "options"), (b'{"options": {"folder": 1}}', "folder"),
     ],
 )  # fmt: skip

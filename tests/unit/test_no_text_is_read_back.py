@@ -9,6 +9,7 @@ import pytest
 
 import underfoot
 from underfoot.core.remark import Remark, remarks, subjects
+from underfoot.trials.recording.measurement import Choice
 
 SOURCE = Path(underfoot.__file__).parent
 CUTS = {
@@ -40,10 +41,25 @@ FORMATS = {
     "trials/recording/marker_names.py": "recordings",
     "trials/statistics/linear.py": "terms of a model",
     "trials/study/conditions.py": "headings of users' tables",
-    "trials/study/methods.py": "names of quantities and conventions",
     "trials/study/model_scripts.py": "terms of a model",
 }
 """Rooms and files that read text of others, and whose."""
+PATTERNS = {
+    "pages/figures.py": "names of files of users",
+    "pages/report.py": "bytes of pictures and archives that other libraries wrote",
+    "readers": "recordings",
+    "recording/axes.py": "axes that a user names",
+    "recording/marker_names.py": "recordings",
+    "recording/tester_calibration.py": "records of users",
+    "statistics/samples.py": "labels of users",
+    "study/circumstances.py": "names of files of users",
+    "study/conditions.py": "tables of users",
+    "study/model_scripts.py": "names of columns of users",
+    "study/readings.py": "tables of users",
+    "study/study_guard.py": "names of persons of users",
+    "walking/gait_context.py": "recordings",
+}
+"""Where trials look for patterns in text, and in whose."""
 
 
 def _reads_text(node: ast.AST) -> bool:
@@ -95,6 +111,33 @@ def test_no_text_of_ours_is_read_back():
             lines = _found(file.read_text())
             found |= {place: lines} if lines else {}
     assert not found
+
+
+def _imported(code: str) -> set[str]:
+    statements = [one for one in ast.walk(ast.parse(code)) if isinstance(one, ast.Import)]
+    from_ = [one for one in ast.walk(ast.parse(code)) if isinstance(one, ast.ImportFrom)]
+    return {n.name for one in statements for n in one.names} | {str(one.module) for one in from_}
+
+
+def test_trials_look_for_patterns_in_text_of_others_alone():
+    rooms = SOURCE / "trials"
+    files = {file.relative_to(rooms).as_posix(): file for file in rooms.rglob("*.py")}
+    found = {place for place, file in files.items() if "re" in _imported(file.read_text())}
+    assert {p.split("/")[0] if p.startswith("readers/") else p for p in found} == PATTERNS.keys()
+
+
+def test_a_choice_keeps_its_kind_and_numbers_wherever_it_goes():
+    choice = Choice("bridged up to {:g} ms", 30.0)
+    stored = Choice.stored(["bridged up to {:g} ms", [30.0], "bridged up to 30 ms"])
+    for copy in (deepcopy(choice), pickle.loads(pickle.dumps(choice)), stored):
+        assert (copy, copy.kind, copy.numbers) == (
+            "bridged up to 30 ms",
+            "bridged up to {:g} ms",
+            (30.0,),
+        )
+    others = [Choice("bridged up to {:g} ms", number) for number in (50.0, 8.0)]
+    assert Choice.range_of([choice, *others]) == "bridged up to 8 to 50 ms"
+    assert Choice.range_of([choice, choice]) == choice
 
 
 def test_a_remark_knows_what_it_is_about_wherever_it_goes():

@@ -113,3 +113,19 @@ def test_cells_that_say_nothing_are_empty(tmp_path, blank):
     (tmp_path / "conditions.csv").unlink()
     rows = [("A", "wet", 96, value) for value in (36, blank, 38, 37, 37, 37)]
     assert samples(tmp_path, "floor,condition,slider,PTV", rows) == {"A": 37.0}
+
+
+@pytest.mark.parametrize("head", ["run 1,run 2,run 3", "Messung 1,Messung 2,Messung 3", "1,2,3"])
+def test_a_wide_table_of_a_machine_is_read_or_told_how_to_write_it(tmp_path, head):
+    rows = "A,tile,0.21,0.22,0.20\nB,tile,0.31,0.30,0.32\n"
+    (tmp_path / "readings.csv").write_text(f"shoe,floor,{head}\n{rows}", encoding="utf-8")
+    files = analyse_folder(tmp_path, protocol("machine_cof")).files
+    found = {one.conditions["shoe"]: one.main["cof"] for one in files}
+    assert found == pytest.approx({"A": 0.21, "B": 0.31})
+    # a protocol of logs says which protocol reads a table
+    (refused,) = analyse_folder(tmp_path, protocol("en_iso_13287")).files
+    assert "--protocol machine_cof" in refused.reasons[0]
+    named = "floor,shoe A,shoe B\ntile,0.21,0.31\n"
+    (tmp_path / "readings.csv").write_text(named, encoding="utf-8")
+    (refused,) = analyse_folder(tmp_path, protocol("machine_cof")).files
+    assert "Write one reading a row" in refused.reasons[0]

@@ -15,6 +15,7 @@ from underfoot.trials.study.study_guard import (
     _one_body,
     _same_in_another_order,
     _sides_as_persons,
+    guarded_files,
     study_doubts,
 )
 from underfoot.trials.study.study_tests import comparison_findings
@@ -346,3 +347,34 @@ def test_readings_that_rise_or_fall_are_said(values, told):
 def test_scatter_is_no_drift():
     rng = np.random.default_rng(3)
     assert np.mean([drift(rng.normal(0.2, 0.02, 5)) is not None for _ in range(2000)]) < 0.02
+
+
+def test_one_recording_under_many_names_is_one_doubt():
+    """Of 48 files of the same bytes each pair was a doubt of its own."""
+    names = [f"f{n:02d}.c3d" for n in range(12)]
+    numbers = {"peak": 700.123, "mean": 500.456, "rcof": 0.1987}
+    same = [[FileResult(name, "abc", facts=numbers, conditions={"shoe": str(n % 2)})]
+            for n, name in enumerate(names)]  # fmt: skip
+    files, doubts = guarded_files(same)
+    (doubt,) = doubts
+    assert doubt.files == tuple(names)
+    assert "the same bytes, noted differently" in doubt.message
+    assert {one.verdict for one in files} == {"refused"}
+    assert max(len(one.reasons[0]) for one in files) < 120
+    # numbers join what bytes don't: one group, of the weaker kind
+    joined = [*same[:2], [FileResult("x.c3d", "other", facts=numbers, conditions={"shoe": "0"})]]
+    (doubt,) = guarded_files(joined)[1]
+    assert doubt.files == ("f00.c3d", "f01.c3d", "x.c3d")
+    assert "the same numbers" in doubt.message
+
+
+def test_half_of_the_persons_in_a_shoe_is_no_crowd():
+    """Two persons with thirty conditions: the others have "0.5 with each"."""
+    cells = [(n % 2, n % 15) for n in range(24)]
+    files = [
+        FileResult(f"{n}.c3d", main={"rcof": 0.2},
+                   conditions={"subject": f"S{who}", "shoe": f"shoe {shoe}"})
+        for n, (who, shoe) in enumerate(cells)
+    ]  # fmt: skip
+    doubts = study_doubts(files, protocol("level_walking"))
+    assert not [one for one in doubts if "and none with" in str(one)]

@@ -172,10 +172,16 @@ class Choice(Presentable):
                 f"{rate}."
             ]
         else:
-            lines = [
-                f"Which of the {count} shoes is best can't be told: {first.shoe.name} is ahead "
-                f"with a chance of {probability_text(first.best)} ({rate})."
-            ]
+            chance = probability_text(first.best)
+            level = [one.shoe.name for one in self.shoes if probability_text(one.best) == chance]
+            told = f"{first.shoe.name} is ahead with a chance of {chance} ({rate})"
+            if len(level) > 1:
+                *others, last = level
+                told = (
+                    f"{', '.join(others)} and {last} are level with a chance of {chance} each "
+                    f"(with {first.shoe.name}: {rate})"
+                )
+            lines = [f"Which of the {count} shoes is best can't be told: {told}."]
         if unlikely := [each.shoe.name for each in self.shoes if each.best < UNLIKELY]:
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
@@ -618,7 +624,7 @@ def _cleaning(
     today = _sum(shares)
     for fluid in place.fluids():
         halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
-        name = f"{fluid_name(fluid)} on half the steps, wiped up sooner"
+        name = f"{fluid_name(fluid)} wiped up sooner, on half the steps"
         levers.append(_lever(name, _sum(halved), today))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:

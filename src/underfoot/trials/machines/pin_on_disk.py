@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from ..recording.measurement import Measurement, caution
+from ..recording.measurement import Choice, Measurement, caution
 from ..recording.signals import runs
 from ..recording.trial import Channel, Trial
 
@@ -150,7 +150,7 @@ def friction_point(
             flags.append(f"not steady: drifts by {steady.drift:.1f} times its scatter")
     else:
         used = np.flatnonzero(finite & (time >= window[0]) & (time < window[1]))
-        choices["window"] = f"{window[0]:g} to {window[1]:g} s, given"
+        choices["window"] = Choice("{:g} to {:g} s, given", *window)
     if len(used) < 2:
         raise DataError("no samples in the window", where=trial.name)
     values = ratio[used]

@@ -9,7 +9,7 @@ import numpy as np
 from underfoot.core import DataError, InputError, unknown_name
 
 from ..recording.axes import Axes, axes_of
-from ..recording.measurement import Measurement, caution
+from ..recording.measurement import Choice, Measurement, caution
 from ..recording.plates import baseline_words
 from ..recording.protocols import Protocol
 from ..recording.signals import LowPass, low_passed, runs
@@ -41,7 +41,7 @@ def mean_friction(
     """
     normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
     choices = {
-        "window": f"{1e3 * window:g} ms from the first sample at or above {target:g} N",
+        "window": Choice("{:g} ms from the first sample at or above {:g} N", 1e3 * window, target),
         "average": "mean of the ratios of the samples",
     }
     if normal.shape != shear.shape or not target > 0 or not window > 0:
@@ -228,7 +228,8 @@ def slide_friction(
             cof = mean_friction(
                 normal[part], shear[part], plate.rate, target=0.5 * level, window=length, name="cof"
             )
-        words = f"{1e3 * begin_after:g} to {1e3 * (begin_after + length):g} ms after sliding starts"
+        window = 1e3 * begin_after, 1e3 * (begin_after + length)
+        words = Choice("{:g} to {:g} ms after sliding starts", *window)
         said = {"window": words, "sliding start": how, "shear": SHEARS["resultant"]}
         said |= {"filter": "no filter", "baseline": baseline_words(plate)}
         cof = replace(cof, conventions={**cof.conventions, **said})

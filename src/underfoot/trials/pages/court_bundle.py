@@ -157,16 +157,19 @@ def changed_files(bundle: Path) -> list[Remark]:
 def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
     """Return the settings of a bundle; ``faults`` are those known of its other files."""
     kinds = {"protocol": str, "method": dict, "options": dict, "versions": dict, "page": str}
+    settings: Any = None
+    reason = "no object with names"
     try:
         settings = json.loads((bundle / SETTINGS).read_text(encoding="utf-8"))
-        lacking = [
-            name for name, kind in kinds.items() if not isinstance(settings.get(name), kind)
-        ] + [name for name in settings["options"] if name not in ("names", "merge_spelling")]
-        reason = f"wrong or missing: {', '.join(lacking)}" if lacking else ""
-    except (ValueError, AttributeError, KeyError, TypeError) as error:
-        settings, reason = {}, str(error)
-    if not reason:
-        return settings
+    except (ValueError, RecursionError) as error:
+        reason = str(error)
+    if isinstance(settings, dict):
+        lacking = [name for name, kind in kinds.items() if not isinstance(settings.get(name), kind)]
+        options = () if "options" in lacking else settings["options"]
+        lacking += [name for name in options if name not in ("names", "merge_spelling")]
+        if not lacking:
+            return settings
+        reason = f"wrong or missing: {', '.join(lacking)}"
     others = [str(fault) for fault in faults if fault.about != SETTINGS]
     raise InputError(
         f"is damaged ({reason}), so nothing can be made again",

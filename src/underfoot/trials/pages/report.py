@@ -12,7 +12,7 @@ import math
 import re
 import zipfile
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -285,9 +285,7 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     return {
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
-        "rows": [
-            [_shown(row[i], table.columns[i], table.decimals) for i in filled] for row in rows
-        ],
+        "rows": [[_shown(row[i], table.columns[i], table) for i in filled] for row in rows],
         "below": ["; ".join(str(row[i]) for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
@@ -297,19 +295,19 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     }
 
 
-def _shown(value: Any, column: str, decimals: Mapping[str, int]) -> str:
+def _shown(value: Any, column: str, table: Table) -> str:
     if value is None or value == "":
         return "–"
     if isinstance(value, str):
         return value
-    if column == "p" or column.startswith("p "):
+    if column in table.chances:
         return p_text(value)
     if isinstance(value, int):
         return str(value)
-    if column in ("slip", "heel crossed the array"):
+    if column in table.answers:
         return "yes" if value else "no"
-    if column in decimals:
-        return f"{value:.{decimals[column]}f}"
+    if column in table.decimals:
+        return f"{value:.{table.decimals[column]}f}"
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
     return plain_number(value)

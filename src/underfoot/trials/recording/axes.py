@@ -13,6 +13,7 @@ from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
 
 from .marker_names import HEEL, PELVIS, TOE, landmark, own_landmarks
+from .measurement import Choice
 from .plates import plate_normal
 from .signals import CONTACT_FORCE
 from .trial import Marker, Plate, Trial, Vertical, once_a_record
@@ -270,16 +271,16 @@ def walking_direction(
     path = marker_velocity(trial, float(time[0]), float(time[1]), up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        text = f"markers in this step ({speed:.2f} m/s)"
+        text = Choice("markers in this step", text=f"markers in this step ({speed:.2f} m/s)")
         return Direction(path / speed, DirectionSource.MARKERS, text)
     step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     if path is not None:
         whole = marker_velocity(trial, -np.inf, np.inf, up)
         if whole is None or not step @ whole > _ALONG * max(length, 0.05) * WALKING_SPEED:
-            return Direction(explanation=f"the markers move at {speed:.2f} m/s only")
+            return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
     if length > 0.05:
-        text = f"centre of pressure, {1e3 * length:.0f} mm heel to toe"
+        text = Choice("centre of pressure, {:.0f} mm heel to toe", 1e3 * length)
         return Direction(step / length, DirectionSource.PRESSURE, text)
     if size > 10.0:
         text = "shear force, braking before driving"

@@ -42,9 +42,9 @@ _STEMS = {
     (HEEL, True): r"ca|he|hl|heb|hb",
     (TOE, False): r"toe(?:s|tip|\.?tip)?|bigtoe|greattoe|hallux|hlx|mt[12]|mth?[12]|met[12]|"
     r"metatarsal[12]|fm[12]|fmh|smh|d[12]m|zeh(?:e|en)?|grosszehe|orteil|grosorteil|forefoot|"
-    r"mtp[12]?",
-    (PELVIS, False): r"asis?|psis?|s?ias|s?ips|sias|sips|sacr(?:um|al|o)?|v?sac|vsacr(?:al|um)?|"
-    r"midpsis|waist[lr]?(?:front|back)",
+    r"mtp[12]?|hx",
+    (PELVIS, False): r"asis?|psis?|[se]?ias|[se]?ips|sacr(?:um|al|o)?|v?sac|vsacr(?:al|um)?|"
+    r"midpsis|waist[lr]?(?:front|back)|becken(?:vorne?|hinten)?|kreuzbein",
 }  # fmt: skip
 _NO_PLACE = re.compile(r"force|moment|angle|power|grf|scale", re.IGNORECASE)
 _WORDS = {  # that say the place among others that no set has

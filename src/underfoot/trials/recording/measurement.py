@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
+from string import Formatter
 from typing import Any, Self
 
 import numpy as np
@@ -10,6 +11,57 @@ import numpy as np
 from underfoot.core import InputError, display
 from underfoot.core.deprecation import renamed
 from underfoot.core.presentation import Presentable, Table
+
+
+class Choice(str):
+    """A convention in words that knows what of it holds for other recordings too.
+
+    Parameters:
+        kind: The words with ``{:g}`` and the like in place of each number.
+        numbers: The numbers of this recording.
+        text: All that is told of this recording, where it is more than ``kind`` with its numbers.
+
+    >>> choice = Choice("bridged up to {:g} ms", 30)
+    >>> choice, choice.kind, choice.numbers
+    ('bridged up to 30 ms', 'bridged up to {:g} ms', (30,))
+    """
+
+    __slots__ = ("kind", "numbers")
+    kind: str
+    numbers: tuple[float, ...]
+
+    def __new__(cls, kind: str, *numbers: float, text: str = "") -> Self:
+        """Return the words."""
+        line = super().__new__(cls, text or kind.format(*numbers))
+        line.kind, line.numbers = kind, numbers
+        return line
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what makes an equal one, for copies, other processes and files."""
+        return self.stored, ([self.kind, self.numbers, str(self)],)
+
+    @classmethod
+    def stored(cls, parts: Sequence[Any]) -> Self:
+        """Return the choice of its kind, numbers and text."""
+        kind, numbers, text = parts
+        return cls(kind, *numbers, text=text)
+
+    @classmethod
+    def range_of(cls, choices: Sequence[str]) -> str:
+        """Return one text of choices of one kind: "3 ms" and "9 ms" give "3 to 9 ms"."""
+        first = choices[0]
+        if not isinstance(first, cls):
+            return first
+        columns = zip(*(one.numbers for one in choices if isinstance(one, cls)), strict=True)
+        text = ""
+        for literal, place, spec, _ in Formatter().parse(first.kind):
+            text += literal
+            if place is not None:
+                column = next(columns)
+                ends = dict.fromkeys(format(end, spec or "") for end in (min(column), max(column)))
+                text += " to ".join(ends)
+        return text
+
 
 MEAN_OF_STEPS = "mean of the steps"
 """The item of a table that stands for all steps of a file."""
@@ -65,8 +117,8 @@ class Measurement(Presentable):
     samples, steps or trials behind the value, ``spread`` is the standard deviation between the
     ``n`` values of a mean. ``flags`` are what a reader must see beside the number; those that
     matter make it a caution. ``conventions`` are the choices that made the number (filter, gate,
-    definition ...), in words. A value that is not finite, a negative uncertainty, or neither value
-    nor reason is a ValueError.
+    definition ...), in words (``Choice`` where recordings may differ in numbers alone). A value
+    that is not finite, a negative uncertainty, or neither value nor reason is a ValueError.
     """
 
     name: str

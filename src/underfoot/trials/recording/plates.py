@@ -6,7 +6,7 @@ import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Flag, remark
+from .measurement import Choice, Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
 from .trial import REVERSED, Plate, Trial, once_a_record
 
@@ -17,6 +17,7 @@ KINDS = {
     4: "type 4 (force and moment through a calibration matrix)",
 }
 CHANNELS = {1: 6, 2: 6, 3: 8, 4: 6}
+_PART = 1_000_000  # samples worked on at once
 _LOADED = 20.0  # N, below it a centre of pressure has no meaning
 _IMPLAUSIBLE = 10_000.0  # N, far above any step or slip test
 _STANDING = 200.0  # N, a median beyond it means the plate is loaded most of the time
@@ -158,7 +159,7 @@ def finished_plate(
     if lost.any():
         seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
     vertical = along(force, up)
-    with_load = vertical[np.isfinite(vertical)]
+    with_load = vertical[~lost] if lost.any() else vertical
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
         moment = None if moment is None else -moment
@@ -169,10 +170,11 @@ def finished_plate(
     if not subtract_baseline:
         seen.append(remark("baseline not subtracted: switched off"))
     elif enough(empty):
-        baseline, samples = force[empty].mean(axis=0, dtype=float), int(empty.sum())
+        rows = empty[:, None]
+        baseline, samples = force.mean(axis=0, dtype=float, where=rows), int(empty.sum())
         force -= baseline.astype(force.dtype)
         if moment is not None:
-            middle = moment[empty].mean(axis=0, dtype=float)
+            middle = moment.mean(axis=0, dtype=float, where=rows)
             less = middle.astype(moment.dtype)
             moment = np.subtract(moment, less, out=moment if in_place else None)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
@@ -181,8 +183,9 @@ def finished_plate(
     else:
         text = "baseline not subtracted: the plate is never unloaded for long enough"
         seen.append(Flag("baseline", text))
-    channels = np.ascontiguousarray((force if raw is None else raw).T)
-    cut = any(saturated(channel, rate) for channel in channels)
+    del with_load
+    channels = (force if raw is None else raw).T  # one after the other is held once more
+    cut = any(saturated(np.ascontiguousarray(channel), rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
     peak = float(np.nanmax(np.abs(along(force, up)), initial=0.0))
@@ -227,7 +230,10 @@ def baseline_words(plate: Plate) -> str:
     if plate.baseline is None:
         return "not subtracted"
     size = ", ".join(f"{component:.1f}" for component in plate.baseline)
-    return f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)"
+    return Choice(
+        "mean force of the unloaded plate subtracted",
+        text=f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)",
+    )
 
 
 def plate_normal(corners: np.ndarray | None) -> np.ndarray | None:
@@ -265,6 +271,9 @@ def _centre_of_pressure(
     """r = up x M / (up . F), from M = r x F + T up with r in the surface."""
     vertical = along(force, up)
     place = np.full(force.shape, np.nan, moment.dtype)
-    loaded = vertical > _LOADED
-    place[loaded] = moment[loaded] @ _crossing(up).T / vertical[loaded, None] + centre
+    crossing = _crossing(up).T
+    for part in (slice(at, at + _PART) for at in range(0, len(force), _PART)):
+        loaded = vertical[part] > _LOADED
+        over = vertical[part][loaded, None]
+        place[part][loaded] = moment[part][loaded] @ crossing / over + centre
     return place

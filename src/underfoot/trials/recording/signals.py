@@ -42,12 +42,14 @@ def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
     finite = np.isfinite(vertical)
     if finite.sum() < _MINIMUM_SAMPLES:
         return none
-    low, high = np.percentile(vertical[finite], [0.5, 99.5])
+    # A long record is held as few times as can be.
+    known = vertical if finite.all() else vertical[finite]
+    low, high = np.percentile(known, [0.5, 99.5])
     if high - low < 30.0:
-        level, width = float(np.median(vertical[finite])), 30.0
+        level, width = float(np.median(known)), 30.0
     else:
-        near = np.abs(np.where(finite, vertical, np.inf)) < 2.0 * UNLOADED_LIMIT
-        candidates = vertical[near & (vertical < low + 0.15 * (high - low))]
+        top = min(2.0 * UNLOADED_LIMIT, low + 0.15 * (high - low))
+        candidates = known[(known > -2.0 * UNLOADED_LIMIT) & (known < top)]
         if len(candidates) < _MINIMUM_SAMPLES:
             return none
         counts, edges = np.histogram(candidates, bins=max(3, int(np.ptp(candidates) / 5.0)))
@@ -60,8 +62,11 @@ def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
         return none
     # Noise passes any limit now and then; a load does so in the mean of 10 ms.
     count = max(1, round(0.01 * rate))
-    smooth = np.convolve(np.where(finite, vertical, np.inf), np.full(count, 1.0 / count), "same")
-    return _away_from_load(np.abs(smooth - level) <= width, max(1, round(_MARGIN * rate)))
+    filled = vertical if known is vertical else np.where(finite, vertical, np.inf)
+    smooth = np.convolve(filled, np.full(count, 1.0 / count), "same")
+    smooth -= level
+    rests = np.abs(smooth, out=smooth) <= width
+    return _away_from_load(rests, max(1, round(_MARGIN * rate)))
 
 
 def enough(mask: np.ndarray) -> bool:

@@ -141,16 +141,35 @@ def read_calibration(path: Path) -> TesterCalibration:
 
 
 def day_of(given: object, *, where: str) -> datetime.date:
-    """Return a date written as 2026-03-05 or 05.03.2026; anything else is an `InputError`."""
+    """Return a date as ``written_day`` reads it; anything else is an `InputError`."""
     if isinstance(given, datetime.date):
         return given.date() if isinstance(given, datetime.datetime) else given
-    text = re.sub(r"^(\d{1,2})\.(\d{1,2})\.(\d{4})$", r"\3-\2-\1", str(given).strip())
-    try:
-        year, month, day = map(int, text.split("-"))
-        return datetime.date(year, month, day)
-    except ValueError:
+    day = written_day(str(given))
+    if day is None:
         allowed = "as 2026-03-05 or 05.03.2026"
-        raise InputError(f'"{given}" is no date', where=where, allowed=allowed) from None
+        raise InputError(f'"{given}" is no date', where=where, allowed=allowed)
+    return day
+
+
+_YEAR_FIRST = re.compile(r"(?P<year>\d{4})([-/.])(?P<month>\d{1,2})\2(?P<day>\d{1,2})")
+_DAY_FIRST = re.compile(r"(?P<day>\d{1,2})\. ?(?P<month>\d{1,2})\. ?(?P<year>\d{4}|\d\d)")
+_CLOCK = re.compile(r"[ T]+\d{1,2}:\d\d(:\d\d([.,]\d+)?)?$")
+
+
+def written_day(text: str) -> datetime.date | None:
+    """Return the day of a text: 2026-03-05, 2026/3/5, 5.3.2026, 05.03.26, a time after it or not.
+
+    None where it is no day, and where month and day could be exchanged (03/05/2026).
+    """
+    plain = _CLOCK.sub("", text.strip())
+    found = _YEAR_FIRST.fullmatch(plain) or _DAY_FIRST.fullmatch(plain)
+    if found is None:
+        return None
+    year, month, day = (int(found[part]) for part in ("year", "month", "day"))
+    try:
+        return datetime.date(year + 2000 if year < 100 else year, month, day)
+    except ValueError:
+        return None
 
 
 def _known(part: Any, allowed: Collection[str], where: str) -> None:

@@ -59,6 +59,7 @@ from .samples import TTest as TTest
 from .samples import corrected_p as corrected_p
 from .samples import drift as drift
 from .samples import mean_interval as mean_interval
+from .samples import ordered_levels as ordered_levels
 from .samples import precision as precision
 from .samples import regression_line as regression_line
 from .samples import resolved as resolved

@@ -19,6 +19,8 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.optional import optional_module
 
+from .samples import ordered_levels
+
 
 @dataclass(frozen=True, slots=True)
 class Predictor:
@@ -102,7 +104,8 @@ def predictor(
 ) -> Predictor:
     """Return a factor for text (or ``kind="factor"``), a covariate for numbers.
 
-    Levels stand in the order of their first appearance, so that tables read as the data do.
+    Levels stand in the order of their first appearance, so that tables read as the data do; those
+    that differ in one number (hardness 45, 60, 75) in the order of it.
 
     ``rows``: which values count, shape (n,) of bool; all by default.
 
@@ -119,7 +122,7 @@ def predictor(
         values = [value for value, row in zip(values, rows, strict=True) if row]
     if kind == "factor":
         named = [f"{v:g}" if isinstance(v, float | np.floating) else str(v) for v in values]
-        levels = tuple(dict.fromkeys(named))
+        levels = ordered_levels(named)
         if len(levels) < 2:
             raise InputError(
                 f'the factor has one level, "{levels[0] if levels else ""}"',

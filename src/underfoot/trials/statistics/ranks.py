@@ -15,7 +15,7 @@ from underfoot.core import DataError
 
 from .linear import Pair
 from .mixed import person_means
-from .samples import ROUNDING, corrected_p, resolved
+from .samples import ROUNDING, corrected_p, ordered_levels, resolved
 
 EXACT_TABLES = 2000  # persons ** (levels - 1) up to which Friedman's p is counted (a second)
 EXACT_RANKS = 100  # persons up to which the orders of one or two groups are counted
@@ -63,7 +63,7 @@ def rank_test(
     who = person if len(person) else range(len(levels))
     means = person_means(response, {"level": levels}, who)
     of = means.factors["level"]
-    names = list(dict.fromkeys(of))
+    names = list(ordered_levels(of))
     table: dict[str, dict[str, float]] = {}
     for one, level, mean in zip(means.person, of, resolved(means.mean), strict=True):
         table.setdefault(one, {})[level] = float(mean)

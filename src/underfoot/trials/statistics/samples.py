@@ -1,6 +1,7 @@
 """Samples: t tests, straight line, repeatability and reproducibility (ISO 5725-2)."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,11 +15,29 @@ ROUNDING = 1e-12
 """Differences below this share of the largest value are those of rounding: no instrument reads
 twelve digits."""
 
+_NUMBERED = re.compile(r"(\D*?)([+-]?\d+(?:\.\d+)?)(\D*)")
+
 KINDS = {
     "welch": "Welch's t test (variances may differ)",
     "pooled": "Student's t test (pooled variance)",
     "paired": "paired t test",
 }
+
+
+def ordered_levels(labels: Iterable[str]) -> tuple[str, ...]:
+    """Return labels once each: by value where they differ in one number, else as they first come.
+
+    >>> ordered_levels(["75 Shore A", "45 Shore A", "100 Shore A"])
+    ('45 Shore A', '75 Shore A', '100 Shore A')
+    >>> ordered_levels(["wet", "dry"])
+    ('wet', 'dry')
+    """
+    once = tuple(dict.fromkeys(labels))
+    parts = [_NUMBERED.fullmatch(label) for label in once]
+    if not all(parts) or len({(part[1], part[3]) for part in parts if part}) != 1:
+        return once
+    values = {part[0]: float(part[2]) for part in parts if part}
+    return tuple(sorted(once, key=values.__getitem__))
 
 
 @dataclass(frozen=True, slots=True)

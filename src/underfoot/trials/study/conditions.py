@@ -19,6 +19,7 @@ from underfoot.core.text import decoded
 from ..readers import Profile, read_profile, trial_suffixes
 from ..readers.sheet import is_workbook, workbook_rows
 from ..readers.text import is_number, is_written_number, name_and_unit, si_unit
+from ..recording.tester_calibration import written_day
 from .file_result import FileResult
 
 NAMES = ("conditions.csv", "conditions.xlsx")
@@ -57,6 +58,7 @@ _SCALE = re.compile(
 _EMPTY = ("", "?", "-", "--", "–", "—", ".", "n/a", "#n/a", "n.a.", "n. a.", "na", "nan", "null",
           "missing", "unknown", "unbekannt", "tbd", "k.a.", "k. a.", "keine angabe",
           "fehlt")  # fmt: skip
+_DAYS = re.compile(r"(^|[\W_])(date|day|tag)([\W_]|$)|datum$", re.IGNORECASE)
 # Names of conditions that number trials: never factors of a test.
 NUMBERS = ("n", "no", "nr", "trial", "number", "rep", "repeat", "repetition", "run", "take")
 ORDERS = (*NUMBERS, "order", "sequence", "reihenfolge")
@@ -408,8 +410,9 @@ def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[in
     """Return (heading, unit, cells) of each column of a table, and the line number of each row.
 
     Empty lines and columns without a heading are left out; the first line holds the headings; cells
-    such as "n.a.", "-" and "k.A." are empty. A
-    row with more cells than headings, and two columns of one name, are an `InputError`.
+    such as "n.a.", "-" and "k.A." are empty. Days in a column that says so ("date", "Datum") are
+    written one way (2026-03-05). A row with more cells than headings, and two columns of one name,
+    are an `InputError`.
     """
     rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
     heads = [name_and_unit(cell) for cell in rows[0][1]] if rows else []
@@ -429,7 +432,7 @@ def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[in
             name,
             unit,
             [
-                row[i] if i < len(row) and row[i].casefold() not in _EMPTY else ""
+                _cell(row[i], days=bool(_DAYS.search(name))) if i < len(row) else ""
                 for _, row in rows[1:]
             ],
         )
@@ -437,6 +440,14 @@ def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[in
         if name
     ]
     return columns, [line for line, _ in rows[1:]]
+
+
+def _cell(text: str, *, days: bool) -> str:
+    """Return a cell as the rest of a table is read: nothing where it says nothing, a day as one."""
+    if text.casefold() in _EMPTY:
+        return ""
+    day = written_day(text) if days else None
+    return text if day is None else day.isoformat()
 
 
 def numbers_of_columns(

@@ -87,7 +87,7 @@ def reliability_findings(
     )
     title = f"Reliability of {quantity_name(response)}: intraclass correlation"
     places = decimals_of(min(float(row[7]) for row in rows))
-    decimals = {name: 3 for name in columns if name.startswith(("ICC", "95", "low", "high"))}
+    decimals = dict.fromkeys(columns[1:7], 3)
     decimals |= {"SEM": places, "MDC95": places, "trials each": 1}
     return [finding(f"reliability_{response}", title, columns, rows, note, decimals=decimals)]
 
@@ -99,7 +99,7 @@ def agreement_findings(
 
     ``groups``: readings by sample and by rater (operator, machine, laboratory).
     """
-    raters = sorted({rater for own in groups.values() for rater in own})
+    raters = statistics.ordered_levels(sorted({rater for own in groups.values() for rater in own}))
     whole = {sample: own for sample, own in groups.items() if len(own) == len(raters)}
     if len(raters) < 2 or len(whole) < 3:
         return []
@@ -355,7 +355,7 @@ def curve_findings(
                 own.setdefault(str(f.conditions[person]), []).append(ratio)
         rows: list[list[Cell]] = []
         wholes = []
-        for first, second in combinations(sorted(curves), 2):
+        for first, second in combinations(statistics.ordered_levels(sorted(curves)), 2):
             both = [who for who in curves[first] if who in curves[second]]
             if len(both) < _FEWEST:
                 continue

@@ -2,7 +2,7 @@
 
 import math
 from array import array
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Self
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from underfoot.core.remark import remarks, subjects
 
-from ..recording.measurement import UNNAMED, Measurement
+from ..recording.measurement import UNNAMED, Choice, Measurement
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FAILED, TesterCalibration
 from ..recording.trial import Trial
@@ -54,7 +54,8 @@ class FileResult:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data; curves are arrays of numbers, NaN where there is a gap."""
-        return {one.name: getattr(self, one.name) for one in fields(self)}
+        data = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {**data, "measurements": [_with_choices(m, _parts) for m in self.measurements]}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -62,7 +63,9 @@ class FileResult:
         plain: dict[str, Any] = {
             key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
         }
-        return cls(**{**plain, "curves": _packed(plain.get("curves", {}))})
+        numbers = tuple(_with_choices(m, _whole) for m in plain.get("measurements", ()))
+        curves = _packed(plain.get("curves", {}))
+        return cls(**{**plain, "measurements": numbers, "curves": curves})
 
 
 class Draft:
@@ -133,6 +136,26 @@ def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
     """Note what the calibration record says of the day a file was made; a failed check refuses."""
     for flag in () if record is None else record.flags(draft.conditions.get("date")):
         (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)
+
+
+def _with_choices(
+    measurement: Mapping[str, Any], change: Callable[[Any], Any]
+) -> Mapping[str, Any]:
+    """Return a stored number with each of its conventions changed."""
+    conventions = measurement.get("conventions", {})
+    return {**measurement, "conventions": {key: change(one) for key, one in conventions.items()}}
+
+
+def _parts(convention: str) -> str | list[Any]:
+    """Return what a file holds of a convention."""
+    if not isinstance(convention, Choice):
+        return convention
+    return [convention.kind, list(convention.numbers), str(convention)]
+
+
+def _whole(stored: Any) -> str:
+    """Return the convention that a file holds in parts."""
+    return Choice.stored(stored) if isinstance(stored, list) else stored
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:

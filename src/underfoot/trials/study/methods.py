@@ -1,10 +1,9 @@
 """The methods paragraphs, written from what was done to each file and plate."""
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ..recording.measurement import MEAN_OF_STEPS
+from ..recording.measurement import MEAN_OF_STEPS, Choice
 from ..recording.protocols import KINDS, Protocol
 from ..recording.signals import CONTACT_FORCE
 from .file_result import CAUTION, REFUSED, FileResult
@@ -124,32 +123,31 @@ _TOLD = {
     "peak force": "Forces of the relaxation test",
     "final force": "Force at the end of the hold",
 }
-_SENTENCES = {
+_TOLD_BY = {"pressure duration": "peak pressure", "peak force": "final force"}
+_SENTENCES: dict[str, tuple[str, ...]] = {
     "rcof": (
         "Required friction (RCOF) was taken as the {peak} of shear ({shear}) over normal force in "
         "the {searched}, {direction}, with the {gate}; forces were low-passed with: {filter}; "
-        "baseline: {baseline}."
+        "baseline: {baseline}.",
     ),
     "peak slipping speed": (
         "Heel speed ({speed}) came from the heel marker, low-passed with: {marker filter}; gaps "
         "were {gaps}. The slip starts at the {slip start}; the peak slipping speed is the largest "
         "speed until the second local minimum, until the foot leaves the plate or until the heel "
-        "lifts, and counts as a {threshold}."
+        "lifts, and counts as a {threshold}.",
     ),
     "peak pressure": (
         "Fluid pressures count above {threshold} (baseline: {baseline}; {run}); pressure duration "
-        "is the time {duration}."
+        "is the time {duration}.",
     ),
-    "final force": "The force at the end of the hold is the {final force}; {zero}.",
+    "final force": ("The force at the end of the hold is the {final force}; {zero}.",),
     "cof": (
         "COF is the {average} from {window} (sliding start: {sliding start}); shear: {shear}; "
-        "{filter}; baseline: {baseline}; calibration: {calibration}."
-    ),
-    "cof from force": (
+        "{filter}; baseline: {baseline}; calibration: {calibration}.",
         "COF is the {average} in a window of {window}; shear: {shear}; {filter}; baseline: "
-        "{baseline}; calibration: {calibration}."
+        "{baseline}; calibration: {calibration}.",
+        "COF is {cof}, the {average} ({window}).",
     ),
-    "cof of a disk": "COF is {cof}, the {average} ({window}).",
 }
 _DONE = {
     "stribeck": (
@@ -168,7 +166,6 @@ _DONE = {
         "errors were added in squares."
     ),
 }
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # What differs from file to file without being a choice: it stands with each number.
 _PRIVATE = ("search ends", "sign", "uncertainty")
 
@@ -183,9 +180,7 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
                 numbers.setdefault(m["name"], []).append((one.file, m["conventions"]))
     sentences: list[str] = []
     for name, made in numbers.items():
-        if (name == "pressure duration" and "peak pressure" in numbers) or (
-            name == "peak force" and "final force" in numbers
-        ):
+        if _TOLD_BY.get(name) in numbers:
             continue
         keys = list(dict.fromkeys(k for _, c in made for k in c if k not in _PRIVATE))
         choices = {key: _choices(key, made) for key in keys}
@@ -193,60 +188,38 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
         if not sentence:
             listed = "; ".join(f"{key}: {value}" for key, value in choices.items())
             sentence = f"{_TOLD[name]}: {listed}."
-        elif "walking direction" in choices:
-            sentence += f" Walking direction: {choices['walking direction']}."
+        elif way := choices.get("walking direction"):
+            sentence += f" Walking direction: {way}."
         if sentence not in sentences:
             sentences.append(sentence)
     return sentences
 
 
 def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
-    """Return the value that all numbers share, or every value with its files."""
-    places: dict[str, list[str]] = {}
+    """Return what all numbers share, with the range of each number, or every way with its files."""
+    alike: dict[str, list[tuple[str, str]]] = {}  # place and choice, by kind
     for place, conventions in made:
-        places.setdefault(_general(key, conventions.get(key, "not recorded")), []).append(place)
-    # Values that differ in their numbers alone are one choice, with the range of each number.
-    alike: dict[str, list[str]] = {}
-    for value in places:
-        alike.setdefault(_NUMBER.sub("…", value), []).append(value)
-    if len(alike) == 1:
-        return _with_ranges(next(iter(alike.values())))
-    places = {
-        _with_ranges(values): [place for value in values for place in places[value]]
-        for values in alike.values()
+        choice = conventions.get(key, "not recorded")
+        kind = choice.kind if isinstance(choice, Choice) else choice
+        alike.setdefault(kind, []).append((place, choice))
+    ranges = {
+        kind: Choice.range_of([choice for _, choice in members]) for kind, members in alike.items()
     }
+    if len(alike) == 1:
+        return next(iter(ranges.values()))
     parts = []
-    for value, where in sorted(places.items(), key=lambda item: -len(item[1])):
-        files = sorted(set(where))
+    for kind, members in sorted(alike.items(), key=lambda item: -len(item[1])):
+        files = sorted({place for place, _ in members})
         named = ": " + ", ".join(files) if len(files) <= 3 else f" in {len(files)} files"
-        parts.append(f"{value} ({len(where)} of {len(made)}{named})")
+        parts.append(f"{ranges[kind]} ({len(members)} of {len(made)}{named})")
     return "; ".join(parts)
-
-
-def _with_ranges(values: Sequence[str]) -> str:
-    """Return one text of several that differ in numbers: "3 ms" and "9 ms" give "3 to 9 ms"."""
-    columns = list(zip(*(_NUMBER.findall(value) for value in values), strict=True))
-    ends = [(min(column, key=float), max(column, key=float)) for column in columns]
-    ranges = [low if low == high else f"{low} to {high}" for low, high in ends]
-    pieces = _NUMBER.split(values[0])
-    return "".join(a + b for a, b in zip(pieces, [*ranges, ""], strict=True))
-
-
-def _general(key: str, value: str) -> str:
-    """Leave the numbers of a single file out of a convention."""
-    if key == "baseline" and "unloaded samples" in value:
-        return "mean force of the unloaded plate subtracted"
-    if key in ("baseline", "walking direction"):
-        return re.sub(r"\s*\([^)]*\)", "", value)
-    return value
 
 
 def _sentence(name: str, choices: Mapping[str, str]) -> str:
     """Return a sentence for a paper, or nothing when a convention it needs was not recorded."""
-    for key, sentence in _SENTENCES.items():
-        if key == name or key.startswith(f"{name} "):
-            try:
-                return sentence.format_map(choices)
-            except KeyError:
-                continue
+    for sentence in _SENTENCES.get(name, ()):
+        try:
+            return sentence.format_map(choices)
+        except KeyError:
+            continue
     return ""

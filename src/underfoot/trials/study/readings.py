@@ -182,16 +182,22 @@ def reading_results(
 def _one_a_row(
     columns: list[tuple[str, str, list[str]]], lines: list[int], quantity: str
 ) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
-    """Return a record sheet ("Swing 1", "Swing 2" ... beside each other) with a reading a row."""
+    """Return a record sheet ("Swing 1", "Swing 2" ... beside each other) with a reading a row.
+
+    They are COF where the protocol names no ``quantity`` (COF as a machine gives it).
+    """
     wide = [one for one in columns if _NTH.fullmatch(one[0])]
     beside = [one for one in columns if not _NTH.fullmatch(one[0])]
-    named = any(head.casefold() in QUANTITIES[quantity] for head, _, _ in beside) if quantity else 1
+    names = [name for one in ([quantity] if quantity else QUANTITIES) for name in QUANTITIES[one]]
+    named = any(head.casefold() in names for head, _, _ in beside)
     if len(wide) < _FEWEST_BESIDE or named:
         return columns, lines
     every = len(wide)
     readings = [cell for row in zip(*(cells for _, _, cells in wide), strict=True) for cell in row]
     repeated = [(head, unit, [c for c in cells for _ in wide]) for head, unit, cells in beside]
-    return [*repeated, (quantity, wide[0][1], readings)], [n for n in lines for _ in range(every)]
+    return [*repeated, (quantity or "cof", wide[0][1], readings)], [
+        n for n in lines for _ in range(every)
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -415,5 +421,6 @@ def _value_column(
         f"no column of readings was recognised among {', '.join(names) or 'none'}",
         where=where,
         allowed=", ".join(heads),
-        remedy=remedy,
+        remedy=f"Write one reading a row, with what it is of in columns of words, or several "
+        f'beside each other as "run 1", "run 2", "run 3". {remedy}',
     )

@@ -12,7 +12,7 @@ from ..machines.pressure_map import PressureScan, pressure_map
 from ..machines.stribeck_fit import METHODS as FIT_METHODS
 from ..machines.stribeck_fit import master_curve, stribeck_fit
 from ..recording.protocols import Protocol
-from ..statistics import precision
+from ..statistics import ordered_levels, precision
 from . import tables
 from .boundary import alpha_beta, friction_split
 from .circumstances import circumstance_table
@@ -209,7 +209,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
 def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, str]]]) -> Table:
     """Return how far apart the fluids are on each sole, of means over floors and repeats."""
     rows = []
-    for sole in dict.fromkeys(own[key] for _, own in readings):
+    for sole in ordered_levels(own[key] for _, own in readings):
         by_fluid: dict[str, list[float]] = {}
         for force, own in readings:
             if own[key] == sole:
@@ -361,7 +361,7 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
     rows = tuple(
         (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
          sum(map(tables.counted_steps, own)))
-        for key, own in sorted(groups.items())
+        for key, own in tables.in_order(dict(sorted(groups.items()))).items()
     )  # fmt: skip
     columns = (person, *factors, "RCOF", "trials", "steps")
     note = "Mean of the trials' means; these are the values that the tests compare."

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import gamma
@@ -30,6 +30,7 @@ _LEAST, _SCATTERS = 0.02, 6.0
 _LARGEST = {FORCE: 0.10, HEIGHT: 0.04, "": 0.05}
 """A body is another's from six times the scatter within the study's persons, but at least 2 %, and
 from these shares on whatever the scatter (relative; "" distances of markers); assumed."""
+_NAMED = 6  # files that a reason names
 _STEP = ("contact", "peak_force")  # what tells one step from all others
 _TIMES, _ALIKE, _CORRELATED, _NOISE = 0.004, 0.004, 0.6, 120
 """Two steps are one: stance time (s), forces over their peak (rms; steps of one person differ by
@@ -76,26 +77,24 @@ def guarded_files(
     under two names the first counts, where all that is noted agrees.
     Where it does not, nobody knows whose they are, and none counts.
     """
-    copies: dict[object, list[int]] = defaultdict(list)
+    bytes_of: dict[object, list[int]] = defaultdict(list)
+    numbers_of: dict[object, list[int]] = defaultdict(list)
     for i, results in enumerate(recordings):
         if results and results[0].checksum:
-            copies[results[0].checksum].append(i)
+            bytes_of[results[0].checksum].append(i)
         values = [v for one in results for v in one.facts.values()]
         values += [m["value"] for one in results for m in one.measurements]
         values += [step[key] for one in results for step in one.steps for key in _STEP]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
-            copies[numbers].append(i)
-    copies |= {frozenset(pair): sorted(pair) for pair in _with_same_steps(recordings)}
+            numbers_of[numbers].append(i)
+    equal = [*bytes_of.values(), *numbers_of.values()]
     doubts: list[Doubt] = []
     refused: dict[int, tuple[str, str]] = {}
-    told: set[tuple[int, ...]] = set()
-    for key, members in copies.items():
-        if len(members) < 2 or tuple(members) in told:
-            continue
-        told.add(tuple(members))
-        what = "the same numbers" if isinstance(key, tuple) else "the same steps"
-        what = "the same bytes" if isinstance(key, str) else what
+    for members in _joined([*equal, *_with_same_steps(recordings)], len(recordings)):
+        alike = ("bytes", bytes_of), ("numbers", numbers_of)
+        shared = next((name for name, kind in alike if members in kind.values()), "steps")
+        what = f"the same {shared}"
         names = tuple(recordings[i][0].file for i in members)
         noted = [_noted(recordings[i][0]) for i in members]
         same = all(one == noted[0] for one in noted)
@@ -103,14 +102,12 @@ def guarded_files(
         if not same:
             words = f"{what}, noted differently: nobody knows whose they are, none counts"
         doubts.append(Doubt(words, names[1:] if same else names, True))
+        listed = ", ".join(names[:_NAMED]) + (" ..." if len(names) > _NAMED else "")
         refused |= dict.fromkeys(
             members[1:] if same else members,
             (f"{what} as {names[0]}", f"{what} as another file")
             if same
-            else (
-                f"{what} under {', '.join(names)}, noted differently",
-                f"{what}, noted differently",
-            ),
+            else (f"{what} under {listed}, noted differently", f"{what}, noted differently"),
         )
     files = [
         replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
@@ -120,6 +117,18 @@ def guarded_files(
         for one in results
     ]
     return sorted(files, key=lambda one: one.file), doubts
+
+
+def _joined(groups: Iterable[Sequence[int]], count: int) -> list[list[int]]:
+    """Return the sets of several of ``count`` recordings that hang together by ``groups``."""
+    label = list(range(count))
+    for first, *others in (group for group in groups if len(group) > 1):
+        joined = {label[other] for other in others}
+        label = [label[first] if one in joined else one for one in label]
+    found: dict[int, list[int]] = defaultdict(list)
+    for i, one in enumerate(label):
+        found[one].append(i)
+    return [members for members in found.values() if len(members) > 1]
 
 
 def _with_same_steps(recordings: Sequence[Sequence[FileResult]]) -> set[tuple[int, int]]:
@@ -245,8 +254,8 @@ def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]
         if key == person or 2 * sum(len(one) > 1 for one in counts.values()) <= len(counts):
             continue  # a condition between persons
         for who, one in counts.items():
-            lacks = [level for level, n in usual.items() if n and not one[level]]
-            crowd = [level for level, n in one.items() if usual[level] and n >= 2 * usual[level]]
+            lacks = [level for level, n in usual.items() if n >= 1 and not one[level]]
+            crowd = [level for level, n in one.items() if n >= 2 * max(usual[level], 1.0)]
             if lacks and crowd:
                 words = (
                     f'{who} has {one[crowd[0]]} trials with {key} "{crowd[0]}" and none with '

@@ -215,9 +215,10 @@ def _tukey(
             else "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
         places = decimals_of(min(c.standard_error for c in comparisons))
-        decimals = {name: 2 if "g" in name.split() or "'" in name else places
-                    for name in columns[2:] if name != "p adjusted"}  # fmt: skip
-        table = Table(name, title, columns, rows, (note,), decimals)
+        decimals: dict[str, int] = dict.fromkeys(columns[2:6], places)
+        decimals |= dict.fromkeys(columns[7:], 2)
+        chances = frozenset({"p adjusted"})
+        table = Table(name, title, columns, rows, (note,), decimals, chances=chances)
         findings.append(
             Finding(name, title, table, (), response, factor, marks, drawn, by_person=bool(persons))
         )
@@ -239,7 +240,7 @@ def slip_findings(
             findings += share_findings(judged, key, person)
         levels = {str(f.conditions.get(key)) for f in files if key in f.conditions}
         if "anova" not in wanted and len(levels) == 2:
-            findings += _t_tests(files, key, sorted(levels), person)
+            findings += _t_tests(files, key, [*statistics.ordered_levels(sorted(levels))], person)
     if "anova" in wanted:
         for name in ("rcof", "acof"):
             having = [f for f in files if name in f.main and all(k in f.conditions for k in keys)]

@@ -22,7 +22,8 @@ class Table:
     """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending.
 
     ``decimals`` are those a reader should see, by column, after the uncertainty; files keep all.
-    ``spreads`` names the columns of mean, SD and both ends of the interval of each quantity.
+    ``spreads`` names the columns of mean, SD and both ends of the interval of each quantity,
+    ``chances`` those of p, ``answers`` those of 1 for yes and 0 for no.
     """
 
     name: str
@@ -32,6 +33,8 @@ class Table:
     notes: tuple[str, ...] = ()
     decimals: Mapping[str, int] = field(default_factory=dict)
     spreads: tuple[tuple[str, ...], ...] = ()
+    chances: frozenset[str] = frozenset()
+    answers: frozenset[str] = frozenset()
 
     def filled(self, always: Collection[str] = ()) -> list[int]:
         """Return the numbers of the columns with content, and of those named in ``always``."""
@@ -78,7 +81,7 @@ class Finding:
         plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
         name = f"anova_{plain}_type_{anova.ss_type}"
         columns = ("term", "sum of squares", "df", "F", "p")
-        table = Table(name, anova.title, columns, rows)
+        table = Table(name, anova.title, columns, rows, chances=frozenset({"p"}))
         return cls(name, anova.title, table, (*cautions, *anova.warnings), outcome=outcome)
 
 
@@ -92,8 +95,10 @@ def finding(
     *,
     decimals: Mapping[str, int] | None = None,
 ) -> Finding:
-    """Return a finding from the rows of its table."""
-    table = Table(name, title, columns, tuple(rows), (note,) if note else (), decimals or {})
+    """Return a finding from the rows of its table; p stands first in headings of p."""
+    chances = frozenset(column for column in columns if column.split(" ")[0] == "p")
+    notes = (note,) if note else ()
+    table = Table(name, title, columns, tuple(rows), notes, decimals or {}, chances=chances)
     return Finding(name, title, table, tuple(cautions))
 
 
@@ -116,6 +121,7 @@ _UNITS = {
     **{f"{time}-time stiffness": "N/mm" for time in ("short", "long")},
     **{f"{time}-time {of}modulus": "MPa" for time in ("short", "long") for of in ("", "Young's ")},
 }  # fmt: skip
+_ANSWERS = frozenset({"slip", "crossed_array"})
 _FACTORS = {"mm": 1e3, "kPa": 1e-3, "N/mm": 1e-3, "MPa": 1e-6}
 
 
@@ -148,7 +154,23 @@ def grouped(
     for one in files:
         if all(key in one.conditions for key in keys):
             groups.setdefault(tuple(str(one.conditions[key]) for key in keys), []).append(one)
-    return groups
+    return in_order(groups)
+
+
+def in_order(
+    groups: Mapping[tuple[str, ...], list[FileResult]],
+) -> dict[tuple[str, ...], list[FileResult]]:
+    """Return groups by their levels; where no levels have an order of value, as they come."""
+    columns = [*zip(*groups, strict=True)]
+    levels = [statistics.ordered_levels(column) for column in columns]
+    if all(own == tuple(dict.fromkeys(of)) for own, of in zip(levels, columns, strict=True)):
+        return dict(groups)
+    places = [{level: i for i, level in enumerate(own)} for own in levels]
+
+    def place(key: tuple[str, ...]) -> list[int]:
+        return [known[level] for known, level in zip(places, key, strict=True)]
+
+    return {key: groups[key] for key in sorted(groups, key=place)}
 
 
 def file_table(files: Sequence[FileResult]) -> Table:
@@ -168,7 +190,8 @@ def file_table(files: Sequence[FileResult]) -> Table:
         for one in files
     )
     columns = ("file", "verdict", *map(heading, numbers), *noted, "reasons")
-    return Table("files", "Every file with its verdict", columns, rows)
+    answers = frozenset(map(heading, _ANSWERS.intersection(numbers)))
+    return Table("files", "Every file with its verdict", columns, rows, answers=answers)
 
 
 def measurement_table(files: Sequence[FileResult]) -> Table:

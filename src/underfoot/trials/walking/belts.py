@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.core.deprecation import renamed
 
 from ..recording.axes import Direction, DirectionSource, marker_velocity, pressure_path, shear_swing
+from ..recording.measurement import Choice
 from ..recording.plates import plate_contacts
 from ..recording.trial import Marker, Plate, Trial
 
@@ -48,7 +49,8 @@ class Belt:
     def direction(self, time: float) -> Direction:
         """Return the way of somebody who walks against the belt."""
         speed = self.speed(time)
-        words = f"against the treadmill belt ({speed:.2f} m/s, {self.source})"
+        way = "against the treadmill belt"
+        words = Choice(way, text=f"{way} ({speed:.2f} m/s, {self.source})")
         return Direction(-self.velocity(time) / speed, DirectionSource.TREADMILL, words)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from ..recording.measurement import Flag, Measurement, caution
+from ..recording.measurement import Choice, Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
 from ..recording.trial import Marker, Trial, once_a_record
 from .events import Stance
@@ -390,7 +390,8 @@ def slip(
             text += f": a false alarm of the rule looks like this ({FALSE_ALARMS})"
         flags += (Flag("speed against distance", text, True, peak, definition.threshold, "m/s"),)
     start, start_uncertainty, shift = _slip_start(motion, begin, definition.filter.cutoff)
-    choices["slip start"] += f", less {1e3 * shift:.1f} ms that the filter shifts it"
+    less = choices["slip start"] + ", less {:.1f} ms that the filter shifts it"
+    choices["slip start"] = Choice(less, 1e3 * shift)
     choices["uncertainty"] = (
         "marker noise through the filter; for the start, the filter's shift too"
     )
