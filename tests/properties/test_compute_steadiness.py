@@ -7,9 +7,10 @@ from underfoot import Case, run
 from underfoot.case import CaseError
 from underfoot.compute.positions import place_numbers
 from underfoot.compute.prepare import prepared
-from underfoot.compute.solve import solved_motion
+from underfoot.compute.solve import solved_motion, start_film
 from underfoot.compute.summary import headline
 from underfoot.core import SourcedValue, Status
+from underfoot.studies.g6 import sole_case
 
 LONG_DRAINING = {
     "shoe.tread": {
@@ -125,6 +126,34 @@ def test_a_march_with_steps_beyond_the_memory_of_the_film_does_not_swing():
     _, contact = numbers(case)
     assert contact.counts.time_steps < 30
     assert np.ptp(contact.history.fluid_load[-2:]) < 3e-4 * contact.normal_force
+
+
+def test_a_step_lands_from_the_pool_and_a_deep_one_changes_nothing():
+    step = untreaded(shoe="work_shoe_half_tread", motion="heel_strike_to_flat")
+    assert start_film(step, steady=False) == pytest.approx(0.2e-3)
+    shallow = step.replace("contaminant.pool_depth", "0.15 mm")
+    assert start_film(shallow, steady=False) == pytest.approx(0.15e-3)
+    low, own, deep = (
+        numbers(step.replace(changes))[0]
+        for changes in ({"motion.start_film": "20 um"}, {}, {"contaminant.pool_depth": "2 mm"})
+    )
+    assert low["cof"] == pytest.approx(own["cof"], rel=5e-3)
+    assert deep["cof"] == pytest.approx(own["cof"], rel=0.01)
+
+
+def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
+    """Nothing holds it up, and one step did not find the floor from 0.2 mm: it begins lower."""
+    case = sole_case(70.0, "pair").replace("motion.duration", "0.2 s")
+
+    def landed(changes):
+        changed = case.replace(changes)
+        return solved_motion(prepared(changed, changed.numerics.grid_spacing))
+
+    high, low = landed({}), landed({"motion.start_film": "50 um"})
+    assert high.counts.rejected > 0
+    assert high.status is Status.CONVERGED
+    assert high.fluid_load == pytest.approx(low.fluid_load, abs=1e-4 * low.normal_force)
+    assert high.approach == pytest.approx(low.approach, rel=1e-3)
 
 
 @pytest.mark.slow

@@ -19,8 +19,6 @@ def assumptions(case: Case) -> list[Remark]:
             continue
         if path.startswith(_NOT_PHYSICAL) or path in case.idle_paths or path == "friction.pair":
             continue
-        if path == "motion.start_film" and case.motion.end_time is None:  # forgotten
-            continue
         if leaf.verified and not leaf.assumed:
             continue
         section, _, key = path.rpartition(".")

@@ -49,8 +49,9 @@ class Motion(Option):
     shoe_angle: ShoeAngle = Field(description="toe up positive")
     force_rise_time: Time = default(0.03, "30 ms", _TESTER)
     duration: Time | None = optional("when the result is taken; default: when sliding is steady")
-    start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] = default(
-        50e-6, "50 um", "lowest point above the floor when loading starts", assumed=True
+    start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] | None = optional(
+        "lowest point above the floor when loading starts; default: the pool's depth, from whose "
+        "surface on the floor feels the shoe"
     )
 
     @property

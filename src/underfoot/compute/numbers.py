@@ -60,7 +60,8 @@ ROUGH, SMALL = ("hysteresis", "full_contact", "gap", "flow"), 0.005
 """What the rough contact adds to the spread: told however small; others from this share on."""
 FILM_ERROR = math.log(1.59)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
-heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole."""
+heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole. It holds the
+lengths of a heel that nobody measured: theirs were none either (benchmarks heel_shapes)."""
 SUCTION_SPREAD = 29e3
 """Pa: standard deviation of a suction anywhere between 0 and 100 kPa."""
 ZERO = 0.005 / math.sqrt(3)

@@ -21,7 +21,7 @@ from .position_draws import TreadPositions
 from .prepare import Prepared
 from .sensors import blind_sensor
 from .sole import overload_breaches
-from .solve import Solution
+from .solve import Solution, start_film
 from .steadiness import later_numbers, steady_slide, with_steadiness
 from .summary import FILM_MATTERS
 
@@ -102,6 +102,9 @@ def readings(
         )
     else:
         labels["film_spread_basis"] = "with the roughness that lets fluid leak"
+    rocker = case.origins.get("shoe.heel.profile.radius")
+    if rocker is None or not rocker.leaf.assumed:
+        labels["film_heel_basis"] = "with lengths of the heel that nobody measured"
     labels |= _remarks(parts, solution, remarks)
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
@@ -157,9 +160,8 @@ def _last_instant(case: Case) -> str:
         at = f"at the end of the motion ({display(end, 's')}, shoe angle {angle})"
     if history is not None and abs(history.speed[-1]) < SLOWEST:
         at += f", where the shoe is at rest: that of sliding off at {display(SLOWEST, 'm/s')}"
-    film = case.sourced("motion.start_film")
-    if case.contaminant is not None and film.assumed:
-        at += f", from {display(film.value or 0.0, 'm')} above the floor at touch-down, assumed"
+    if case.contaminant is not None:
+        at += f", from {display(start_film(case, steady=False), 'm')} above the floor at touch-down"
     return at
 
 

@@ -23,7 +23,7 @@ from underfoot.sole_contact.sole_state import SolverSettings
 
 from .numbers import required_friction
 from .prepare import prepared
-from .solve import pool_depth
+from .solve import pool_depth, start_film
 
 
 def slip_setting(case: Case, *, quick: bool = True) -> Setting:
@@ -41,7 +41,7 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
         viscosity=parts.viscosity,
         settings=SolverSettings(
             pool_depth=pool_depth(case),
-            start_film=case.motion.start_film,
+            start_film=start_film(case, steady=False),
             rise_time=case.motion.force_rise_time,
             tolerance=case.numerics.tolerance,
             film=None if isinstance(parts.film, NewtonianFilm) else parts.film,

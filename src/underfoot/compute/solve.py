@@ -38,6 +38,12 @@ from .sole import sole_map
 
 LEAST_FILM = 1e-3
 """Share of the load from which it is computed how unknown a film is."""
+LANDING = 0.2e-3
+"""Height from which a sole lands in a deeper pool, m. The time to squeeze a film goes with 1 / h^2:
+what lies above takes a hundredth of what a film of 20 um takes."""
+HISTORY_FINER = 2
+"""How many times the steps of a held load a history takes: a shoe that rolls leaves its film. Twice
+as many again move COF of a step by 0.8 % in an untreaded shoe, by 0.7 % in a treaded one."""
 MOST_STEPS = 20
 """Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 
@@ -233,15 +239,29 @@ def pool_depth(case: Case) -> float:
     return 0.6e-3 if case.contaminant is None else case.contaminant.pool_depth
 
 
+def start_film(case: Case, *, steady: bool) -> float:
+    """Return the height of the sole's lowest point above the floor when its load begins, m.
+
+    The surface of the pool where none is given, since there the fluid begins to bear, but at most
+    ``LANDING``. Sliding that goes on until it is ``steady`` forgets it, and begins lower.
+    """
+    if case.motion.start_film is not None:
+        return case.motion.start_film
+    landing = min(pool_depth(case), LANDING)
+    return SolverSettings().start_film if steady else landing
+
+
 def solver_settings(
     case: Case, film: FilmModel | None = None, *, finer: float = 1
 ) -> SolverSettings:
     """Return how the contact of the case is solved, with ``finer`` times the steps in time."""
     motion = case.motion
+    if motion.build() is not None:
+        finer *= HISTORY_FINER
     return SolverSettings(
         time_resolution=SolverSettings().time_resolution * finer,
         pool_depth=pool_depth(case),
-        start_film=motion.start_film,
+        start_film=start_film(case, steady=motion.end_time is None),
         rise_time=motion.force_rise_time,
         end_time=motion.end_time,
         tolerance=case.numerics.tolerance,

@@ -256,9 +256,11 @@ def cautions(
     if others := [name for name in subjects(breaches) if name != slip_model]:
         reasons.append(beyond_tests(others))
     sections = subjects(assumptions)
-    left_out = {"shoe.heel": "lengths of the heel" if "heel_bevel" in labels else "heel shape"}
+    left_out = {}
     if "film_spread_basis" not in labels:
-        left_out = {"interface": "interface roughness", **left_out}
+        left_out["interface"] = "interface roughness"
+    if "film_heel_basis" not in labels:
+        left_out["shoe.heel.profile"] = "heel shape"
     inputs = " and ".join(text for name, text in left_out.items() if name in sections)
     mind = inputs or "film_inlet" in labels
     filmed = bool(mind) and friction_limit(scalars).kind in ("film", "shear")

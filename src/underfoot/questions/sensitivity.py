@@ -80,7 +80,7 @@ OPEN_INPUTS = (
         low=1.0,
     ),
     OpenInput(
-        "motion.start_film", 2.0, "film under the sole when loading starts", ratio=True, low=1e-5
+        "contaminant.pool_depth", 2.0, "of the fluid that the sole lands in", ratio=True, low=1e-5
     ),
     OpenInput(
         "contaminant.viscosity",
@@ -308,7 +308,7 @@ def open_inputs(case: Case, inputs: Sequence[OpenInput] = OPEN_INPUTS) -> list[O
     for each in inputs:
         if each.path in case.idle_paths or case.value(each.path) is None:
             continue
-        if each.path == "motion.start_film" and case.motion.end_time is None:
+        if each.path == "contaminant.pool_depth" and case.motion.end_time is None:
             continue  # steady sliding has forgotten it
         if each.only_assumed and not case.sourced(each.path).assumed:
             continue

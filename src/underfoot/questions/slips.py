@@ -94,13 +94,7 @@ class SlipPopulation(Presentable):
                 "One walker has no spread, so no interval.",
             )
         share, low, high = study.slipped()
-        floor = " The case has no fluid: no film."
-        if self.wet:
-            start = quantity_text(study.setting.settings.start_film, "m")
-            floor = (
-                f" The film that a heel traps at touch-down hangs on its assumed height of {start} "
-                "when loading begins, which is not drawn."
-            )
+        floor = "" if self.wet else " The case has no fluid: no film."
         spread = "walkers" if study.by_friction is None else "walkers and friction"
         middle = "" if study.by_friction is None else ", at the middle of the friction"
         return (

@@ -95,7 +95,7 @@ class March:
         # of cells that neither pool nor floor reaches
         self._whole = problem.compliance.within(np.arange(start.gap.size), np.float32)
         self._pool_depth = pool_depth
-        self._shortest = first_step * SHORTEST
+        self._first, self._shortest = first_step, first_step * SHORTEST
         self._cells: Cells | None = None
         self._settling: tuple[State, State] | None = None  # before the last two steps
         self._lugs = inlet
@@ -107,6 +107,13 @@ class March:
         self.problem = replace(self.problem, clearance=clearance)
         self.state = replace(state, gap=state.gap + change)
         self.film = _film_mask(self.problem, self.state.gap, self._pool_depth, None)
+
+    def lower(self, way: float) -> None:
+        """Bring a sole that nothing holds yet closer to the floor by ``way`` (m), at once."""
+        state = self.state
+        self.state = replace(state, gap=state.gap - way, approach=state.approach + way)
+        self.film = _film_mask(self.problem, self.state.gap, self._pool_depth, None)
+        self.step = self._first
 
     def advance(
         self, most: float, demand_after: Callable[[float], Demand], tick: Callable[[float], None]

@@ -31,6 +31,7 @@ PASSED = (
     10.0,
     1e-3,
 )  # times the tolerance, at most the second: a force balance that is crossed, not reached
+LOWEST = 20e-6  # m: no lower does a sole begin whose first step did not find the floor
 LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still weighs
 LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
@@ -145,6 +146,7 @@ class SlidingSole:
         )
         problem = replace(problem, mirror=mirror_across(problem))
         lift = settings.start_film if viscosity is not None else touch
+        self._lift = 0.0 if viscosity is None else lift
         blank = np.zeros_like(clearance)
         self._march = March(
             problem,
@@ -373,6 +375,11 @@ class SlidingSole:
                 ),
             )
             if taken == 0.0:
+                if self.counts.time_steps == 0 and self._lift > LOWEST:
+                    # a thin fluid holds nothing up, and one step does not find the floor from there
+                    self._lift *= 0.5
+                    march.lower(self._lift)
+                    continue
                 return False
             self._time = end if end - start - taken < 1e-12 * end else start + taken
             self._load, self._speed, self._angle = ramp(self._time)

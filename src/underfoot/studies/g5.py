@@ -45,6 +45,8 @@ HELD_VISCOSITIES = (1.89e-3, 5e-3, 10e-3, 20e-3, 50e-3, 100e-3, 219e-3)
 HELD_SPEEDS = (0.05, 0.2, 0.5, 1.0, 2.0)
 HELD_FOR = 1.0
 """s: how long the heel of Fig. 35 stands under its load."""
+HELD_FROM = 50e-6
+"""m above the floor: all load at once from higher up would trap what a landing presses out."""
 COLOUR = {"untreaded": OURS, "treaded": "#2e7d4f"}
 
 
@@ -108,7 +110,7 @@ def compute(options: Options) -> Computed:
         quantities(levels, draws) | _wedge_squeeze_quantities(films),
         (*tables(fine, levels, draws), friction),
         figures(fine, passages, films),
-        (*conclusions(fine, passages), words),
+        (*conclusions(fine, passages), words, settled(films)),
         assumptions=(
             f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
             "measured).",
@@ -483,7 +485,9 @@ def held_film(setting: Setting, viscosity: float, speed: float) -> HeldFilm:
     Raises:
         ConvergenceError: The sole could not be solved.
     """
-    foot = SoleFoot(replace(setting, viscosity=viscosity, key=""), setting.shoe_angle)
+    begin = replace(setting.settings, start_film=HELD_FROM)
+    here = replace(setting, viscosity=viscosity, settings=begin, key="")
+    foot = SoleFoot(here, setting.shoe_angle)
     shares = []
     for step in HELD_STEPS:
         held = {"normal_force": 500.0, "speed": speed, "shoe_angle": setting.shoe_angle}
@@ -511,7 +515,7 @@ def held_films(options: Options) -> list[HeldFilm]:
     plan += [(v, s) for v in CURVES for s in HELD_SPEEDS if s != 0.5]
     items = [(options.quick, viscosity, speed) for viscosity, speed in plan]
     setting_key = slip_setting(slip_case("untreaded", quick=options.quick)).key
-    keys = [content_hash(setting_key, *item, HELD_STEPS) for item in items]
+    keys = [content_hash(setting_key, *item, HELD_STEPS, HELD_FROM) for item in items]
     found = []
     for number, (item, arrays) in enumerate(
         cached_arrays("g5_held-1", held_item, items, keys, processes=options.processes)
@@ -562,6 +566,15 @@ def _wedge_squeeze_figure(films: Sequence[HeldFilm], passages: Mapping[str, Arra
         columns=2,
         size=(5.2, 3.2),
     )
+
+
+def settled(films: Sequence[HeldFilm]) -> str:
+    """Return in words what speed leaves of the film once the fluid trapped at landing is out."""
+    middle = {one.speed: one for one in films if one.viscosity == CURVES[1]}
+    shares = ", ".join(
+        f"{middle[speed].at(HELD_FOR):.2g} % at {speed:g} m/s" for speed in HELD_SPEEDS
+    )
+    return f"Fig. 35, {1e3 * CURVES[1]:g} mPa s: after {HELD_FOR:g} s the film carries {shares}."
 
 
 def _wedge_squeeze_quantities(films: Sequence[HeldFilm]) -> dict[str, Quantity]:
