@@ -11,7 +11,7 @@ from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
 from underfoot.core.remark import assumed
 
-from .._kernels.components import MOST_FACES, components
+from .._kernels.components import MOST_FACES, closed_bodies
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
 from ..tread_measures import (
@@ -354,7 +354,7 @@ def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str
     own = 0
     known_sides = sound.turned_edges <= _MOST_APART * count
     if known_sides and crossed > _MOST_APART * met and count <= MOST_FACES:
-        own, *_ = lines(components(triangles)[0])
+        own, *_ = lines(closed_bodies(triangles))
     one_sided = odd_lines > met / 2  # as a scan without its upper side
     for many, what, cause in (
         (own, "the surface crosses itself", "corners of its faces are mixed up"),
