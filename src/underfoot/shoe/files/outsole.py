@@ -28,7 +28,7 @@ from . import orientation
 from .bodies import Found, found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
-from .edges import section_lines
+from .edges import lug_lines, rim_lines
 from .mesh import Mesh
 from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
@@ -212,8 +212,8 @@ def _outsole(
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
         draft=draft,
-        edges=section_lines(*faces, tread.level) if lugs.size and quiet else none,
-        sides=section_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
+        edges=lug_lines(*faces, tread.level) if lugs.size and quiet else none,
+        sides=rim_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
     )
 
 
