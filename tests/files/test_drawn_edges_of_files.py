@@ -1,5 +1,6 @@
 """The lugs of a file are drawn where its faces end, whichever way it lies and is cut."""
 
+import itertools
 from dataclasses import replace
 from math import radians
 
@@ -12,7 +13,7 @@ from underfoot.shoe import Flat, Heel, SoleSurface, Tread, floor_lines, surface_
 from underfoot.shoe.drawn_surface import drawn_surface, rounded_rims
 from underfoot.shoe.files import FileSettings, outsole_from_file
 from underfoot.shoe.parametric import write_sole
-from underfoot.shoe.tread_measures import tread_map
+from underfoot.shoe.tread_measures import tread_map, tread_measures
 
 HEEL = Heel(
     length=0.07, width=0.062, rear_radius=0.03, outsole_thickness=0.012, profile=Flat(),
@@ -118,6 +119,24 @@ def test_a_floor_beside_the_rim_and_a_groove_along_it_are_no_rims():
     assert rims[-3:, :60].all()
     assert not rims[:-3].any()
     assert not rims[:, 101:109].any()
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.07, 0.1, 0.16, 0.22])
+@pytest.mark.parametrize("width", [0.6, 0.8, 1.1])
+def test_sipes_are_as_wide_as_their_walls_wherever_the_cells_lie(tmp_path, width, phase):
+    """Each lies alike on cells of 0.25 mm, three or four of which they cut for 0.8 mm."""
+    edges = np.concatenate([[0.0], np.arange(phase + 3, 72, 6), [72.0]])
+    boxes = [((0, 0, 3), (72, 60, 9))]
+    for before, after in itertools.pairwise(edges):
+        begin = before + width * (before > 0)
+        boxes.append(((begin, 0, 0), (after, 60, 3)))
+    bodies = [trimesh.creation.box(bounds=each) for each in boxes]
+    trimesh.util.concatenate(bodies).export(tmp_path / "sipes.stl")
+    outsole = outsole_from_file(tmp_path / "sipes.stl", FileSettings(down="-z", forward="+x"))
+    measures = tread_measures(outsole.surface, outsole.edges)
+    assert measures.channel_width == pytest.approx([1e-3 * width] * 3, abs=0.02e-3)
+    assert measures.sipe_count == len(edges) - 2
+    assert measures.land_ratio == pytest.approx(1 - width * (len(edges) - 2) / 72, abs=0.002)
 
 
 def test_a_scan_and_a_plain_sole_have_no_lines(tmp_path):

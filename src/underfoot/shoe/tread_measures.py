@@ -344,16 +344,24 @@ class TreadMeasures:
     free_circle: float
 
 
-def tread_measures(surface: SoleSurface) -> TreadMeasures:
-    """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula."""
+def tread_measures(surface: SoleSurface, walls: Array | None = None) -> TreadMeasures:
+    """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula.
+
+    Where lugs end is known within half a cell; of ``walls`` (n, 2, 2; m), lines at which they do,
+    land share, widths and lengths of slits are those of the lines.
+    """
     inside, land, spacing = surface.inside, surface.land, surface.spacing
     channel = inside & ~land
     depth = width = drained = None
-    sipe_count, sipe_length = 0, 0.0
+    sipe_count, sipe_length, land_ratio = 0, 0.0, surface.land_ratio
     if channel.any():
         deep = channel_depth(surface)
         open_ground = channel & ~lower_lugs(deep, channel, spacing)
         widths = channel_width(open_ground, spacing)
+        if walls is not None and len(walls):
+            area, length = _beyond_walls(surface, walls)
+            widths = _width_of_walls(widths, open_ground, area, length, spacing)
+            land_ratio += float(area.sum()) / surface.plan_area
         counted = open_ground & (widths <= WIDEST_CHANNEL)
         counted = counted if counted.any() else open_ground
         floor = floor_depth(deep, channel, spacing)
@@ -377,7 +385,7 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         length=surface.length,
         width=surface.width,
         plan_area=surface.plan_area,
-        land_ratio=surface.land_ratio,
+        land_ratio=land_ratio,
         channel_depth=depth,
         channel_width=width,
         drained_share=drained,
@@ -391,6 +399,57 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
+
+
+def _beyond_walls(surface: SoleSurface, walls: Array) -> tuple[Array, Array]:
+    """Return the area (m^2) by which cells of channels lie beyond walls, and the walls' length (m).
+
+    Of each cell (nx, ny) in which a piece of a wall lies; less than 0 where they end before it.
+    """
+    from scipy.ndimage import map_coordinates
+
+    long = np.hypot(*(walls[:, 1] - walls[:, 0]).T)
+    count = np.maximum(np.ceil(long / surface.spacing), 1).astype(int)
+    number = np.repeat(np.arange(len(walls)), count)
+    part = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    share = ((part + 0.5) / count[number])[:, None]
+    places = walls[number, 0] * (1 - share) + walls[number, 1] * share
+    long = long[number] / count[number]
+    channel = surface.inside & ~surface.land
+    into = distance_within(channel) - distance_within(~channel)
+    into = np.where(channel, into - 0.5, into + 0.5) * surface.spacing
+    cells = [(place - at[0]) / surface.spacing for place, at in
+             zip(places.T, (surface.x, surface.y), strict=True)]  # fmt: skip
+    i, j = (np.rint(cell).astype(int) for cell in cells)
+    near = (i >= 0) & (j >= 0) & (i < channel.shape[0]) & (j < channel.shape[1])
+    off = map_coordinates(into, cells, order=1, mode="nearest")
+    near[near] &= surface.inside[i[near], j[near]] & (np.abs(off[near]) < surface.spacing)
+    area, length = np.zeros(channel.shape), np.zeros(channel.shape)
+    np.add.at(area, (i[near], j[near]), (off * long)[near])
+    np.add.at(length, (i[near], j[near]), long[near])
+    return area, length
+
+
+def _width_of_walls(
+    widths: Array, channel: Mask, area: Array, length: Array, spacing: float
+) -> Array:
+    """Return the widths (m) of a channel's cells less what they lie beyond the walls around them.
+
+    ``area`` and ``length`` as ``_beyond_walls``; the mean within a channel's width and a cell.
+    """
+    from scipy.ndimage import uniform_filter
+
+    exact, reach, done = widths.copy(), 2, ~channel
+    while not done.all():
+        here = ~done & (widths <= reach * spacing)
+        if here.any():
+            window = 2 * reach + 3
+            off, long = (uniform_filter(each, window, mode="constant") for each in (area, length))
+            known = here & (long > 1e-3 * spacing / window**2)
+            exact[known] -= 2 * off[known] / long[known]
+        done |= here
+        reach *= 2
+    return np.where(channel, np.maximum(exact, spacing / 4), 0.0)
 
 
 def _sipes(channel: Mask, inside: Mask, widths: Array, spacing: float) -> tuple[int, float]:
