@@ -1,5 +1,6 @@
 """Where the lugs and the sides of a file end in plan, from its own faces."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,7 @@ from ..geometry import SoleSurface
 
 _PART = 400_000  # faces looked at together
 _BESIDE = 0.75  # cells beside a line, where the sole is looked at
-_UPRIGHT = 0.02  # sine of an upright face's tilt
-_NODED = 1e-7  # m: where lines cross
+_HEIGHTS = (0.3, 0.5, 0.7, 1.0)  # of the height at which the sides of a body are cut
 _SAME = 1e-8  # m: ends of lines nearer than this are one
 _CARRIED_ON = 2e-3  # m by which a line that stops short of the rim runs on
 
@@ -29,15 +29,12 @@ def lug_lines(
     import shapely
     from shapely.ops import substring
 
-    lines = section_lines(triangles, axes, begin, surface, height)
+    (lines,) = section_lines(triangles, axes, begin, surface, [height])
     channel = surface.inside & ~drawn_surface(surface).land
     one, other, known = _beside(lines, surface, channel)
     lines = lines[known & (one | other)]
-    ends = np.round(lines / _SAME) * _SAME
-    strings: Any = shapely.linestrings(ends)
-    merged: Any = shapely.line_merge(shapely.multilinestrings(strings))
     ways: list[Array] = []
-    for line in shapely.get_parts(merged):
+    for line in shapely.get_parts(_merged(lines)):
         way = shapely.get_coordinates(line)
         if not line.is_closed and line.length > 4 * surface.spacing:
             # the last of it may be a piece of the turn along the rim
@@ -57,60 +54,74 @@ def lug_lines(
 def rim_lines(
     triangles: NDArray[np.float32], axes: Array, begin: Array, surface: SoleSurface, height: float
 ) -> Array:
-    """Return the lines of a section and of upright faces at which the plan form ends.
+    """Return the lines at which the plan form ends: around sections at ``_HEIGHTS`` of a height.
 
-    A section alone is that of chords where the body's sides are fewer faces than its bottom's rim.
-    Else as ``section_lines``.
+    One section alone is that of chords where the sides of a body are fewer faces than its bottom's
+    rim. Else as ``section_lines``.
     """
     import shapely
 
-    lines = [section_lines(triangles, axes, begin, surface, height)]
-    for first in range(0, len(triangles), _PART):
-        corners = triangles[first : first + _PART].astype(np.float64) @ axes.T
-        along = np.roll(corners, -1, axis=1) - corners
-        normal = np.cross(along[:, 0], along[:, 1])
-        upright = np.abs(normal[:, 2]) < _UPRIGHT * np.linalg.norm(normal, axis=1)
-        here = corners[upright] - begin
-        lines.append(np.stack([here, np.roll(here, -1, axis=1)], axis=2)[..., :2].reshape(-1, 2, 2))
-    every = np.concatenate(lines)
-    one, other, known = _beside(every, surface, surface.inside)
-    strings = shapely.linestrings(every[known & ~(one & other)])
-    noded: Any = shapely.union_all(strings, grid_size=_NODED)
-    plan: Any = shapely.union_all(shapely.get_parts(shapely.polygonize(shapely.get_parts(noded))))
-    ends, ring = shapely.get_coordinates(
-        shapely.get_rings(shapely.get_parts(plan)), return_index=True
-    )
+    levels = [height * share for share in _HEIGHTS]
+    sections = section_lines(triangles, axes, begin, surface, levels)
+    rings: list[Any] = []
+    for lines in sections:
+        for ring in shapely.get_parts(_merged(lines)):
+            if ring.is_closed and len(ring.coords) > 3:
+                rings.append(shapely.make_valid(shapely.polygons(ring.coords)))
+    plan: Any = shapely.union_all(rings)
+    around = shapely.get_coordinates(shapely.get_rings(shapely.get_parts(plan)), return_index=True)
+    ends, ring = around
     ahead = np.flatnonzero(ring[1:] == ring[:-1])
-    lines = np.stack([ends[ahead], ends[ahead + 1]], axis=1)
+    rim = np.stack([ends[ahead], ends[ahead + 1]], axis=1)
+    # holes through the sole lie within
+    inner = sections[-1]
+    within = shapely.contains_xy(plan.buffer(-surface.spacing), *inner.mean(axis=1).T)
+    lines = np.concatenate([rim, inner[within]])
     one, other, known = _beside(lines, surface, surface.inside)
     return lines[known & ~(one & other)]
 
 
 def section_lines(
-    triangles: NDArray[np.float32], axes: Array, begin: Array, surface: SoleSurface, height: float
-) -> Array:
-    """Return the lines (n, 2, 2; m) along which faces pass a ``height`` (m) above the land.
+    triangles: NDArray[np.float32],
+    axes: Array,
+    begin: Array,
+    surface: SoleSurface,
+    heights: Sequence[float],
+) -> list[Array]:
+    """Return the lines (n, 2, 2; m) along which faces pass each of ``heights`` (m) above the land.
 
     Parameters:
         triangles: Of the sole, in the file's unit.
         axes: Rows along x, y, z of the surface, m per unit.
         begin: (3,) m, where the origin of the surface lies along them.
         surface: The bottom of the sole, whose ``land_base`` the land is.
+        heights: m.
     """
-    land, lines = surface.land_base, [np.empty((0, 2, 2))]
+    land = surface.land_base
     land = land[nearest_true(np.isfinite(land))]
+    lines = [[np.empty((0, 2, 2))] for _ in heights]
     for first in range(0, len(triangles), _PART):
         corners = triangles[first : first + _PART].astype(np.float64) @ axes.T - begin
         corners = corners[np.isfinite(corners).all(axis=(1, 2))]
-        above = corners[..., 2] - land[_cells(surface, corners)] - height
-        passing = (above.min(axis=1) < 0) & (above.max(axis=1) >= 0)
-        here, low = corners[passing], above[passing]
-        ahead, high = np.roll(here, -1, axis=1), np.roll(low, -1, axis=1)
-        crossed = (low < 0) != (high < 0)  # two sides of a triangle
-        share = low / np.where(crossed, low - high, 1.0)
-        points = here + share[..., None] * (ahead - here)
-        lines.append(points[crossed][:, :2].reshape(-1, 2, 2))
-    return np.concatenate(lines)
+        above = corners[..., 2] - land[_cells(surface, corners)]
+        lowest, highest = above.min(axis=1), above.max(axis=1)
+        for height, found_lines in zip(heights, lines, strict=True):
+            passing = (lowest < height) & (highest >= height)
+            here, low = corners[passing], above[passing] - height
+            ahead, high = np.roll(here, -1, axis=1), np.roll(low, -1, axis=1)
+            crossed = (low < 0) != (high < 0)  # two sides of a triangle
+            share = low / np.where(crossed, low - high, 1.0)
+            points = here + share[..., None] * (ahead - here)
+            found_lines.append(points[crossed][:, :2].reshape(-1, 2, 2))
+    return [np.concatenate(each) for each in lines]
+
+
+def _merged(lines: Array) -> Any:
+    """Return lines (n, 2, 2; m) joined where their ends meet."""
+    import shapely
+
+    strings: Any = shapely.linestrings(np.round(lines / _SAME) * _SAME)
+    return shapely.line_merge(shapely.multilinestrings(strings))
 
 
 def _beside(lines: Array, surface: SoleSurface, mask: Mask) -> tuple[Mask, Mask, Mask]:
