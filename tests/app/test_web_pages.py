@@ -392,7 +392,7 @@ def test_kill_of_the_server_loses_nothing_that_finished(app, tmp_path):
         page.goto(app.base)
         page.get_by_role("button", name="Open a worked example").first.click()
         page.wait_for_url("**/design?variant=*")
-        page.get_by_role("button", name="Compute friction").click()
+        page.get_by_role("button", name="Compute friction").dblclick()
         page.wait_for_selector(".task >> text=Stop")
         page.wait_for_timeout(1500)
         app.kill()
@@ -403,6 +403,15 @@ def test_kill_of_the_server_loses_nothing_that_finished(app, tmp_path):
         assert [r.name for r in results] == ["Work shoe"]
         assert (results[0] / "result.json").read_text() == first
         assert len(list((app.folder / "variants").glob("*.toml"))) == 2
+        other = next(
+            each for each in again.folder.glob("variants/*.toml") if each.stem != "Work shoe"
+        )
+        page.goto(f"{again.base}answer?variant={other.stem}")
+        page.get_by_text("Friction: interrupted when the app ended; start it again").wait_for()
+        page.goto(f"{again.base}answer?variant=Work shoe")
+        page.wait_for_selector(".big")
+        assert page.get_by_text("Friction: interrupted").count() == 0
+        page.get_by_text("What would help: interrupted when the app ended").wait_for()
 
 
 def test_keyboard_names_and_small_windows(app, tmp_path):

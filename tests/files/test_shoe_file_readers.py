@@ -180,6 +180,29 @@ def test_crossing_bodies_are_tolerated_and_said(heel, plain_heel):
     assert "crosses itself" not in said(plain_heel)
 
 
+@pytest.mark.parametrize("shared", ["a corner", "an edge", "a face"])
+def test_overlapping_bodies_may_share_corners_edges_and_faces(shared):
+    """A plate and bars sunk into it, each a closed body: no surface crosses itself."""
+    first = {"a corner": (60, 12), "an edge": (70, 12), "a face": (70, 8)}[shared]
+    boxes = [((0, 0, 4), (76, 70, 12)), ((0, 0, 0), (6, first[0], first[1]))]
+    boxes += [((x, 0, 0), (x + 6, 70, 9)) for x in range(10, 80, 10)]
+    if shared == "a face":
+        boxes.append(((0, 0, 8), (6, 70, 12)))
+    bodies = [trimesh.creation.box(bounds=each).triangles for each in boxes]
+    outsole = read(np.concatenate(bodies))
+    assert "bodies overlap, on" in said(outsole)
+    land = sum((b[0] - a[0]) * (b[1] - a[1]) for a, b in boxes if a[2] == 0) / (76 * 70)
+    assert outsole.surface.land_ratio == pytest.approx(land, abs=0.005)
+
+
+def test_a_mesh_whose_corners_are_mixed_up_is_refused():
+    corners, faces = heel_body()
+    part = faces[: len(faces) // 3]
+    part[:] = np.minimum(part + 300, len(corners) - 1)
+    with pytest.raises(DataError, match="the surface crosses itself on 1"):
+        read(1e3 * corners[faces])
+
+
 def test_copies_slivers_and_broken_corners_are_counted(heel):
     broken = heel[:2].copy()
     broken[0, 0] = np.nan

@@ -10,7 +10,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
-from .jobs import Task
+from .jobs import INTERRUPTED, Task
 from .session import Session
 from .text import as_json
 from .uploads import MOST_BYTES
@@ -171,6 +171,13 @@ def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[Non
 
     timer = ui.timer(0.1, look)
     return line
+
+
+def interruption(session: Session, task: Task | None) -> None:
+    """Say it where the end of the server has interrupted a task."""
+    if task is not None and task.state == INTERRUPTED:
+        message = f"{task.title}: {session.text('jobs.interrupted')}"
+        ui.label(message).classes("caution").props('role="status"')
 
 
 def refilled(fill: Callable[[Callable[..., Awaitable[None]]], None]) -> None:

@@ -19,7 +19,7 @@ from underfoot.case import Case
 from underfoot.compute.numbers import slip_probability
 from underfoot.compute.result import Result
 from underfoot.compute.run import run as result_of
-from underfoot.compute.sole import bottom_surface, sole_shape
+from underfoot.compute.sole import bottom_surface, file_outsole, sole_shape
 from underfoot.compute.summary import friction_limit
 from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields
@@ -98,7 +98,9 @@ def sole(path: str, changes: Mapping[str, Any], *, progress: Progress) -> dict[s
     """Return the sole of a case as a part of a page (``html``), and its measures."""
     case = case_of(path, changes)
     fields = sole_fields(case)
-    measures = tread_measures(bottom_surface(case))
+    new_file = case.shoe.outsole is not None and case.shoe.wear.depth == 0
+    walls = file_outsole(case).edges if new_file else None
+    measures = tread_measures(bottom_surface(case), walls)
     land = measures.land_ratio
     if case.shoe.outsole is None:  # the coarse grid is off by points, and another than a command's
         land = heel_surface(sole_shape(case), spacing=LAND_SPACING).land_ratio

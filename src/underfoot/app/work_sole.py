@@ -52,7 +52,8 @@ def inspected_sole(
     progress("finding the sole in it", 0.5)
     outsole = outsole_from_mesh(mesh, chosen, name=file.name, where=path)
     progress("measuring its tread", 0.75)
-    inspection = OutsoleInspection(file, chosen, outsole, tread_measures(outsole.surface))
+    measures = tread_measures(outsole.surface, outsole.edges)
+    inspection = OutsoleInspection(file, chosen, outsole, measures)
     progress("drawing", 0.9)
     surface = inspection.outsole.surface
     step = max(1, round(DRAWN_SPACING / surface.spacing))

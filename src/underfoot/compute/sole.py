@@ -39,6 +39,7 @@ from underfoot.core import (
 from underfoot.core.remark import Remark
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
+from underfoot.shoe.drawn_surface import drawn_surface
 from underfoot.shoe.row_division import row_cells
 from underfoot.shoe.shape import SoleShape
 from underfoot.shoe.worn import ArchardStep, WornMap, archard_wear, worn_surface
@@ -122,20 +123,30 @@ def sole_map(
     )
 
 
-def drawn_map(case: Case, spacing: float) -> SoleMap:
-    """Return the tilted sole on square cells of ``spacing`` (m), to be drawn: no film is solved."""
-    return sole_map(case.replace("numerics.cells_along", 1), spacing)
+def drawn_map(case: Case, spacing: float, *, surface: SoleSurface | None = None) -> SoleMap:
+    """Return the tilted sole on square cells of ``spacing`` (m), to be drawn: no film is solved.
+
+    ``surface`` stands for that of the case's file.
+    """
+    case = case.replace("numerics.cells_along", 1)
+    if surface is not None:
+        return _map_of_surface(case, surface, spacing, case.motion.shoe_angle)
+    return sole_map(case, spacing)
 
 
-def drawn_edges(case: Case, spacing: float) -> tuple[NDArray[np.float64], ...]:
-    """Return the lines (n, 2, 2; m) at which lugs and sides of a case's file end on its map."""
-    outsole, surface = file_outsole(case), file_surface(case)
-    return shoe.floor_lines(
+def drawn_file(case: Case, spacing: float) -> tuple[SoleMap, tuple[NDArray[np.float64], ...]]:
+    """Return the ``drawn_map`` of a case's file with lugs up to their rims, and its lines.
+
+    Lines (n, 2, 2; m) are those at which lugs and sides end.
+    """
+    outsole, surface = file_outsole(case), drawn_surface(file_surface(case))
+    lines = shoe.floor_lines(
         surface,
         (outsole.edges, outsole.sides),
         shoe_angle=case.motion.shoe_angle,
         spacing=spacing,
     )
+    return drawn_map(case, spacing, surface=surface), lines
 
 
 def _with_cells(case: Case, sole: SoleMap, fine: Callable[[int], SoleMap]) -> SoleMap:
@@ -384,8 +395,12 @@ def file_sole_map(
             where="shoe.sole.outsole_thickness",
             allowed=f"above {display(deepest, 'm')}",
         )
+    return _map_of_surface(case, surface, spacing, case.motion.shoe_angle + turn)
+
+
+def _map_of_surface(case: Case, surface: SoleSurface, spacing: float, angle: float) -> SoleMap:
+    """Return a surface of the case's file at an angle (rad) on a grid, trimmed to its reach."""
     assert case.shoe.outsole is not None  # file_surface refuses a case without one
-    angle = case.motion.shoe_angle + turn
     sole = surface_map(surface, shoe_angle=angle, spacing=spacing)
     if surface.length > WHOLE * file_outsole(case).whole_length:
         sole = _jointed(case, sole, surface.length)

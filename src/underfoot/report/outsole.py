@@ -175,7 +175,8 @@ def inspected(file: Path, settings: FileSettings) -> OutsoleInspection:
     from underfoot.shoe.files import outsole_from_file
 
     outsole = outsole_from_file(file, settings)
-    return OutsoleInspection(file, settings, outsole, tread_measures(outsole.surface))
+    measures = tread_measures(outsole.surface, outsole.edges)
+    return OutsoleInspection(file, settings, outsole, measures)
 
 
 @figures.register(OutsoleInspection)

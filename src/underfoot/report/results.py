@@ -12,7 +12,7 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.compute.result import Result
-from underfoot.compute.sole import drawn_edges, drawn_map, sole_shape
+from underfoot.compute.sole import drawn_file, drawn_map, sole_shape
 from underfoot.core import UnderfootError, content_hash
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.html import embedded, new_figure
@@ -179,15 +179,16 @@ def designed_surface(case: Case, spacing: float = DESIGNED) -> SurfaceMesh:
     shape = case.shoe.outsole or sole_shape(case)
     key = content_hash(shape, case.shoe.wear, case.motion.shoe_angle, spacing)
     if key not in _surfaces:
-        sole = drawn_map(case, spacing)
+        if case.shoe.outsole is None:
+            sole = drawn_map(case, spacing)
+            told: dict[str, Any] = {"cut": (sole.whole or sole).cut}
+        else:
+            sole, (lugs, sides) = drawn_file(case, spacing)
+            told = {"edges": lugs, "rim": sides, "reach": 2.0 * case.shoe.outsole.map_spacing}
         sole = sole.whole or sole
         height = np.where(sole.inside, sole.clearance, np.nan)
         while len(_surfaces) >= SURFACES_KEPT:
             del _surfaces[next(iter(_surfaces))]
-        told: dict[str, Any] = {"cut": sole.cut}
-        if case.shoe.outsole is not None:
-            lugs, sides = drawn_edges(case, spacing)
-            told = {"edges": lugs, "rim": sides, "reach": 1.5 * case.shoe.outsole.map_spacing}
         _surfaces[key] = surface_mesh(sole.x, sole.y, height, sole.land, **told)
     return _surfaces[key]
 

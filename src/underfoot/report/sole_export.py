@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from underfoot.compute.sole import file_outsole
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.fields import Fields
 from underfoot.core.optional import optional_module
@@ -92,8 +93,9 @@ class _Scene:
     def surface(self) -> tuple[SurfaceMesh, float]:
         """Return the sole as few triangles, and within what (m) its lugs are of the drawing.
 
-        Where no crossings are known, a line passes within ``TOLERANCE`` cells of where cells
-        change, half a cell off the drawing; those of a file are the cells of its height map.
+        Where neither crossings nor faces are known, as of a scan, a line passes within
+        ``TOLERANCE`` cells of where cells change, half a cell off the drawing; those of a file are
+        the cells of its height map.
         """
         sole, case = self.sole, self.case
         if case is None:
@@ -104,6 +106,8 @@ class _Scene:
         made = designed_surface(case, side)
         if outsole is None:
             return made, max(DRAWN, TOLERANCE * side)
+        if len(file_outsole(case).edges):
+            return made, DRAWN
         return made, (TOLERANCE + 0.5) * max(side, outsole.map_spacing)
 
     def of_faces(self, name: str) -> NDArray[np.float64]:

@@ -24,14 +24,17 @@ EDGE, CORNER, AWAY, WINDOW = 0.02e-3, 0.5, 2, 4
 more (rad) meet in a corner; none of its nearest places is trusted, and so many on either side are
 asked for their direction."""
 DRAWN = 0.05e-3
-"""m within which lines are of drawn edges, corners too, on cells of 0.2 mm or less; ``TOLERANCE``
-where the rim leaves a sliver of a lug, too short to tell its sides."""
+"""m within which lines are of drawn edges, corners too, on cells of 0.2 mm or less, or of a file's
+faces; ``TOLERANCE`` where the rim leaves a sliver of a lug, too short to tell its sides."""
 LATTICE, NEAR = 4e-3, 1.2e-3
 """m between the points on smooth parts, and how near to an edge none of them is set."""
 ERROR, REFINED, APART = 0.05e-3, 2, 1.5e-3
 """m by which a triangle may miss its cells, how often points are set for that, and how close."""
 CELL_ERROR = 0.15
 """The same in cells, where these are coarse."""
+FARTHEST, OBLIQUE = 8.0, 3.0
+"""Cells between places that lie beside each other on one line; times the reach within which a line
+of a lug ends at the rim."""
 NODED, ROUNDS = 1e-3, 10
 """Cells by which places are told apart; times that lines are halved until each is an edge of
 triangles."""
@@ -71,7 +74,7 @@ def surface_mesh(
     Lines between levels (land, channels, what a wall parts) pass within a cell of where the cells
     change; those of lugs, where ``cut`` has their crossings, within ``DRAWN`` of the drawing, and
     where ``edges`` and ``rim`` (n, 2, 2; m), lines at which lugs and the sole end, are known within
-    ``reach`` (m) of them.
+    ``reach`` (m), along them.
     Triangles between lines are within ``ERROR`` of the cells where they are smooth.
     """
     side = float(np.median(np.diff(x)))
@@ -196,22 +199,73 @@ class _Edges:
     def __init__(self, lines: Floats, reach: float) -> None:
         import shapely
 
-        self._lines: Any = shapely.linestrings(lines)
-        self._tree, self._reach = shapely.STRtree(self._lines), reach
+        strings: Any = shapely.linestrings(np.round(lines / NODED) * NODED)
+        merged: Any = shapely.line_merge(shapely.multilinestrings(strings))
+        self.whole, self._reach = merged, reach
+        self._parts = parts = shapely.get_parts(merged)
+        at, self._part = shapely.get_coordinates(parts, return_index=True)
+        self._at, self._length = at, shapely.length(parts)
+        self._closed = shapely.is_closed(parts)
+        along = np.append(0.0, np.hypot(*np.diff(at, axis=0).T).cumsum()) if len(at) else at
+        first = np.searchsorted(self._part, np.arange(len(parts)))
+        self._along = along - along[first][self._part] if len(at) else along
+        self._begins = np.flatnonzero(self._part[1:] == self._part[:-1])
+        ends = np.stack([at[self._begins], at[self._begins + 1]], axis=1)
+        segments: Any = shapely.linestrings(ends)
+        self._tree = shapely.STRtree(segments)
 
-    def nearest(self, places: Floats) -> tuple[Floats, Mask]:
-        """Return the nearest point of the lines to each place (n, 2), and where one is near."""
+    def nearest(self, places: Floats) -> tuple[Floats, Mask, Indices, Floats]:
+        """Return the nearest point to each place (n, 2), where it is near, its line, how far on."""
         import shapely
 
-        if not len(self._lines):
-            return places, np.zeros(len(places), bool)
+        if not len(self._begins):
+            none = np.zeros(len(places))
+            return places, none > 0, none.astype(np.intp), none
         points: Any = shapely.points(places)
-        (at, line), away = self._tree.query_nearest(points, return_distance=True, all_matches=False)
-        onto = shapely.line_interpolate_point(
-            self._lines[line], shapely.line_locate_point(self._lines[line], points[at])
+        (at, number), away = self._tree.query_nearest(
+            points, return_distance=True, all_matches=False
         )
-        near = away <= self._reach
-        return np.where(near[:, None], shapely.get_coordinates(onto), places), near
+        lines = self._tree.geometries[number]
+        further = shapely.line_locate_point(lines, points[at])
+        onto = shapely.get_coordinates(shapely.line_interpolate_point(lines, further))
+        near, begin = away <= self._reach, self._begins[number]
+        return (
+            np.where(near[:, None], onto, places),
+            near,
+            self._part[begin],
+            (self._along[begin] + further),
+        )
+
+    def crossing(self, number: int, other: _Edges, place: Floats) -> Floats:
+        """Return where one of these lines crosses others near a place (2,), else the place."""
+        import shapely
+
+        met = shapely.intersection(self._parts[number], other.whole)
+        points = shapely.get_coordinates(met)
+        away = np.hypot(*(points - place).T)
+        if not len(points) or away.min() > OBLIQUE * self._reach:
+            return place
+        return points[away.argmin()]
+
+    def between(self, part: Indices, along: Floats) -> Floats | None:
+        """Return the way (n, 2) along one line past all places, None where they lie on several."""
+        if not len(part) or (part != part[0]).any():
+            return None
+        number = part[0]
+        length, steps = float(self._length[number]), np.diff(along)
+        own = np.flatnonzero(self._part == number)
+        corners, at = self._at[own], self._along[own]
+        if self._closed[number]:
+            steps = (steps + length / 2) % length - length / 2
+            corners = np.concatenate([corners[:-1]] * 3 + [corners[:1]])
+            at = np.concatenate([at[:-1] - length, at[:-1], at[:-1] + length, [2 * length]])
+        begin, end = along[0], along[0] + float(steps.sum())
+        if (np.abs(steps) > FARTHEST).any():
+            return None
+        passed = (at > min(begin, end)) & (at < max(begin, end))
+        way = corners[passed] if end > begin else corners[passed][::-1]
+        ends = [[np.interp(each, at, corners[:, k]) for k in (0, 1)] for each in (begin, end)]
+        return np.concatenate([ends[:1], way, ends[1:]])
 
 
 def _lines(grid: _Grid, cut: CutCells | None, edges: _Edges, rim: _Edges) -> tuple[Floats, Indices]:
@@ -241,6 +295,8 @@ def _lines(grid: _Grid, cut: CutCells | None, edges: _Edges, rim: _Edges) -> tup
     i, j = np.divmod(cell, m)
     places = np.stack([i, j], axis=1) + np.array([[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]])[kind]
     drawn = np.zeros(len(names), bool)
+    part, further = np.full(len(names), -1), np.zeros(len(names))
+    at_rim = np.zeros(len(names), bool)
     for axis in (0, 1):
         after = (i + (axis == 0)) % n, (j + (axis == 1)) % m
         two = (kind == axis) & (level[i, j] > 0) & (level[after] > 0)
@@ -251,19 +307,37 @@ def _lines(grid: _Grid, cut: CutCells | None, edges: _Edges, rim: _Edges) -> tup
             places[two, axis] += share[i[two], j[two]] - 0.5
             drawn |= two
         for known, here in ((edges, two & ~drawn), (rim, one)):
-            places[here], drawn[here] = known.nearest(places[here])
+            places[here], near, number, way = known.nearest(places[here])
+            drawn[here], further[here] = near, way
+            part[here] = np.where(near, number, -1)
+        at_rim |= one
     around = [
         level[np.minimum(i + a, n - 1), np.minimum(j + b, m - 1)] for a in (0, 1) for b in (0, 1)
     ]
     ending = (kind == 2) & (np.min(around, axis=0) == 0)
-    places[ending], _ = rim.nearest(places[ending])
-    lines = [
-        _along_edge(places, chain, EDGE / grid.side)
-        if drawn[chain[1:-1]].all() and len(chain) > 2
-        else _straightened(places, chain)
-        for chain in _chains(nodes.reshape(-1, 2), len(names))
-    ]
-    return _noded(places[np.concatenate(lines)])
+    places[ending] = rim.nearest(places[ending])[0]
+    numbered, ways = [np.empty((0, 2), np.intp)], []
+    for chain in _chains(nodes.reshape(-1, 2), len(names)):
+        closed = chain[0] == chain[-1]
+        inner, way = chain if closed else chain[1:-1], None
+        if inner and (part[inner] >= 0).all():
+            known = rim if at_rim[inner[0]] else edges
+            for end, beside in ((chain[0], inner[0]), (chain[-1], inner[-1])):
+                if known is edges and ending[end]:
+                    places[end] = edges.crossing(part[beside], rim, places[end])
+            way = known.between(part[inner], further[inner])
+        if way is not None and not (closed and len(way) < 4):
+            ways.append((chain[:0] if closed else [chain[0], chain[-1]], way))
+        elif drawn[chain[1:-1]].all() and len(chain) > 2:
+            numbered.append(_along_edge(places, chain, EDGE / grid.side))
+        else:
+            numbered.append(_straightened(places, chain))
+    lines = [places[np.concatenate(numbered)]]
+    for ends, way in ways:
+        path = np.concatenate([places[ends[:1]], way, places[ends[1:]]])
+        path = path[_corners_of(path, EDGE / grid.side)]
+        lines.append(np.stack([path[:-1], path[1:]], axis=1))
+    return _noded(np.concatenate(lines))
 
 
 def _noded(lines: Floats) -> tuple[Floats, Indices]:

@@ -11,6 +11,7 @@ from underfoot.core.arrays import Array, Mask
 from ._kernels.covering_discs import channel_width, covering_value, local_width
 from ._kernels.regions import (
     Labels,
+    Nearest,
     across_channels,
     carried_on,
     distance_to,
@@ -92,9 +93,10 @@ def tread_map(
     from scipy.ndimage import maximum_filter
 
     inside = np.isfinite(height)
+    onto = nearest_true(inside)
     rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
     above = height - rolled
-    raised = np.where(inside, np.minimum(above, _rounded_rim(height, spacing)), -np.inf)
+    raised = np.where(inside, np.minimum(above, _rounded_rim(height, spacing, onto)), -np.inf)
     # walls count as noise until the land is known
     begin = raised > _level(min(height_noise(height), _MOST_NOISE))
     noise = height_noise(np.where(begin, np.nan, height), lag)
@@ -113,7 +115,7 @@ def tread_map(
     numbers, _ = pieces(land)
     steps = max(1, round(_GRAZED[0] / spacing))
     deeper = numbers[land & ~rim(inside, steps)]
-    slopes = _slopes(rolled, spacing)
+    slopes = _slopes(rolled[onto], spacing)
     steep = np.hypot(*slopes) > _GRAZED[1]
     if (flat := land & ~rim(inside, 2 * steps)).any():
         beside = nearest_true(flat)
@@ -124,7 +126,7 @@ def tread_map(
         np.bincount(numbers.ravel()), 1
     )
     land &= np.isin(numbers, deeper) | (steepness[numbers] < 0.5)
-    land &= ~_bare_ends(height, land, spacing)
+    land &= ~_bare_ends(height, land, spacing, onto)
     channel = inside & ~land
     if not land.any():
         land, channel = inside.copy(), np.zeros_like(inside)
@@ -176,7 +178,7 @@ def _without_ends(lugs: Array, treaded: Mask, inside: Mask, spacing: float) -> A
     return without
 
 
-def _bare_ends(height: Array, land: Mask, spacing: float) -> Mask:
+def _bare_ends(height: Array, land: Mask, spacing: float, onto: Nearest) -> Mask:
     """Return pieces of land that are the floor of channels, where a tilted floor reaches it.
 
     Such a piece lies above other land and goes over into channel without an edge: an end of the
@@ -188,7 +190,7 @@ def _bare_ends(height: Array, land: Mask, spacing: float) -> Mask:
     if count < 2:
         return np.zeros_like(land)
     inside = np.isfinite(height)
-    filled = height[nearest_true(inside)]
+    filled = height[onto]
     steps = max(1, round(_EDGE[0] / spacing))
     wide = np.pad(filled, steps, mode="edge")
     n, m = height.shape
@@ -216,7 +218,8 @@ def reached_by_floor(height: Array, land: Mask, spacing: float) -> Mask:
     What stands no more than max(30 um, 6 sigma) over the base of ``tread_map``.
     """
     rolled = rolled_base(height, spacing, ROLLING_RADIUS, STEEPEST_RIM)
-    above = np.minimum(height - rolled, _rounded_rim(height, spacing))
+    onto = nearest_true(np.isfinite(height))
+    above = np.minimum(height - rolled, _rounded_rim(height, spacing, onto))
     noise = height_noise(np.where(land, height, np.nan))
     with np.errstate(invalid="ignore"):
         return land & (above <= _reached(noise))
@@ -226,14 +229,14 @@ def _reached(noise: float) -> float:
     return max(_REACHED, NOISE_FACTOR * noise)
 
 
-def _rounded_rim(height: Array, spacing: float) -> Array:
+def _rounded_rim(height: Array, spacing: float, onto: Nearest) -> Array:
     """Return the height over what a paraboloid that follows steep rims reaches; inf elsewhere.
 
     Steep and no wall: a slope of 0.25 to 3. A rounded edge is shape of the sole, the level floor
-    of a channel that opens at the rim is not.
+    of a channel that opens at the rim is not. ``onto``: the nearest cell inside of each.
     """
     inside = np.isfinite(height)
-    slope = np.hypot(*_slopes(height, spacing))
+    slope = np.hypot(*_slopes(height[onto], spacing))
     above = height - rolled_base(height, spacing, ROLLING_RADIUS, (_ROUNDED[1], _ROUNDED[1]))
     steep = inside & (slope > _ROUNDED[0]) & (slope < _ROUNDED[1])
     return np.where(steep, above, np.inf)
@@ -244,9 +247,9 @@ def _level(noise: float) -> float:
 
 
 def _slopes(height: Array, spacing: float) -> Array:
-    """Return the slopes along and across (2, nx, ny) over 1 mm, carried on beyond the plan form."""
+    """Return the slopes along and across (2, nx, ny) over 1 mm of heights known everywhere."""
     steps = max(1, round(_SLOPE_REACH / spacing))
-    filled = np.pad(height[nearest_true(np.isfinite(height))], steps, mode="edge")
+    filled = np.pad(height, steps, mode="edge")
     along = filled[2 * steps :, steps:-steps] - filled[: -2 * steps, steps:-steps]
     across = filled[steps:-steps, 2 * steps :] - filled[steps:-steps, : -2 * steps]
     return np.array([along, across]) / (2 * steps * spacing)
@@ -341,16 +344,24 @@ class TreadMeasures:
     free_circle: float
 
 
-def tread_measures(surface: SoleSurface) -> TreadMeasures:
-    """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula."""
+def tread_measures(surface: SoleSurface, walls: Array | None = None) -> TreadMeasures:
+    """Return the measures of a sole's tread; docs/guide/outsole_files.md has each formula.
+
+    Where lugs end is known within half a cell; of ``walls`` (n, 2, 2; m), lines at which they do,
+    land share, widths and lengths of slits are those of the lines.
+    """
     inside, land, spacing = surface.inside, surface.land, surface.spacing
     channel = inside & ~land
     depth = width = drained = None
-    sipe_count, sipe_length = 0, 0.0
+    sipe_count, sipe_length, land_ratio = 0, 0.0, surface.land_ratio
     if channel.any():
         deep = channel_depth(surface)
         open_ground = channel & ~lower_lugs(deep, channel, spacing)
         widths = channel_width(open_ground, spacing)
+        if walls is not None and len(walls):
+            area, length = _beyond_walls(surface, walls)
+            widths = _width_of_walls(widths, open_ground, area, length, spacing)
+            land_ratio += float(area.sum()) / surface.plan_area
         counted = open_ground & (widths <= WIDEST_CHANNEL)
         counted = counted if counted.any() else open_ground
         floor = floor_depth(deep, channel, spacing)
@@ -374,7 +385,7 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         length=surface.length,
         width=surface.width,
         plan_area=surface.plan_area,
-        land_ratio=surface.land_ratio,
+        land_ratio=land_ratio,
         channel_depth=depth,
         channel_width=width,
         drained_share=drained,
@@ -388,6 +399,57 @@ def tread_measures(surface: SoleSurface) -> TreadMeasures:
         patch_circle=circle(patch),
         free_circle=circle(land),
     )
+
+
+def _beyond_walls(surface: SoleSurface, walls: Array) -> tuple[Array, Array]:
+    """Return the area (m^2) by which cells of channels lie beyond walls, and the walls' length (m).
+
+    Of each cell (nx, ny) in which a piece of a wall lies; less than 0 where they end before it.
+    """
+    from scipy.ndimage import map_coordinates
+
+    long = np.hypot(*(walls[:, 1] - walls[:, 0]).T)
+    count = np.maximum(np.ceil(long / surface.spacing), 1).astype(int)
+    number = np.repeat(np.arange(len(walls)), count)
+    part = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    share = ((part + 0.5) / count[number])[:, None]
+    places = walls[number, 0] * (1 - share) + walls[number, 1] * share
+    long = long[number] / count[number]
+    channel = surface.inside & ~surface.land
+    into = distance_within(channel) - distance_within(~channel)
+    into = np.where(channel, into - 0.5, into + 0.5) * surface.spacing
+    cells = [(place - at[0]) / surface.spacing for place, at in
+             zip(places.T, (surface.x, surface.y), strict=True)]  # fmt: skip
+    i, j = (np.rint(cell).astype(int) for cell in cells)
+    near = (i >= 0) & (j >= 0) & (i < channel.shape[0]) & (j < channel.shape[1])
+    off = map_coordinates(into, cells, order=1, mode="nearest")
+    near[near] &= surface.inside[i[near], j[near]] & (np.abs(off[near]) < surface.spacing)
+    area, length = np.zeros(channel.shape), np.zeros(channel.shape)
+    np.add.at(area, (i[near], j[near]), (off * long)[near])
+    np.add.at(length, (i[near], j[near]), long[near])
+    return area, length
+
+
+def _width_of_walls(
+    widths: Array, channel: Mask, area: Array, length: Array, spacing: float
+) -> Array:
+    """Return the widths (m) of a channel's cells less what they lie beyond the walls around them.
+
+    ``area`` and ``length`` as ``_beyond_walls``; the mean within a channel's width and a cell.
+    """
+    from scipy.ndimage import uniform_filter
+
+    exact, reach, done = widths.copy(), 2, ~channel
+    while not done.all():
+        here = ~done & (widths <= reach * spacing)
+        if here.any():
+            window = 2 * reach + 3
+            off, long = (uniform_filter(each, window, mode="constant") for each in (area, length))
+            known = here & (long > 1e-3 * spacing / window**2)
+            exact[known] -= 2 * off[known] / long[known]
+        done |= here
+        reach *= 2
+    return np.where(channel, np.maximum(exact, spacing / 4), 0.0)
 
 
 def _sipes(channel: Mask, inside: Mask, widths: Array, spacing: float) -> tuple[int, float]:

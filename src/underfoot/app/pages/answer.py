@@ -14,7 +14,7 @@ from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
 from underfoot.core.presentation import is_wide, percent, probability_text
 
-from ..components import SoleView, folded, scale, sentences, table, task_line, title
+from ..components import SoleView, folded, interruption, scale, sentences, table, task_line, title
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
@@ -101,6 +101,9 @@ class _Answer:
         task = self.session.jobs.latest(self.name, RUN)
         if task is not None and task.open:
             self._follow(task)
+        elif not self.session.project.is_current(self.name):
+            with self.progress:
+                interruption(self.session, task)
         self._fill()
         self.session.follow(lambda: self.session.project.state(self.name), self._reload)
 
@@ -434,6 +437,7 @@ class _Answer:
             self._helps()
 
         with self.help:
+            interruption(self.session, task)
             button = ui.button(self.text("answer.help_begin"), on_click=begin)
             button.props("no-caps outline")
 

@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.case import Case, assumptions, unit_at
 from underfoot.core import display
 
-from ..components import refilled, task_line
+from ..components import interruption, refilled, task_line
 from ..session import Session
 
 EFFECTS = "underfoot.app.work:effects"
@@ -38,6 +38,7 @@ def _filled(session: Session, name: str, again: Any) -> None:
             session.submit(text("assumptions.job"), EFFECTS, *arguments, about=name)
             await again()
 
+        interruption(session, task)
         ui.button(text("assumptions.compute"), on_click=compute).props("no-caps outline")
     largest = max((each["deviation"] or 0.0 for each in effects or ()), default=0.0)
     for rank, each in enumerate(effects or ()):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nicegui import ui
 
-from ..components import drop_zone, sentences, table, task_line, title
+from ..components import drop_zone, interruption, sentences, table, task_line, title
 from ..jobs import Task
 from ..session import Session
 
@@ -75,6 +75,7 @@ class _Place:
         self.answer.clear()
         file, stored = self.folder / f"{name}.toml", self.stored(name)
         with self.answer:
+            interruption(self.session, self.session.jobs.latest(name, WORK))
             if not stored.exists():
                 self.compute_button(name, "place.compute")
                 return

@@ -22,7 +22,7 @@ from underfoot.core.files import whole_file
 from underfoot.core.typed import split_quantity
 from underfoot.core.units import display, to_si
 
-from ..components import SoleView, sentences, task_line, title
+from ..components import SoleView, interruption, sentences, task_line, title
 from ..inputs import read_count, read_field, whole_number
 from ..jobs import Task
 from ..project import NAME
@@ -165,6 +165,9 @@ class _Study:
             self._follow(task)
         elif self._working:
             self._watch(others=True)
+        else:
+            with self.progress:
+                interruption(self.session, task)
         if self.sheet and self.sheet["ended"]:
             await self._show(whole=not self._working)
 

@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.core import InputError
 from underfoot.core.units import to_si
 
-from ..components import refilled, sentences, table, task_line
+from ..components import interruption, refilled, sentences, table, task_line
 from ..inputs import read_field
 from ..session import Session
 
@@ -43,6 +43,7 @@ def _filled(session: Session, name: str, again: Any) -> None:
             session.submit(text("wear.job"), WORN, *arguments, about=name)
             await again()
 
+        interruption(session, task)
         button = ui.button(text("wear.compute"), on_click=compute).props("no-caps outline")
         if task is not None and task.open:
             button.disable()

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array
 from underfoot.core.compiled import njit
 
-from .mesh_edges import mixed
+from .mesh_edges import mixed, soup_keys
 
 MOST_FACES = 2_000_000
 """Bodies of a larger mesh are not looked for: scans are one surface."""
@@ -21,6 +21,40 @@ def components(triangles: NDArray[np.float32]) -> tuple[NDArray[np.int32], int]:
     roots = _roots(bits.reshape(-1, 3))
     _, numbers = np.unique(roots, return_inverse=True)
     return np.asarray(numbers, dtype=np.int32).ravel(), int(numbers.max(initial=-1)) + 1
+
+
+def closed_bodies(triangles: NDArray[np.float32]) -> NDArray[np.int32]:
+    """Return the number of the body of each triangle; closed bodies that touch are told apart.
+
+    Triangles of one body share edges that no third one has. Where all edges of such a piece have as
+    many faces of it in one direction as in the other, it is a body whatever corners and edges
+    others share with it; the rest are the bodies of ``components``.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    count = triangles.shape[0]
+    bits = (triangles + np.float32(0.0)).view(np.uint32)
+    keys, _, _, _ = soup_keys(triangles, bits)
+    used = np.flatnonzero(keys)
+    order = used[np.argsort(keys[used] >> np.uint64(1), kind="stable")]
+    key, face = keys[order] >> np.uint64(1), order // 3
+    begins = np.append(True, key[1:] != key[:-1])
+    edge = np.cumsum(begins) - 1
+    first = np.flatnonzero(begins)[np.bincount(edge) == 2]
+    joined = coo_matrix(
+        (np.ones(first.size, bool), (face[first], face[first + 1])), shape=(count, count)
+    )
+    number, piece = connected_components(joined, directed=False)
+    own, numbered = np.unique(edge * np.int64(number) + piece[face], return_inverse=True)
+    forward = np.where(keys[order] & np.uint64(1), 1.0, -1.0)
+    uneven = own[np.bincount(numbered, forward) != 0] % number
+    open_pieces = np.zeros(number, bool)
+    open_pieces[uneven] = True
+    rest = open_pieces[piece]
+    body = piece.astype(np.int32)
+    body[rest] = number + components(triangles[rest])[0]
+    return body
 
 
 @njit(cache=True)

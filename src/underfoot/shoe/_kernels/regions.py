@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array, Mask
 
 Labels = NDArray[np.intp]
+Nearest = tuple[NDArray[np.intp], ...]
 
 
 def pieces(mask: Mask, *, diagonal: bool = False) -> tuple[Labels, int]:
@@ -71,7 +72,7 @@ def distance_to(mask: Mask) -> Array:
     return np.asarray(distance, dtype=np.float64)
 
 
-def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:
+def nearest_true(mask: Mask) -> Nearest:
     """Return, for each cell, the indices of the nearest cell where ``mask`` is true."""
     from scipy.ndimage import distance_transform_edt
 
@@ -103,10 +104,16 @@ def across_channels(height: Array, land: Mask) -> Array:
         missing = ~np.isfinite(filled)
         total, weights = np.zeros_like(height), np.zeros_like(height)
         for turned in (False, True):
-            place = _columns(height.shape, diagonal, turned)
-            heights, lands = np.full((2, *(np.max(place, axis=(1, 2)) + 1)), np.nan)
-            heights[place], lands[place] = height, land
-            value, gap = (each[place] for each in between_land(heights, lands == 1))
+            if diagonal:
+                place = _diagonals(height.shape, turned)
+                size = place[0][-1, -1] + 1, place[1].max() + 1
+                heights, lands = np.full(size, np.nan), np.zeros(size, bool)
+                heights[place], lands[place] = height, land
+                value, gap = (each[place] for each in between_land(heights, lands))
+            elif turned:
+                value, gap = (each.T for each in between_land(height.T, land.T))
+            else:
+                value, gap = between_land(height, land)
             told = np.isfinite(value)
             weight = np.where(told, 1.0 / np.maximum(gap, 1.0), 0.0)
             total += np.where(told, value, 0.0) * weight
@@ -116,24 +123,20 @@ def across_channels(height: Array, land: Mask) -> Array:
     return filled
 
 
-def _columns(
-    shape: tuple[int, ...], diagonal: bool, turned: bool
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the place of each cell in an array whose columns are rows along x, y or diagonals."""
+def _diagonals(shape: tuple[int, ...], turned: bool) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the place of each cell in an array whose columns are diagonals."""
     i, j = np.indices(shape)
-    if diagonal:
-        return i, j - i + shape[0] if turned else j + i
-    return (j, i) if turned else (i, j)
+    return i, j - i + shape[0] if turned else j + i
 
 
 def between_land(height: Array, land: Mask) -> tuple[Array, Array]:
     """Return the linear value between the land before and after along axis 0, and their gap."""
     count = height.shape[0]
-    index = np.arange(count)[:, None] * np.ones_like(height)
-    before = np.maximum.accumulate(np.where(land, index, -1.0), axis=0)
-    after = np.minimum.accumulate(np.where(land, index, count)[::-1], axis=0)[::-1]
-    known = (before >= 0) & (after < count)
-    low, high = np.clip(before, 0, count - 1).astype(int), np.clip(after, 0, count - 1).astype(int)
+    index = np.arange(count, dtype=np.int32)[:, None]
+    low = np.maximum.accumulate(np.where(land, index, np.int32(-1)), axis=0)
+    high = np.minimum.accumulate(np.where(land, index, np.int32(count))[::-1], axis=0)[::-1]
+    known = (low >= 0) & (high < count)
+    low, high = np.maximum(low, 0), np.minimum(high, count - 1)
     columns = np.arange(height.shape[1])[None, :]
     gap = (high - low).astype(float)
     share = (index - low) / np.maximum(gap, 1.0)

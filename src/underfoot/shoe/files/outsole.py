@@ -11,7 +11,7 @@ from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
 from underfoot.core.remark import assumed
 
-from .._kernels.components import MOST_FACES, components
+from .._kernels.components import MOST_FACES, closed_bodies
 from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
 from ..tread_measures import (
@@ -28,7 +28,7 @@ from . import orientation
 from .bodies import Found, found_outsole
 from .cleaning import cleaned, plan_outline, without_ledges
 from .draft import wall_draft
-from .edges import section_lines
+from .edges import lug_lines, rim_lines
 from .mesh import Mesh
 from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
@@ -212,8 +212,8 @@ def _outsole(
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
         draft=draft,
-        edges=section_lines(*faces, tread.level) if lugs.size and quiet else none,
-        sides=section_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
+        edges=lug_lines(*faces, tread.level) if lugs.size and quiet else none,
+        sides=rim_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
     )
 
 
@@ -354,7 +354,7 @@ def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str
     own = 0
     known_sides = sound.turned_edges <= _MOST_APART * count
     if known_sides and crossed > _MOST_APART * met and count <= MOST_FACES:
-        own, *_ = lines(components(triangles)[0])
+        own, *_ = lines(closed_bodies(triangles))
     one_sided = odd_lines > met / 2  # as a scan without its upper side
     for many, what, cause in (
         (own, "the surface crosses itself", "corners of its faces are mixed up"),
