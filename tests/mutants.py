@@ -7,15 +7,16 @@
 
 A fault turns a sign, a comparison or a choice round, moves a number or an index, or swaps two
 arguments. Which quick tests run which lines is recorded first (``mutants_map.py``), where it isn't
-known yet. A fault meets the tests that run its line, in a copy of the repository, in a fork of a
-process that holds the libraries, until the first that fails: first those of its room (they import
-its module, or are called ``test_<room>_``), then the others; each test once before one comes again
-with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
-meets the tests that run anything of its file or are of its room; one that no test runs in this
-process meets those of its room if it is compiled, else those that start a process. What survives is
-printed with its place: mend the tests, or say why it may live. A test that fails without a fault
-kills nothing; a fault that its room's test killed counts as dead while that test and the source
-stand. Not part of ``make test``.
+known yet. A fault meets the tests that run its line, in a copy of the repository, until the first
+that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or, where its line
+runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
+its room (they import its module, or are called ``test_<room>_``), then the others; each test once
+before one comes again with other parameters, the quickest first, ``--seconds`` of each at most. A
+line that runs at import meets the tests that run anything of its file or are of its room; one that
+no test runs in this process meets those of its room if it is compiled, else those that start a
+process. What survives is printed with its place: mend the tests, or say why it may live. A test
+that fails without a fault kills nothing; a fault that its room's test killed counts as dead while
+that test and the source stand. Not part of ``make test``.
 """
 
 import ast
@@ -43,6 +44,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from mutants_map import digest, known_map, write_map
+from mutants_warm import NOT_PLANTED, Plan, deaths
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
@@ -293,6 +295,12 @@ class Lines:
                 for line, numbers in found["lines"][path].items():
                     self._lines[path][int(line)] += [every[n] for n in numbers if passed[n]]
 
+    def run_inside(self, mutant: Mutant) -> bool:
+        """Return whether tests run the line of a fault, inside a function."""
+        begin = statement_lines(mutant.file, mutant.line)[0]
+        met = self._lines.get(mutant.file, {})
+        return begin > 0 and bool(met.get(mutant.line) or met.get(begin))
+
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
         of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
@@ -458,6 +466,26 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
         time.sleep(0.02)
 
 
+def warm_deaths(
+    folder: Path,
+    faults: list[Mutant],
+    plans: dict[Mutant, tuple[list[Test], list[Test]]],
+    jobs: int,
+) -> Iterator[tuple[Mutant, str | None]]:
+    """Yield the faults that a process with all tests could plant, and what killed each."""
+    asked = list[Plan]()
+    for number, mutant in enumerate(faults):
+        path = folder / SOURCE / mutant.file
+        data, tests = path.read_bytes(), [*plans[mutant][0], *plans[mutant][1]]
+        text = data[: mutant.start] + mutant.new.encode() + data[mutant.end :]
+        limit = int(LEAST_TIME + 4 * sum(one.seconds for one in tests))
+        asked.append(Plan(number, path, text, [one.name for one in tests], limit))
+    files = sorted({name.partition("::")[0] for plan in asked for name in plan.names})
+    for number, killer in deaths(folder, asked, files, QUICK, jobs) if asked else ():
+        if killer != NOT_PLANTED:
+            yield faults[number], killer or None
+
+
 def record(tests: Iterable[str], sources: set[str], jobs: int) -> None:
     """Run the quick tests, of these files, whose lines in ``sources`` are not known yet."""
     if not (files := [file for file in tests if known_map(file, sources) is None]):
@@ -553,7 +581,7 @@ def main() -> None:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:
         import_module(library)
-    answers, deaths = list[Answer](), Deaths()
+    answers, known = list[Answer](), Deaths()
     runs: dict[int, Run] = {}
     made = Path(tempfile.mkdtemp())
     try:
@@ -572,22 +600,33 @@ def main() -> None:
             answers.append(Answer(mutant, killer, own, len(run.names)))
             print(answers[-1], flush=True)
             if killer and own:
-                deaths.add(mutant, killer)
+                known.add(mutant, killer)
 
         elsewhere = dict[Mutant, list[Test]]()
+        plans = dict[Mutant, tuple[list[Test], list[Test]]]()
         for mutant in chosen:
-            if killer := deaths.killer(mutant):
+            if killer := known.killer(mutant):
                 answers.append(Answer(mutant, killer, True, 0))
                 continue
             meeting, files = lines.meeting(mutant), tests_of(mutant.file)
             own = in_turn((one for one in meeting if one.file in files), given.seconds)
             others = [] if given.own else [one for one in meeting if one.file not in files]
             others = in_turn(others, given.seconds)
-            elsewhere[mutant] = others
             if not (own or others):
                 answers.append(Answer(mutant, None, False, 0))
                 print(answers[-1], flush=True)
                 continue
+            plans[mutant] = own, others
+        warm = [one for one in plans if lines.run_inside(one)]
+        for mutant, killer in warm_deaths(copies[0], warm, plans, given.jobs):
+            own, others = plans.pop(mutant)
+            near = killer is not None and killer.partition("::")[0] in tests_of(mutant.file)
+            answers.append(Answer(mutant, killer, near, len(own) + len(others)))
+            print(answers[-1], flush=True)
+            if killer and near:
+                known.add(mutant, killer)
+        for mutant, (own, others) in plans.items():
+            elsewhere[mutant] = others
             while not copies:
                 take()
             number, run = start(copies.pop(), mutant, own or others)
