@@ -100,44 +100,56 @@ def across_channels(height: Array, land: Mask) -> Array:
     """
     filled = np.where(land, height, np.nan)
     for diagonal in (False, True):
-        missing = ~np.isfinite(filled)
-        total, weights = np.zeros_like(height), np.zeros_like(height)
+        missing = np.nonzero(~np.isfinite(filled))
+        total, weights = np.zeros((2, missing[0].size))
         for turned in (False, True):
-            place = _columns(height.shape, diagonal, turned)
-            heights, lands = np.full((2, *(np.max(place, axis=(1, 2)) + 1)), np.nan)
-            heights[place], lands[place] = height, land
-            value, gap = (each[place] for each in between_land(heights, lands == 1))
+            value, gap = _between(height, land, missing, diagonal, turned)
             told = np.isfinite(value)
             weight = np.where(told, 1.0 / np.maximum(gap, 1.0), 0.0)
             total += np.where(told, value, 0.0) * weight
             weights += weight
-        missing &= weights > 0
-        filled[missing] = total[missing] / weights[missing]
+        told = weights > 0
+        filled[tuple(each[told] for each in missing)] = total[told] / weights[told]
     return filled
 
 
-def _columns(
-    shape: tuple[int, ...], diagonal: bool, turned: bool
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the place of each cell in an array whose columns are rows along x, y or diagonals."""
-    i, j = np.indices(shape)
-    if diagonal:
-        return i, j - i + shape[0] if turned else j + i
-    return (j, i) if turned else (i, j)
+def _between(
+    height: Array, land: Mask, cells: tuple[NDArray[np.intp], ...], diagonal: bool, turned: bool
+) -> tuple[Array, Array]:
+    """Return ``between_land`` of some cells alone, along x, along y or along a diagonal."""
+    if not diagonal:
+        if turned:
+            height, land, cells = height.T, land.T, cells[::-1]
+        return _value_between(height, land, *cells)
+    rows = height.shape[0]
+    i, j = np.indices(height.shape)
+    columns, shift = (j - i + rows, rows - cells[0]) if turned else (j + i, cells[0])
+    heights = np.full((rows, rows + height.shape[1]), np.nan)
+    lands = np.zeros(heights.shape, dtype=bool)
+    heights[i, columns], lands[i, columns] = height, land
+    return _value_between(heights, lands, cells[0], cells[1] + shift)
 
 
 def between_land(height: Array, land: Mask) -> tuple[Array, Array]:
     """Return the linear value between the land before and after along axis 0, and their gap."""
+    every = np.indices(height.shape).reshape(2, -1)
+    value, gap = _value_between(height, land, *every)
+    return value.reshape(height.shape), gap.reshape(height.shape)
+
+
+def _value_between(
+    height: Array, land: Mask, row: NDArray[np.intp], column: NDArray[np.intp]
+) -> tuple[Array, Array]:
     count = height.shape[0]
-    index = np.arange(count)[:, None] * np.ones_like(height)
-    before = np.maximum.accumulate(np.where(land, index, -1.0), axis=0)
-    after = np.minimum.accumulate(np.where(land, index, count)[::-1], axis=0)[::-1]
+    index = np.arange(count, dtype=np.int32)[:, None]
+    before = np.maximum.accumulate(np.where(land, index, np.int32(-1)), axis=0)[row, column]
+    after = np.where(land, index, np.int32(count))[::-1]
+    after = np.minimum.accumulate(after, axis=0)[::-1][row, column]
     known = (before >= 0) & (after < count)
-    low, high = np.clip(before, 0, count - 1).astype(int), np.clip(after, 0, count - 1).astype(int)
-    columns = np.arange(height.shape[1])[None, :]
+    low, high = np.maximum(before, 0), np.minimum(after, count - 1)
     gap = (high - low).astype(float)
-    share = (index - low) / np.maximum(gap, 1.0)
-    value = (1 - share) * height[low, columns] + share * height[high, columns]
+    share = (row - low) / np.maximum(gap, 1.0)
+    value = (1 - share) * height[low, column] + share * height[high, column]
     return np.where(known, value, np.nan), gap
 
 
