@@ -1,0 +1,37 @@
+"""An optimisation runs no design that it has run."""
+
+from pathlib import Path
+
+from underfoot.case import load
+from underfoot.explore.proposals import next_batch
+from underfoot.explore.record import Ending, Record
+from underfoot.explore.result import StudyResult
+from underfoot.explore.study_file import read_plan
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STUDY = """\
+[vary]
+"shoe.material.shore_a" = [40, 45, 50, 55, 60, 65, 70, 75]
+[outputs]
+maximise = ["cof"]
+[method]
+kind = "optimise"
+budget = 8
+batch = 2
+"""
+
+
+def test_an_optimisation_over_few_values_runs_each_once():
+    base = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
+    plan = read_plan(STUDY, base=base, folder=".")
+    jobs, records = [], {}
+    while batch := list(next_batch(plan, StudyResult(plan, jobs, records))):
+        jobs += batch
+        for job in batch:
+            hardness = job.changes["shoe.material.shore_a"] if job.point else 60
+            numbers = {"cof": 0.3 - 1e-4 * (float(hardness) - 62) ** 2}
+            records[job.key] = Record(
+                job.key, Ending.COMPUTED, numbers=numbers, errors={"cof": 0.0}
+            )
+    run = [job.changes["shoe.material.shore_a"] for job in jobs if job.quick and job.point]
+    assert len(set(run)) == len(run) >= 6, run
