@@ -1,0 +1,67 @@
+"""Parts of trials and their statistics that are worked out by hand."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from underfoot.trials.recording.plates import finished_plate
+from underfoot.trials.statistics import intraclass_correlation
+from underfoot.trials.statistics.logistic import _FLIPS, _flipped_p
+from underfoot.trials.study.study_guard import _bodies_measured
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize("in_place", [False, True])
+def test_an_unloaded_plate_reads_no_force_and_no_moment(in_place):
+    """Drift of both is taken off; the centre of pressure is where the load stood."""
+    force, moment = np.zeros((2, 2000, 3))
+    force[800:1400, 2] = 700.0
+    place = np.array([0.05, -0.02, 0.0])
+    moment[:] = np.cross(place, force)
+    corners = np.array([[-0.3, -0.2, 0], [0.3, -0.2, 0], [0.3, 0.2, 0], [-0.3, 0.2, 0.0]])
+    drift = np.array([3.0, -2.0, 5.0]), np.array([4.0, -6.0, 2.0])
+    plate = finished_plate(
+        "one", force + drift[0], rate=1000.0, up=UP, moment=moment + drift[1], corners=corners,
+        in_place=in_place,
+    )  # fmt: skip
+    assert plate.baseline == pytest.approx(drift[0])
+    assert plate.force == pytest.approx(force, abs=1e-9)
+    assert plate.moment == pytest.approx(moment, abs=1e-9)
+    assert plate.centre_of_pressure[1000] == pytest.approx(place, abs=1e-6)
+
+
+def test_an_error_of_agreement_holds_what_raters_differ_by():
+    """Shrout and Fleiss 1979, Table 2: mean squares 11.24, 32.49 (judges), 1.02 of 6 subjects."""
+    ratings = [[9, 2, 5, 8], [6, 1, 3, 2], [8, 4, 6, 8], [7, 1, 2, 6], [10, 5, 6, 9], [6, 2, 4, 7]]
+    agreement = intraclass_correlation(ratings, "ICC(A,1)")
+    consistency = intraclass_correlation(ratings, "ICC(C,1)")
+    assert agreement.value == pytest.approx(0.2898, abs=1e-4)
+    assert consistency.error**2 == pytest.approx(1.0194, abs=1e-4)
+    assert agreement.error**2 == pytest.approx(1.0194 + (32.4861 - 1.0194) / 6, abs=1e-3)
+
+
+def test_what_was_seen_is_one_of_the_flips():
+    """p of an effect that no random flip reaches is that of one flip of all, never 0."""
+    groups = np.repeat(np.arange(40), 5)
+    x = np.repeat(np.arange(40) % 2, 5).astype(float)
+    y = np.where(np.arange(200) % 5 == 0, 1.0 - x, x)
+    matrix = np.column_stack([np.ones(200), x - x.mean()])
+    assert _flipped_p(y, matrix, groups, 1) == 1 / _FLIPS
+
+
+@pytest.mark.parametrize(("moved", "told"), [(1, False), (2, True), (5, True)])
+def test_another_person_shows_in_more_than_three_in_ten_distances_of_markers(moved, told):
+    names = ["thigh", "shank", "foot", "arm", "trunk"]
+    sizes = dict(zip(names, (0.42, 0.40, 0.21, 0.30, 0.50), strict=True))
+    bodies = [dict(sizes) for _ in range(6)]
+    for name in names[:moved]:
+        bodies[-1][name] *= 1.3
+    files = [
+        SimpleNamespace(file=f"{k}.c3d", curves={"person": body}, conditions={"person": "S1"})
+        for k, body in enumerate(bodies)
+    ]
+    doubts = list(_bodies_measured(cast(Any, files), "person"))
+    assert [one.files for one in doubts] == [("5.c3d",)] * told
