@@ -281,6 +281,8 @@ class Lines:
 
     def __init__(self, files: set[str]) -> None:
         self.red: list[str] = []
+        self.false = set[str]()
+        """Tests that fail in a copy of the repository without a fault."""
         self.tests: dict[str, list[Test]] = {}
         self._lines: dict[str, dict[int, list[Test]]] = defaultdict(lambda: defaultdict(list))
         for file, _ in test_texts():
@@ -303,6 +305,9 @@ class Lines:
 
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
+        return [one for one in self._meeting(mutant) if one.name not in self.false]
+
+    def _meeting(self, mutant: Mutant) -> list[Test]:
         of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
         if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
@@ -546,6 +551,64 @@ class Answer(NamedTuple):
         return f"{word} {self.mutant}   <- {end}"
 
 
+def met(
+    faults: list[Mutant], lines: Lines, copies: list[Path], *, seconds: float, own_only: bool
+) -> list[Answer]:
+    """Let faults meet their tests, as many at a time as there are copies of the repository."""
+    answers, known = list[Answer](), Deaths()
+    plans = dict[Mutant, tuple[list[Test], list[Test]]]()
+
+    def told(mutant: Mutant, killer: str | None, count: int) -> None:
+        near = killer is not None and killer.partition("::")[0] in tests_of(mutant.file)
+        answers.append(Answer(mutant, killer, near, count))
+        print(answers[-1], flush=True)
+        if killer and near:
+            known.add(mutant, killer)
+
+    for mutant in faults:
+        if (killer := known.killer(mutant)) and killer not in lines.false:
+            answers.append(Answer(mutant, killer, True, 0))
+            continue
+        meeting, files = lines.meeting(mutant), tests_of(mutant.file)
+        near = in_turn((one for one in meeting if one.file in files), seconds)
+        others = [] if own_only else [one for one in meeting if one.file not in files]
+        plans[mutant] = near, in_turn(others, seconds)
+        if not any(plans[mutant]):
+            del plans[mutant]
+            told(mutant, None, 0)
+    warm = [one for one in plans if lines.run_inside(one)]
+    for mutant, killer in warm_deaths(copies[0], warm, plans, len(copies)):
+        told(mutant, killer, sum(map(len, plans.pop(mutant))))
+    free, runs = list(copies), dict[int, Run]()
+
+    def take() -> None:
+        run, killer = ended(runs)
+        assert run.mutant is not None
+        free.append(run.folder)
+        told(run.mutant, killer, len(run.names))
+
+    for mutant in list(plans):
+        while not free:
+            take()
+        number, run = start(free.pop(), mutant, [*plans[mutant][0], *plans[mutant][1]])
+        runs[number] = run
+    while runs:
+        take()
+    return answers
+
+
+def false_killers(names: set[str], folder: Path) -> set[str]:
+    """Return the tests that fail in a copy without a fault."""
+    false = set[str]()
+    while left := sorted(names - false):
+        number, run = start(folder, None, [Test(name, 1.0) for name in left])
+        run, killer = ended({number: run})
+        if killer is None:
+            break
+        false.add(killer)
+    return false
+
+
 def main() -> None:
     """Make, run and count."""
     rooms = sorted(p.name for p in (REPOSITORY / SOURCE).iterdir() if (p / "__init__.py").exists())
@@ -581,79 +644,23 @@ def main() -> None:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:
         import_module(library)
-    answers, known = list[Answer](), Deaths()
-    runs: dict[int, Run] = {}
-    made = Path(tempfile.mkdtemp())
+    answers, made = list[Answer](), Path(tempfile.mkdtemp())
     try:
         copies = [copied(made / str(number)) for number in range(given.jobs)]
-
-        def take() -> None:
-            run, killer = ended(runs)
-            assert run.mutant is not None
-            mutant = run.mutant
-            own = run.names[0].partition("::")[0] in tests_of(mutant.file)
-            if killer is None and own and (others := elsewhere.pop(mutant)):
-                number, run = start(run.folder, mutant, others)
-                runs[number] = run
-                return
-            copies.append(run.folder)
-            answers.append(Answer(mutant, killer, own, len(run.names)))
-            print(answers[-1], flush=True)
-            if killer and own:
-                known.add(mutant, killer)
-
-        elsewhere = dict[Mutant, list[Test]]()
-        plans = dict[Mutant, tuple[list[Test], list[Test]]]()
-        for mutant in chosen:
-            if killer := known.killer(mutant):
-                answers.append(Answer(mutant, killer, True, 0))
-                continue
-            meeting, files = lines.meeting(mutant), tests_of(mutant.file)
-            own = in_turn((one for one in meeting if one.file in files), given.seconds)
-            others = [] if given.own else [one for one in meeting if one.file not in files]
-            others = in_turn(others, given.seconds)
-            if not (own or others):
-                answers.append(Answer(mutant, None, False, 0))
-                print(answers[-1], flush=True)
-                continue
-            plans[mutant] = own, others
-        warm = [one for one in plans if lines.run_inside(one)]
-        for mutant, killer in warm_deaths(copies[0], warm, plans, given.jobs):
-            own, others = plans.pop(mutant)
-            near = killer is not None and killer.partition("::")[0] in tests_of(mutant.file)
-            answers.append(Answer(mutant, killer, near, len(own) + len(others)))
-            print(answers[-1], flush=True)
-            if killer and near:
-                known.add(mutant, killer)
-        for mutant, (own, others) in plans.items():
-            elsewhere[mutant] = others
-            while not copies:
-                take()
-            number, run = start(copies.pop(), mutant, own or others)
-            runs[number] = run
-        while runs:
-            take()
-        false = set[str]()  # killers that fail without a fault too
-        killers = {one.killer for one in answers if one.killer}
-        while killers:
-            number, run = start(copies.pop(), None, [Test(name, 1.0) for name in sorted(killers)])
-            runs[number] = run
-            run, killer = ended(runs)
-            copies.append(run.folder)
-            if killer is None:
-                break
-            false.add(killer)
-            killers.discard(killer)
+        while chosen:  # what a test killed that fails without a fault too meets the others
+            told = met(chosen, lines, copies, seconds=given.seconds, own_only=given.own)
+            lines.false |= false_killers({one.killer for one in told if one.killer}, copies[0])
+            answers += [one for one in told if one.killer not in lines.false]
+            chosen = [one.mutant for one in told if one.killer in lines.false]
     finally:
         shutil.rmtree(made, ignore_errors=True)
-    if false:
-        print(
-            "These tests fail in a copy without a fault, and kill none:", *sorted(false), sep="\n  "
-        )
+    if lines.false:
+        names = sorted(lines.false)
+        print("These tests fail in a copy without a fault, and kill none:", *names, sep="\n  ")
     print(f"{'room':14} faults  own  quick   (seed {given.seed})")
     for room in (*(given.rooms or rooms), ""):
         of_room = [one for one in answers if one.mutant.file.startswith(f"{room}/" if room else "")]
-        dead = [one for one in of_room if one.killer is not None and one.killer not in false]
+        dead = [one for one in of_room if one.killer is not None]
         if of_room:
             own = sum(one.own for one in dead)
             quick = "-" if given.own else len(dead)

@@ -15,7 +15,7 @@ LENGTH, HEIGHT, WIDTH = 0.01, 1e-3, 10.0
     ("drag", "edge"), [(0.003, 1e-3), (0.01, 3.2e-4), (0.01, 4.6e-4), (0.1, 3.2e-5), (0.1, 6.8e-5)]
 )
 def test_a_low_lug_is_emptied_by_what_its_edge_does_not_let_in(drag, edge):
-    """h = (h_d^4 + h_0^4)^(1/4); empty is 1 - (h_0 / h_d)^4, less what is drawn back from behind."""
+    """h = (h_d^4 + h_0^4)^(1/4); empty is 1 - (h_0 / h_d)^4, less what is drawn back."""
     asperities = ExponentialLaw(MODULUS, 0.5, 2e-6)
     numbers = (np.array([value]) for value in (LENGTH, WIDTH, HEIGHT, edge, 1.0))
     lug = LugEdges(np.array([[1]]), np.ones((1, 1)), *numbers)

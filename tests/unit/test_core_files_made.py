@@ -17,7 +17,7 @@ def test_a_folder_is_made_in_folders_that_are_not_there_yet(tmp_path):
 
 def shown(lines):
     return SimpleNamespace(
-        heading=lambda: "One", headline=lambda: [], cautions=lambda: [], tables=lambda: [],
+        heading=lambda: "One", headline=list, cautions=list, tables=list,
         remarks=lambda: {"Assumed": [f"number {n}" for n in range(lines)]},
     )  # fmt: skip
 
