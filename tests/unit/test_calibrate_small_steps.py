@@ -2,10 +2,13 @@
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from underfoot.calibrate.compound import _beside
 from underfoot.calibrate.law_file import ENOUGH, TrialReadings, law_table
 from underfoot.calibrate.stribeck_curve import _gap
 from underfoot.case import load
@@ -41,3 +44,16 @@ def test_the_gap_of_a_pair_carries_its_pressure(pressure):
 def test_a_pair_that_closes_has_no_gap():
     case = load(EXAMPLE)
     assert _gap(case, 1e12) == 0.0
+
+
+def test_a_sweep_and_a_relaxation_test_are_compared_in_the_middle_of_what_both_saw():
+    """Sweep of 0.1 to 100 rad/s, test of 0.1 to 10 s: both saw 0.1 to 10 s, and 1 s."""
+
+    def fitted(low, high, modulus):
+        spectrum = SimpleNamespace(relaxation_modulus=lambda time: modulus / time)
+        return cast(Any, SimpleNamespace(frequency_range=(low, high), spectrum=spectrum))
+
+    told = _beside(fitted(0.1, 100.0, 2.0), fitted(0.01, 10.0, 3.0))
+    assert "1.50 times" in told
+    assert "at 1 s;" in told
+    assert "share no time" in _beside(fitted(1.0, 100.0, 2.0), fitted(1e-3, 1.0, 3.0))
