@@ -1,12 +1,16 @@
 """Parts of trials and their statistics that are worked out by hand."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from underfoot.trials.machines.pin_on_disk import _unloaded_stretches
+from underfoot.trials.readers.formats import file_format
 from underfoot.trials.recording.plates import finished_plate
+from underfoot.trials.simulator.folder import relaxation
 from underfoot.trials.statistics import intraclass_correlation
 from underfoot.trials.statistics.logistic import _FLIPS, _flipped_p
 from underfoot.trials.study.study_guard import _bodies_measured
@@ -65,3 +69,38 @@ def test_another_person_shows_in_more_than_three_in_ten_distances_of_markers(mov
     ]
     doubts = list(_bodies_measured(cast(Any, files), "person"))
     assert [one.files for one in doubts] == [("5.c3d",)] * told
+
+
+def test_a_rubber_pair_is_pressed_held_for_240_s_and_let_go():
+    test = relaxation(np.random.default_rng(0), thickness=5e-3, peak=800.0, share=0.35, rate=0.025)
+    time, travel, force = test.values()
+
+    def at(when, values):
+        return float(values[np.abs(time - when) < 0.05].mean())
+
+    assert [at(when, travel) for when in (1.0, 2.5, 3.5, 242.5, 243.5, 245.0)] == pytest.approx(
+        [0.0, 0.5, 1.0, 1.0, 0.5, 0.0], abs=1e-3
+    )
+    expected = [800 * (0.65 + 0.35 * np.exp(-0.025 * (when - 3))) for when in (3.5, 43.0, 242.5)]
+    assert [at(when, force) for when in (3.5, 43.0, 242.5)] == pytest.approx(expected, abs=1.0)
+    assert [at(when, force) for when in (1.0, 245.0)] == pytest.approx([0.0, 0.0], abs=1.0)
+
+
+@pytest.mark.parametrize("first", [1, 2, 127])
+def test_a_c3d_is_known_by_its_first_bytes_under_any_name(first):
+    head = bytes([first, 0x50]) + bytes(510)
+    assert file_format(head, Path("walk.txt")).name == file_format(head, Path("walk.c3d")).name
+    for text in (b"TPoints\n1 2", b"\xffP\0\0", b"\0P\0\0"):
+        assert file_format(text, Path("walk.txt")).name != file_format(head, Path("x.c3d")).name
+
+
+def test_one_spike_of_the_load_leaves_the_stretches_without_load():
+    rate = 100.0
+    load = np.repeat([0.0, 40.0, 0.0, 40.0, 0.0], 500) + np.random.default_rng(0).normal(
+        0, 0.1, 2500
+    )
+    spiked = load.copy()
+    spiked[700] = 5e3
+    stretches = _unloaded_stretches(load, rate)
+    assert len(stretches) == 3
+    assert _unloaded_stretches(spiked, rate) == stretches
