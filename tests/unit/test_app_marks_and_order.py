@@ -1,5 +1,6 @@
 """What the app lists and marks: the newest result first, marks where they are known."""
 
+import asyncio
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 from underfoot.app import work_sole
+from underfoot.app.jobs import Jobs, named, patiently
 from underfoot.app.project import Project
 from underfoot.app.trials_plots import tile_svg
-from underfoot.app.work_sole import WAYS, advised_groove
+from underfoot.app.work_sole import advised_groove
 from underfoot.trials.pages.figures import Tile
 
 
@@ -53,7 +55,7 @@ def test_an_advised_groove_lies_where_the_sole_met_the_floor(monkeypatch, side):
     monkeypatch.setattr(work_sole, "sole_shape", lambda _: shape)
     monkeypatch.setattr(work_sole, "grooves_of", lambda _: [])
     ((new,),) = advised_groove("case", "folder", 1, progress=cast(Any, None)).values()
-    u, v = WAYS[side]
+    u, v = ((1, 0), (-1, 0), (0, 1), (0, -1))[side]
     width = 1e-3 * float(new["width"].split()[0])
     middle = 0.5 * (lug["groove"] + step - width / 2)
     stretch = np.cos(angle) - 0.1 * np.sin(angle)
@@ -62,3 +64,11 @@ def test_an_advised_groove_lies_where_the_sole_met_the_floor(monkeypatch, side):
     found = [1e-3 * float(new[name].split()[0]) for name in ("along", "across", "length")]
     assert found == pytest.approx([along, lug["y"] + v * middle, long], abs=2e-5)
     assert new["angle"] == ("90 deg" if u else "0 deg")
+
+
+def test_long_jobs_give_way_and_what_a_person_waits_for_does_not(tmp_path):
+    async def made():
+        jobs = Jobs(tmp_path)
+        return jobs._lane("underfoot.compute")._call, jobs.live._call, jobs.reading._call
+
+    assert asyncio.run(made()) == (patiently, named, named)

@@ -1,8 +1,12 @@
 """A sole of a few cells drawn: its faces, and the scales of its pictures."""
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
+from underfoot.report.design_study import explorer
 from underfoot.report.drawn_sole import DrawnSole
 from underfoot.report.outsole import outsole_figure
 from underfoot.report.sole_mesh import sole_mesh
@@ -38,3 +42,16 @@ def test_the_depth_of_channels_is_drawn_up_to_the_deepest():
     figure = outsole_figure(surface, tread_measures(surface))
     image = figure.axes[1].collections[0]
     assert image.get_clim() == pytest.approx((0.0, 1e3 * float(np.nanmax(channel_depth(surface)))))
+
+
+def test_no_reason_of_a_design_ends_the_script_that_it_stands_in():
+    reason = "no </script><b>"
+    design = SimpleNamespace(number=0, changes={}, reason=reason)
+    plan = SimpleNamespace(dimensions=[], shown_goals=[], goals=[])
+    result = SimpleNamespace(
+        plan=plan, front=[], allowed=lambda _: [True],
+        believed=lambda designs, goals: (np.zeros((1, 0)), None),
+    )  # fmt: skip
+    shown = explorer(cast(Any, result), cast(Any, [design]))
+    assert "<b>" not in shown
+    assert "no \\u003c/script>\\u003cb>" in shown
