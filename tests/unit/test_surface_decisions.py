@@ -1,4 +1,4 @@
-"""Decisions at the edge of what counts as even, as a counter of rows, and as words below numbers."""
+"""Decisions at the edge: even positions, a counter of rows, words below the numbers."""
 
 import numpy as np
 import pytest
