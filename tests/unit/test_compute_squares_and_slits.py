@@ -8,8 +8,11 @@ import pytest
 
 from underfoot.compute.contact_friction import _on_squares
 from underfoot.core import InputError
+from underfoot.film.regimes import fluid_load_share
 from underfoot.friction import FrictionParts
-from underfoot.shoe import Sipes
+from underfoot.rough_contact import ExponentialLaw
+from underfoot.shoe import Heel, Sipes
+from underfoot.shoe.parametric.solid import check_printable
 
 
 def test_a_square_has_the_mean_of_its_cells_part_by_part():
@@ -34,3 +37,25 @@ def test_slits_take_less_than_half_of_their_spacing(width, fits):
     else:
         with pytest.raises(InputError, match="leave no lug"):
             Sipes(width, 1e-3, 2e-3)
+
+
+@pytest.mark.parametrize(("thickness", "fits"), [(9e-3, False), (11e-3, True)])
+def test_the_crown_of_a_heel_is_half_its_width_squared_over_twice_its_radius(thickness, fits):
+    """30 mm squared over 2 x 45 mm: the rim stands 10 mm above the middle."""
+    heel = Heel(
+        length=0.06, width=0.06, rear_radius=0.02, outsole_thickness=thickness, crown_radius=0.045
+    )
+    if fits:
+        check_printable(heel)
+    else:
+        with pytest.raises(InputError, match=r"reach 10 mm"):
+            check_printable(heel)
+
+
+def test_a_film_of_no_thickness_leaves_the_load_to_the_asperities():
+    law = ExponentialLaw(3e6, 0.5, 2e-6)
+    pressure = float(law.pressure(0.0))
+    assert fluid_load_share(0.0, law, 2 * pressure) == pytest.approx(0.5)
+    assert fluid_load_share([0.0, 1.0], law, pressure) == pytest.approx([0.0, 1.0])
+    with pytest.raises(InputError, match="film_thickness"):
+        fluid_load_share(-1e-9, law, pressure)
