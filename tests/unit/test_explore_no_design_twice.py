@@ -1,10 +1,13 @@
 """An optimisation runs no design that it has run."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 from underfoot.case import load
 from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
+from underfoot.explore.records import Records
 from underfoot.explore.result import StudyResult
 from underfoot.explore.study_file import read_plan
 
@@ -35,3 +38,18 @@ def test_an_optimisation_over_few_values_runs_each_once():
             )
     run = [job.changes["shoe.material.shore_a"] for job in jobs if job.quick and job.point]
     assert len(set(run)) == len(run) >= 6, run
+
+
+def test_a_record_that_was_packed_meanwhile_is_read_where_it_lies_now():
+    asked = []
+
+    def read(place):
+        asked.append(place)
+        if len(asked) == 1:
+            raise FileNotFoundError
+        return f"at {place}"
+
+    store = SimpleNamespace(_places={"one": 5 << 3 | 1}, _record=read)
+    store.look = lambda: store._places.update(one=9 << 3 | 1)
+    assert Records.__getitem__(cast(Any, store), "one") == "at 9"
+    assert asked == [5, 9]
