@@ -1,18 +1,24 @@
 """Stresses of finer cells on their squares; slits that leave no lug."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from underfoot.case import load
+from underfoot.compute import contact_friction as module
 from underfoot.compute.contact_friction import _on_squares
 from underfoot.core import InputError
 from underfoot.film.regimes import fluid_load_share
 from underfoot.friction import FrictionParts
+from underfoot.friction.pair_contact import PairContactLaw
 from underfoot.rough_contact import ExponentialLaw
 from underfoot.shoe import Heel, Sipes
 from underfoot.shoe.parametric.solid import check_printable
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_full_tread_glycerol.toml"
 
 
 def test_a_square_has_the_mean_of_its_cells_part_by_part():
@@ -59,3 +65,16 @@ def test_a_film_of_no_thickness_leaves_the_load_to_the_asperities():
     assert fluid_load_share([0.0, 1.0], law, pressure) == pytest.approx([0.0, 1.0])
     with pytest.raises(InputError, match="film_thickness"):
         fluid_load_share(-1e-9, law, pressure)
+
+
+@pytest.mark.parametrize("wear", [0.0, 1e-3])
+def test_a_slip_class_was_tested_on_the_new_sole(monkeypatch, wear):
+    case = load(EXAMPLE).replace("shoe.wear.depth", wear)
+    law, worn, new = object.__new__(PairContactLaw), SimpleNamespace(spacing=2e-3), object()
+    known = SimpleNamespace(fails=True)
+    monkeypatch.setattr(type(case.shoe), "known_class", lambda shoe: known)
+    monkeypatch.setattr(module, "sole_map", lambda one, spacing: new)
+    monkeypatch.setattr(module, "place_of_tread", lambda one, sole: (one.shoe.wear.depth, sole))
+    monkeypatch.setattr(module, "of_class", lambda *given: SimpleNamespace(law=given))
+    found = module.of_known_class(cast(Any, law), case, cast(Any, worn))
+    assert cast(Any, found)[:3] == (law, known, (0.0, new if wear else worn))
