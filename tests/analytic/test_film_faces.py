@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from underfoot.film.face_operator import Conductance, Faces, Inlet, Upwinding, face_operator
-from underfoot.film.operator import Pattern
+from underfoot.film.operator import Pattern, series_conductance
 from underfoot.film.pressure import _halved
 
 COUNT, VISCOSITY, SPACING = 6, 0.1, 1e-3
@@ -83,3 +83,20 @@ def test_a_coarse_field_holds_the_means_of_its_cells():
     halves = (field[0] + field[1]) / 2, (field[2] + field[3]) / 2, field[4]
     assert along == pytest.approx(np.array(halves))
     assert both == pytest.approx(np.column_stack([(along[:, 0] + along[:, 1]) / 2, along[:, 2]]))
+
+
+def test_two_halves_in_series_conduct_as_their_harmonic_mean():
+    a, b, step = np.array([2e-4, 5e-5]), np.array([1e-4, 3e-4]), 1e-9
+
+    def value(a, b, *place):
+        return series_conductance(a**3, b**3, 3 * a**2, 3 * b**2, *place)
+
+    found = value(a, b)
+    assert found.value == pytest.approx(2 / (a**-3 + b**-3))
+    for place in ((), (0.3,)):
+        slopes = value(a, b, *place)[1:]
+        moved = (value(a + step, b, *place), value(a - step, b, *place)), (
+            value(a, b + step, *place), value(a, b - step, *place),
+        )  # fmt: skip
+        for slope, (up, down) in zip(slopes, moved, strict=True):
+            assert slope == pytest.approx((up.value - down.value) / (2 * step), rel=1e-6)
