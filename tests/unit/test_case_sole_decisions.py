@@ -1,8 +1,13 @@
 """Lengths of a sole at the edge of what fits; what of an entry a given value stands in for."""
 
+import math
+
+import numpy as np
 import pytest
 
-from underfoot.case import Case
+from underfoot import rough_contact
+from underfoot.case import Case, friction
+from underfoot.compute.resolve import resolved
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 
@@ -46,3 +51,25 @@ def test_a_given_ra_stands_in_for_the_rq_of_the_entry(part, tmp_path):
     assert before.value(f"{part}.roughness.rq") is not None
     assert after.value(f"{part}.roughness.rq") is None
     assert after.value(f"{part}.roughness.ra") == 9e-6
+
+
+def test_hysteresis_of_a_floor_without_a_scan_is_of_waves_up_to_the_longest(monkeypatch):
+    """Its usual form: level up to the roll-off, then falling; scaled to the floor's slope."""
+    context = resolved(heel())
+    told = {}
+
+    def persson(pressure, wavenumber, spectrum, *given, **named):
+        told.update(wavenumber=wavenumber, spectrum=spectrum)
+        raise StopIteration
+
+    monkeypatch.setattr(rough_contact, "persson", persson)
+    monkeypatch.setattr(friction, "_loss_tested", lambda context: True)
+    with pytest.raises(StopIteration):
+        friction._hysteresis(context)
+    shortest, roll_off, longest = friction.HYSTERESIS_WAVES
+    q, density = told["wavenumber"], told["spectrum"]
+    assert 2 * math.pi / q[[0, -1]] == pytest.approx([longest, shortest])
+    level = q < 2 * math.pi / roll_off
+    assert density[level] == pytest.approx(density[0])
+    falling = np.polyfit(np.log(q[~level]), np.log(density[~level]), 1)[0]
+    assert falling == pytest.approx(-2 * (1 + context.interface.hurst))

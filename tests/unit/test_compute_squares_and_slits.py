@@ -12,6 +12,7 @@ from underfoot.compute import contact_friction as module
 from underfoot.compute.contact_friction import _on_squares
 from underfoot.core import InputError
 from underfoot.film.regimes import fluid_load_share
+from underfoot.fluid.temperature import sliding_heat, viscosity_slope
 from underfoot.friction import FrictionParts
 from underfoot.friction.pair_contact import PairContactLaw
 from underfoot.rough_contact import ExponentialLaw
@@ -78,3 +79,24 @@ def test_a_slip_class_was_tested_on_the_new_sole(monkeypatch, wear):
     monkeypatch.setattr(module, "of_class", lambda *given: SimpleNamespace(law=given))
     found = module.of_known_class(cast(Any, law), case, cast(Any, worn))
     assert cast(Any, found)[:3] == (law, known, (0.0, new if wear else worn))
+
+
+@pytest.mark.parametrize("rows", [2, 6])
+def test_a_film_is_warmed_by_the_pressure_over_the_length_that_is_loaded(rows):
+    """Two columns of cells of 2 mm; more of them bear the same load for longer, less warm."""
+    case = load(EXAMPLE)
+    loaded = np.zeros((9, 5))
+    loaded[1 : 1 + rows, 1:3] = 1e5
+    contact = SimpleNamespace(total_pressure=loaded, spacing=2e-3)
+    context = SimpleNamespace(viscosity_value=0.2)
+    heat, samples = 0.05, 200
+    found = module.film_warmth(case, cast(Any, context), heat, cast(Any, contact), samples=samples)
+    force, speed, seed = case.motion.normal_force, abs(case.motion.speed), case.numerics.seed
+    warmer = sliding_heat(heat, force / (2 * rows * 4e-6), speed, 2e-3 * rows)
+    room = module.ROOM_DEVIATION * module.normal_draws(
+        seed, "temperature of the laboratory", samples
+    )
+    share = module.named_shares(seed, "share of the heat of sliding", samples)
+    slope = viscosity_slope(0.2, oil=case.contaminant.chemistry == "oil")
+    assert found == pytest.approx(-slope * (room + warmer * share))
+    assert np.std(warmer * share) > 0.01 * np.std(room)
