@@ -6,6 +6,7 @@ import pytest
 from underfoot.core import DataError
 from underfoot.surface.heights import profile_from_positions
 from underfoot.surface.read import _is_numbered, read_numbers
+from underfoot.surface.spectrum import ProfileSpectrum, isotropic_from_profile
 
 
 @pytest.mark.parametrize(("off", "even"), [(0.008, True), (0.014, False)])
@@ -47,3 +48,13 @@ def test_words_below_the_numbers_are_left_out(tmp_path, rows):
     read = read_numbers(path)
     assert read.rows.tolist() == [[k, k * k] for k in range(rows)]
     assert any(note.endswith(": 1") for note in read.notes)
+
+
+def test_a_profile_goes_on_by_the_power_of_its_last_half_decade():
+    """A spectrum that falls by q^-2, and by q^-5 over a little more than the last half decade."""
+    q = np.geomspace(1e3, 1e6, 3000)
+    kink = 1e6 / np.sqrt(10.0) / 1.15
+    density = np.where(q < kink, (q / kink) ** -2.0, (q / kink) ** -5.0)
+    shown = isotropic_from_profile(ProfileSpectrum(q, 1e-18 * density, (1e3, 1e6)))
+    (power,) = [note.split()[-4] for note in shown.notes if "extrapolated" in note]
+    assert float(power) == pytest.approx(-5.0, abs=0.02)
