@@ -9,6 +9,7 @@ import pytest
 
 from underfoot.case import load
 from underfoot.compute import contact_friction as module
+from underfoot.compute import micro_contact as micro
 from underfoot.compute.contact_friction import _on_squares
 from underfoot.core import InputError
 from underfoot.film.regimes import fluid_load_share
@@ -100,3 +101,31 @@ def test_a_film_is_warmed_by_the_pressure_over_the_length_that_is_loaded(rows):
     slope = viscosity_slope(0.2, oil=case.contaminant.chemistry == "oil")
     assert found == pytest.approx(-slope * (room + warmer * share))
     assert np.std(warmer * share) > 0.01 * np.std(room)
+
+
+def test_a_rough_contact_is_told_at_the_mean_pressure_over_the_load(monkeypatch):
+    """Cells at 1, 1 and 4 bar: (1 + 1 + 16) / 6 = 3 bar, inside the table of 1 to 2 bar only 2."""
+    asked = []
+
+    def sourced(quantity, *at):
+        asked.append((quantity, *at))
+        return SimpleNamespace(value=2.0, uncertainty=0.4)
+
+    table = SimpleNamespace(
+        pressure=np.array([1e5, 2e5]), speed=np.array([0.1, 0.5]),
+        realizations=np.array([4.0, 9.0]), sourced=sourced,
+    )  # fmt: skip
+    context = SimpleNamespace(rough_contact=lambda _: table, rq_deviation=0.3)
+    parts = SimpleNamespace(
+        context=context, objects={}, case=SimpleNamespace(motion=SimpleNamespace(speed=-0.7))
+    )
+    contact = SimpleNamespace(contact_pressure=np.array([[1e5, 1e5], [4e5, 0.0]]))
+    monkeypatch.setattr(micro, "contact_deviation", lambda *given: given[1:3])
+    found = micro.micro_contact(cast(Any, parts), cast(Any, contact))
+    assert (found.pressure, found.speed) == (pytest.approx(3e5), -0.7)
+    assert found.contact_deviation == (2e5, 0.5)
+    assert asked == [("mean_gap", 2e5, 0.5), ("flow_factor_along", 2e5, 0.5)]
+    expected = [np.sqrt(0.1**2 + 0.3**2 + e**2) for e in (micro.GAP_ERROR, micro.FLOW_ERROR)]
+    assert (found.gap_deviation, found.flow_deviation) == pytest.approx(
+        (expected[0], min(expected[1], 1.0))
+    )
