@@ -7,15 +7,16 @@
 
 A fault turns a sign, a comparison or a choice round, moves a number or an index, or swaps two
 arguments. Which quick tests run which lines is recorded first (``mutants_map.py``), where it isn't
-known yet. A fault meets the tests that run its line, in a copy of the repository, in a fork of a
-process that holds the libraries, until the first that fails: first those of its room (they import
-its module, or are called ``test_<room>_``), then the others; each test once before one comes again
-with other parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import
-meets the tests that run anything of its file or are of its room; one that no test runs in this
-process meets those of its room if it is compiled, else those that start a process. What survives is
-printed with its place: mend the tests, or say why it may live. A test that fails without a fault
-kills nothing; a fault that its room's test killed counts as dead while that test and the source
-stand. Not part of ``make test``.
+known yet. A fault meets the tests that run its line, in a copy of the repository, until the first
+that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or, where its line
+runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
+its room (they import its module, or are called ``test_<room>_``), then the others; each test once
+before one comes again with other parameters, the quickest first, ``--seconds`` of each at most. A
+line that runs at import meets the tests that run anything of its file or are of its room; one that
+no test runs in this process meets those of its room if it is compiled, else those that start a
+process. What survives is printed with its place: mend the tests, or say why it may live. A test
+that fails without a fault kills nothing; a fault that its room's test killed counts as dead while
+that test and the source stand. Not part of ``make test``.
 """
 
 import ast
@@ -43,6 +44,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from mutants_map import digest, known_map, write_map
+from mutants_warm import NOT_PLANTED, Plan, deaths
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
@@ -279,6 +281,8 @@ class Lines:
 
     def __init__(self, files: set[str]) -> None:
         self.red: list[str] = []
+        self.false = set[str]()
+        """Tests that fail in a copy of the repository without a fault."""
         self.tests: dict[str, list[Test]] = {}
         self._lines: dict[str, dict[int, list[Test]]] = defaultdict(lambda: defaultdict(list))
         for file, _ in test_texts():
@@ -293,8 +297,17 @@ class Lines:
                 for line, numbers in found["lines"][path].items():
                     self._lines[path][int(line)] += [every[n] for n in numbers if passed[n]]
 
+    def run_inside(self, mutant: Mutant) -> bool:
+        """Return whether tests run the line of a fault, inside a function."""
+        begin = statement_lines(mutant.file, mutant.line)[0]
+        met = self._lines.get(mutant.file, {})
+        return begin > 0 and bool(met.get(mutant.line) or met.get(begin))
+
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
+        return [one for one in self._meeting(mutant) if one.name not in self.false]
+
+    def _meeting(self, mutant: Mutant) -> list[Test]:
         of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
         if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
@@ -458,6 +471,26 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
         time.sleep(0.02)
 
 
+def warm_deaths(
+    folder: Path,
+    faults: list[Mutant],
+    plans: dict[Mutant, tuple[list[Test], list[Test]]],
+    jobs: int,
+) -> Iterator[tuple[Mutant, str | None]]:
+    """Yield the faults that a process with all tests could plant, and what killed each."""
+    asked = list[Plan]()
+    for number, mutant in enumerate(faults):
+        path = folder / SOURCE / mutant.file
+        data, tests = path.read_bytes(), [*plans[mutant][0], *plans[mutant][1]]
+        text = data[: mutant.start] + mutant.new.encode() + data[mutant.end :]
+        limit = int(LEAST_TIME + 4 * sum(one.seconds for one in tests))
+        asked.append(Plan(number, path, text, [one.name for one in tests], limit))
+    files = sorted({name.partition("::")[0] for plan in asked for name in plan.names})
+    for number, killer in deaths(folder, asked, files, QUICK, jobs) if asked else ():
+        if killer != NOT_PLANTED:
+            yield faults[number], killer or None
+
+
 def record(tests: Iterable[str], sources: set[str], jobs: int) -> None:
     """Run the quick tests, of these files, whose lines in ``sources`` are not known yet."""
     if not (files := [file for file in tests if known_map(file, sources) is None]):
@@ -518,6 +551,64 @@ class Answer(NamedTuple):
         return f"{word} {self.mutant}   <- {end}"
 
 
+def met(
+    faults: list[Mutant], lines: Lines, copies: list[Path], *, seconds: float, own_only: bool
+) -> list[Answer]:
+    """Let faults meet their tests, as many at a time as there are copies of the repository."""
+    answers, known = list[Answer](), Deaths()
+    plans = dict[Mutant, tuple[list[Test], list[Test]]]()
+
+    def told(mutant: Mutant, killer: str | None, count: int) -> None:
+        near = killer is not None and killer.partition("::")[0] in tests_of(mutant.file)
+        answers.append(Answer(mutant, killer, near, count))
+        print(answers[-1], flush=True)
+        if killer and near:
+            known.add(mutant, killer)
+
+    for mutant in faults:
+        if (killer := known.killer(mutant)) and killer not in lines.false:
+            answers.append(Answer(mutant, killer, True, 0))
+            continue
+        meeting, files = lines.meeting(mutant), tests_of(mutant.file)
+        near = in_turn((one for one in meeting if one.file in files), seconds)
+        others = [] if own_only else [one for one in meeting if one.file not in files]
+        plans[mutant] = near, in_turn(others, seconds)
+        if not any(plans[mutant]):
+            del plans[mutant]
+            told(mutant, None, 0)
+    warm = [one for one in plans if lines.run_inside(one)]
+    for mutant, killer in warm_deaths(copies[0], warm, plans, len(copies)):
+        told(mutant, killer, sum(map(len, plans.pop(mutant))))
+    free, runs = list(copies), dict[int, Run]()
+
+    def take() -> None:
+        run, killer = ended(runs)
+        assert run.mutant is not None
+        free.append(run.folder)
+        told(run.mutant, killer, len(run.names))
+
+    for mutant in list(plans):
+        while not free:
+            take()
+        number, run = start(free.pop(), mutant, [*plans[mutant][0], *plans[mutant][1]])
+        runs[number] = run
+    while runs:
+        take()
+    return answers
+
+
+def false_killers(names: set[str], folder: Path) -> set[str]:
+    """Return the tests that fail in a copy without a fault."""
+    false = set[str]()
+    while left := sorted(names - false):
+        number, run = start(folder, None, [Test(name, 1.0) for name in left])
+        run, killer = ended({number: run})
+        if killer is None:
+            break
+        false.add(killer)
+    return false
+
+
 def main() -> None:
     """Make, run and count."""
     rooms = sorted(p.name for p in (REPOSITORY / SOURCE).iterdir() if (p / "__init__.py").exists())
@@ -553,68 +644,23 @@ def main() -> None:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:
         import_module(library)
-    answers, deaths = list[Answer](), Deaths()
-    runs: dict[int, Run] = {}
-    made = Path(tempfile.mkdtemp())
+    answers, made = list[Answer](), Path(tempfile.mkdtemp())
     try:
         copies = [copied(made / str(number)) for number in range(given.jobs)]
-
-        def take() -> None:
-            run, killer = ended(runs)
-            assert run.mutant is not None
-            mutant = run.mutant
-            own = run.names[0].partition("::")[0] in tests_of(mutant.file)
-            if killer is None and own and (others := elsewhere.pop(mutant)):
-                number, run = start(run.folder, mutant, others)
-                runs[number] = run
-                return
-            copies.append(run.folder)
-            answers.append(Answer(mutant, killer, own, len(run.names)))
-            print(answers[-1], flush=True)
-            if killer and own:
-                deaths.add(mutant, killer)
-
-        elsewhere = dict[Mutant, list[Test]]()
-        for mutant in chosen:
-            if killer := deaths.killer(mutant):
-                answers.append(Answer(mutant, killer, True, 0))
-                continue
-            meeting, files = lines.meeting(mutant), tests_of(mutant.file)
-            own = in_turn((one for one in meeting if one.file in files), given.seconds)
-            others = [] if given.own else [one for one in meeting if one.file not in files]
-            others = in_turn(others, given.seconds)
-            elsewhere[mutant] = others
-            if not (own or others):
-                answers.append(Answer(mutant, None, False, 0))
-                print(answers[-1], flush=True)
-                continue
-            while not copies:
-                take()
-            number, run = start(copies.pop(), mutant, own or others)
-            runs[number] = run
-        while runs:
-            take()
-        false = set[str]()  # killers that fail without a fault too
-        killers = {one.killer for one in answers if one.killer}
-        while killers:
-            number, run = start(copies.pop(), None, [Test(name, 1.0) for name in sorted(killers)])
-            runs[number] = run
-            run, killer = ended(runs)
-            copies.append(run.folder)
-            if killer is None:
-                break
-            false.add(killer)
-            killers.discard(killer)
+        while chosen:  # what a test killed that fails without a fault too meets the others
+            told = met(chosen, lines, copies, seconds=given.seconds, own_only=given.own)
+            lines.false |= false_killers({one.killer for one in told if one.killer}, copies[0])
+            answers += [one for one in told if one.killer not in lines.false]
+            chosen = [one.mutant for one in told if one.killer in lines.false]
     finally:
         shutil.rmtree(made, ignore_errors=True)
-    if false:
-        print(
-            "These tests fail in a copy without a fault, and kill none:", *sorted(false), sep="\n  "
-        )
+    if lines.false:
+        names = sorted(lines.false)
+        print("These tests fail in a copy without a fault, and kill none:", *names, sep="\n  ")
     print(f"{'room':14} faults  own  quick   (seed {given.seed})")
     for room in (*(given.rooms or rooms), ""):
         of_room = [one for one in answers if one.mutant.file.startswith(f"{room}/" if room else "")]
-        dead = [one for one in of_room if one.killer is not None and one.killer not in false]
+        dead = [one for one in of_room if one.killer is not None]
         if of_room:
             own = sum(one.own for one in dead)
             quick = "-" if given.own else len(dead)

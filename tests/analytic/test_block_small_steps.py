@@ -7,6 +7,7 @@ from underfoot.block.assembly import impact_friction
 from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
 from underfoot.block.march import loaded_state, saved_state
 from underfoot.block.one_term_fit import fit_single_exponential
+from underfoot.block.prony_march import prony_step
 from underfoot.block.result import EDGE_EXCESS, EnergyLedger, edge_excess_area
 from underfoot.core import DataError
 from underfoot.material import single_exponential_spectrum
@@ -131,3 +132,14 @@ def test_a_run_goes_on_from_its_own_file_and_from_no_other(tmp_path):
     assert loaded_state(path, "this one")["u"].tolist() == [0, 1, 2]
     with pytest.raises(DataError, match="belongs to another"):
         loaded_state(path, "another")
+
+
+@pytest.mark.parametrize("step", [1e-3, 1e-7, 1e-12])
+def test_a_step_of_any_length_has_the_mean_of_its_decay(step):
+    """phi = (1 - exp(-x)) / x = 1 - x / 2 + x^2 / 6 - ...; a short step is stiff as glass."""
+    rates, fractions = np.array([0.5, 40.0]), np.array([0.3, 0.6])
+    found, x = prony_step(fractions, rates, step), rates * step
+    assert found.decay == pytest.approx(np.exp(-x), rel=1e-12)
+    mean = 1 - x / 2 + x**2 / 6 - x**3 / 24
+    assert found.mean_decay == pytest.approx(mean, rel=1e-6)
+    assert found.stiffening == pytest.approx(1 - fractions @ (1 - mean), rel=1e-6)

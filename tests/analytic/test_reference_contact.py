@@ -118,6 +118,8 @@ def test_checkerboard_equals_its_waves():
 def test_sliding_forms_refuse_partial_contact(cof):
     with pytest.raises(ValueError, match="full contact needs"):
         cof(100.0, 2e-6, 1e-4, 3e6 + 1e6j)
+    with pytest.raises(ValueError, match="full contact needs"):
+        cof([1e9, 100.0], 2e-6, 1e-4, 3e6 + 1e6j)  # one of several
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.5])

