@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array, Mask
 
 Labels = NDArray[np.intp]
+Nearest = tuple[NDArray[np.intp], ...]
 
 
 def pieces(mask: Mask, *, diagonal: bool = False) -> tuple[Labels, int]:
@@ -71,7 +72,7 @@ def distance_to(mask: Mask) -> Array:
     return np.asarray(distance, dtype=np.float64)
 
 
-def nearest_true(mask: Mask) -> tuple[NDArray[np.intp], ...]:
+def nearest_true(mask: Mask) -> Nearest:
     """Return, for each cell, the indices of the nearest cell where ``mask`` is true."""
     from scipy.ndimage import distance_transform_edt
 
