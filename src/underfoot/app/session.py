@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import secrets
+import time
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -25,6 +27,8 @@ PICTURES = "/api/picture/"
 """Where the small pictures of soles are."""
 LOOK = 1.0
 """s between two looks at what other pages and programs did."""
+SETTLED = 5.0
+"""s after a page was shown anew in which what a person does there may be of the page before."""
 MOST_KEPT = 64
 """Pieces of data that the server keeps for its pages, the newest."""
 
@@ -131,10 +135,12 @@ class Session:
         shown; given what this page does itself it does that, and what another page did just before
         is still to be shown.
         """
-        shown = [state()]
+        shown, filled = [state()], [-math.inf]
 
         def take(action: Callable[[], object] | None = None) -> None:
-            current = action is None or state() == shown[0]
+            # what a person did on the page before it was shown anew is not on it
+            settled = time.monotonic() - filled[0] > SETTLED
+            current = action is None or (settled and state() == shown[0])
             if action is not None:
                 action()
             if current:
@@ -143,6 +149,7 @@ class Session:
         async def look() -> None:
             if state() != shown[0] and not busy():
                 take()
+                filled[0] = time.monotonic()
                 followed = changed()
                 if isawaitable(followed):
                     await followed
