@@ -221,7 +221,7 @@ def test_a_column_of_dates_marks_no_thousands(tmp_path):
     """Two points in "01.02.2024" say nothing about that of "1.234"."""
     rows = [["file", "date", "viscosity (cP)"], ["a.csv", "01.02.2024", "1.234"]]
     noted = conditions_of(tmp_path, as_csv(tmp_path, rows, ";"))
-    assert noted["a.csv"] == {"date": "01.02.2024", "viscosity": pytest.approx(1.234e-3)}
+    assert noted["a.csv"] == {"date": "2024-02-01", "viscosity": pytest.approx(1.234e-3)}
 
 
 EDITS = {
