@@ -6,6 +6,7 @@ import csv
 import json
 import signal
 import subprocess
+import time
 
 import pytest
 from hypothesis import given
@@ -274,11 +275,9 @@ def test_a_run_that_is_stopped_in_its_advice_has_stored_its_answer(tmp_path) -> 
     path.write_text(TEXT + 'numerics.grid_spacing = "2.5 mm"\n', encoding="utf-8")
     command = [*COMMAND, "run", str(path), "--out", str(tmp_path / "full")]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
-        assert running.stderr is not None
-        for line in running.stderr:
-            if "effect of possible changes" in line:
-                running.send_signal(signal.SIGINT)
-                break
+        while not stored.exists() and running.poll() is None:  # stored before advice begins
+            time.sleep(0.01)
+        running.send_signal(signal.SIGINT)
         _, said = running.communicate(timeout=180)
     assert running.returncode == 130, said
     assert json.loads(stored.read_text(encoding="utf-8"))["cof"]["value"] > 0
