@@ -121,7 +121,7 @@ def test_a_film_of_water_under_a_resting_foot_lets_its_steps_end():
         floor="quarry_tile",
         contaminant="water",
         motion="heel_strike_to_flat",
-    )
+    ).replace("motion.start_film", "50 um")
     walker = design(slip_population(case), 16)[3]
     motion = full_run(slip_setting(case), walker).motion
     assert motion.status.usable
