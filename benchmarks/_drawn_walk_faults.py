@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import bessel, bilinear, butter, lfilter, sosfilt, sosfiltfilt
 
 from benchmarks._instrument_walk_faults import _along, _sign
-from benchmarks._laboratory_walk_faults import _bump, _curve, _weight
+from benchmarks._laboratory_walk_faults import _bump, _curve, _loaded_alike, _weight
 from benchmarks._more_walk_faults import TrialFault, _boxcar, _forces, _loads, _plates, _shear
 from underfoot.trials import Trial, walkway_of
 
@@ -50,8 +50,7 @@ def _channels_rotate(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
 def _interleaved(forces: list[np.ndarray], trial: Trial, rng: Random) -> list:
     """Blocks of samples of two plates by turns."""
     up = walkway_of(trial).up
-    loaded = [i for i, f in enumerate(forces) if (f @ up).max() > 100.0]
-    if len(loaded) > 1 and len({len(forces[i]) for i in loaded}) == 1:
+    if loaded := _loaded_alike(forces, up):
         i, j = loaded[:2]
         block = np.arange(len(forces[i])) // int(rng.integers(1, 5)) % 2 == 1
         a, b = forces[i].copy(), forces[j].copy()

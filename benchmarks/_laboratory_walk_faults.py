@@ -29,11 +29,17 @@ def _bump(count: int, first: float, last: float) -> np.ndarray:
     return np.where(inside, np.sin(np.pi * (share - first) / (last - first)) ** 2, 0.0)
 
 
+def _loaded_alike(forces: list[np.ndarray], up: np.ndarray) -> list[int]:
+    """Numbers of the plates that bear a step, where they are several of one length."""
+    loaded = [i for i, f in enumerate(forces) if (f @ up).max() > 100.0]
+    alike = len(loaded) > 1 and len({len(forces[i]) for i in loaded}) == 1
+    return loaded if alike else []
+
+
 # ------------------------------------------------------------------ who stands where
 def _on_one_plate(forces: list[np.ndarray], trial: Trial, rng: Random) -> list:
     up = walkway_of(trial).up
-    loaded = [i for i, f in enumerate(forces) if (f @ up).max() > 100.0]
-    if len(loaded) > 1 and len({len(forces[i]) for i in loaded}) == 1:
+    if loaded := _loaded_alike(forces, up):
         forces[loaded[0]] = np.sum([forces[i] for i in loaded], axis=0)
         for i in loaded[1:]:
             forces[i] = rng.normal(0.0, 0.5, forces[i].shape)
@@ -122,8 +128,7 @@ def _blocks_exchanged(f: np.ndarray, rate: float, rng: Random) -> np.ndarray:
 
 def _exchanged_midway(forces: list[np.ndarray], trial: Trial, rng: Random) -> list:
     up = walkway_of(trial).up
-    loaded = [i for i, f in enumerate(forces) if (f @ up).max() > 100.0]
-    if len(loaded) > 1 and len({len(forces[i]) for i in loaded}) == 1:
+    if loaded := _loaded_alike(forces, up):
         i, j = loaded[:2]
         on = np.flatnonzero(forces[i] @ up > 100.0)
         at = on[0] + round(rng.uniform(0.1, 0.4) * (on[-1] - on[0]))

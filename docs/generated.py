@@ -345,11 +345,11 @@ def score_table() -> str:
     return """\
 | asked of the friction law | answer |
 |---|---|
-| share of the variance of ln COF that it explains in a laboratory it was not fitted to | {r2} |
+| share of the variance of ln COF explained, in laboratories it was not fitted to | {r2} |
 | typical error there | a factor of {factor} |
 | readings, laboratories ([the corpus](docs/studies/corpus.md)) | {readings}, {laboratories} |
-| statements of the [report](docs/studies/report.md) whose work it continues: \
-all, agreeing, disagreeing ([each one](docs/studies/summary.md)) \
+| statements of its [source report](docs/studies/report.md): \
+all, agreeing, disagreeing ([each](docs/studies/summary.md)) \
 | {statements}, {agrees}, {disagrees} |
 """.format(**scores())
 

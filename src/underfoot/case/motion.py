@@ -50,8 +50,8 @@ class Motion(Option):
     force_rise_time: Time = default(0.03, "30 ms", _TESTER)
     duration: Time | None = optional("when the result is taken; default: when sliding is steady")
     start_film: Annotated[float, Quantity("m", 1e-6, 0.01)] | None = optional(
-        "lowest point above the floor when loading starts; default: the pool's depth, from whose "
-        "surface on the floor feels the shoe"
+        "lowest point above the floor when loading starts; default: the pool's surface, 0.2 mm at "
+        "most (steady sliding forgets it)"
     )
 
     @property
