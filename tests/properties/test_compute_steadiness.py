@@ -141,6 +141,15 @@ def test_a_step_lands_from_the_pool_and_a_deep_one_changes_nothing():
     assert deep["cof"] == pytest.approx(own["cof"], rel=0.01)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("shoe", ["work_shoe_half_tread", "work_shoe_untreaded"])
+def test_a_step_of_walking_takes_steps_short_enough(shoe):
+    """With as many as a held load its COF was up to 3.9 % too high."""
+    parts = prepared(untreaded(shoe=shoe, motion="heel_strike_to_flat"), 1e-3)
+    cofs = [place_numbers(parts, solved_motion(parts, finer=finer))["cof"] for finer in (1, 2)]
+    assert cofs[0] == pytest.approx(cofs[1], rel=0.01)
+
+
 def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
     """Nothing holds it up, and one step did not find the floor from 0.2 mm: it begins lower."""
     case = sole_case(70.0, "pair").replace("motion.duration", "0.2 s")

@@ -43,7 +43,7 @@ LANDING = 0.2e-3
 what lies above takes a hundredth of what a film of 20 um takes."""
 HISTORY_FINER = 2
 """How many times the steps of a held load a history takes: a shoe that rolls leaves its film. Twice
-as many again move COF of a step by 0.8 % in an untreaded shoe, by 0.7 % in a treaded one."""
+as many again lower COF of a step by 0.8 % in an untreaded shoe, by 0.6 % in a treaded one."""
 MOST_STEPS = 20
 """Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 

@@ -110,7 +110,7 @@ def compute(options: Options) -> Computed:
         quantities(levels, draws) | _wedge_squeeze_quantities(films),
         (*tables(fine, levels, draws), friction),
         figures(fine, passages, films),
-        (*conclusions(fine, passages), words, settled(films)),
+        (*conclusions(fine, passages), words, wedge_sentence(films)),
         assumptions=(
             f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
             "measured).",
@@ -568,7 +568,7 @@ def _wedge_squeeze_figure(films: Sequence[HeldFilm], passages: Mapping[str, Arra
     )
 
 
-def settled(films: Sequence[HeldFilm]) -> str:
+def wedge_sentence(films: Sequence[HeldFilm]) -> str:
     """Return in words what speed leaves of the film once the fluid trapped at landing is out."""
     middle = {one.speed: one for one in films if one.viscosity == CURVES[1]}
     shares = ", ".join(
