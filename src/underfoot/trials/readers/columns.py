@@ -193,7 +193,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
                 "there is no time column and no sampling rate",
                 allowed=f"a column called time; found {', '.join(sheet.columns[:8])}",
                 remedy='Say rate = "1000 Hz" or time = "..." under [file] in a profile. A table of '
-                "readings, a number a run, needs a protocol of readings, as machine_cof",
+                "readings, a number a run, needs a protocol of readings: --protocol machine_cof",
             )
         draft.notes.append(f"sampling rate {draft.rate:g} Hz from the header")
         return
