@@ -90,25 +90,24 @@ class _Scene:
         cells = np.concatenate([self.picture.reshape(-1, 4), [RUBBER]]).astype(np.uint8)
         return np.repeat(cells[self.mesh.cell], 4, axis=0)
 
-    def surface(self) -> tuple[SurfaceMesh, float]:
+    def surface(self) -> tuple[SurfaceMesh, tuple[float, ...]]:
         """Return the sole as few triangles, and within what (m) its lugs are of the drawing.
 
-        Where neither crossings nor faces are known, as of a scan, a line passes within
-        ``TOLERANCE`` cells of where cells change, half a cell off the drawing; those of a file are
-        the cells of its height map.
+        A second length is that of slivers which the rim leaves of a lug of a file. Where neither
+        crossings nor faces are known, as of a scan, a line passes within ``TOLERANCE`` cells of
+        where cells change, half a cell off the drawing; those of a file are the cells of its map.
         """
         sole, case = self.sole, self.case
         if case is None:
             made = surface_mesh(sole.x, sole.y, sole.height, sole.land)
-            return made, (TOLERANCE + 0.5) * sole.spacing
+            return made, ((TOLERANCE + 0.5) * sole.spacing,)
         outsole = case.shoe.outsole
         side = spacing_for(sole, designed=outsole is None)
         made = designed_surface(case, side)
         if outsole is None:
-            return made, max(DRAWN, TOLERANCE * side)
-        if len(file_outsole(case).edges):
-            return made, DRAWN
-        return made, (TOLERANCE + 0.5) * max(side, outsole.map_spacing)
+            return made, (max(DRAWN, TOLERANCE * side),)
+        on_cells = (TOLERANCE + 0.5) * max(side, outsole.map_spacing)
+        return made, (DRAWN, on_cells) if len(file_outsole(case).edges) else (on_cells,)
 
     def of_faces(self, name: str) -> NDArray[np.float64]:
         """Return a field (SI) on the faces, nan on walls and where there is none."""
@@ -263,7 +262,8 @@ def _write_glb(scene: _Scene, path: Path) -> Exported:
     ends = light.points[: light.below, :2] - [sole.x[0], sole.y[0]]
     place[: light.below] = (ends / sole.spacing + 1.5) / size
     colours = np.flip(picture.transpose(1, 0, 2), axis=0)
-    told = f"edges of lugs within {1e3 * within:.2f} mm"
+    lengths = [f"{1e3 * each:.2f} mm" for each in within]
+    told = f"edges of lugs within {', slivers at the rim within '.join(lengths)}"
     told = "; ".join(filter(None, (told, scene.remark)))
     material = trimesh.visual.material.PBRMaterial(
         baseColorTexture=Image.fromarray(colours[..., :3]),
