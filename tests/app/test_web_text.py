@@ -1,5 +1,6 @@
 """The words of the app: every language has the same, and every word that a page asks for."""
 
+import ast
 import re
 import tomllib
 from pathlib import Path
@@ -55,6 +56,61 @@ def test_what_a_cof_is_unsure_of_has_a_name_in_each_language():
 
     german = tomllib.loads((FOLDER / "de.package.toml").read_text("utf-8"))
     assert not [name for name in INPUTS.values() if f"{name} {{}}" not in german]
+
+
+OTHERS = {  # NiceGUI's and the system's
+    *("Connection lost.", "Trying to reconnect...", "permission denied"),
+    "The message is too large for WebSocket transmission.",
+}
+WORD = re.compile("[A-Za-z]{3}")
+MARKS = re.compile(r"""\{\}|[:;,.()"'?=+|·±]| x """)
+
+
+def said_by_the_package():
+    """Return every text and name of the source and its data, what the app says aside."""
+    texts = []
+    for path in (file for file in SOURCE.parent.rglob("*") if file.suffix in SPEAKING):
+        if path.suffix != ".py":
+            texts += [path.read_text(encoding="utf-8")] if FOLDER not in path.parents else []
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            name = next(
+                (getattr(node, key) for key in ("arg", "name", "id") if hasattr(node, key)), ""
+            )
+            said = node.value if isinstance(node, ast.Constant) else name
+            if isinstance(said, str):
+                texts += [said, said.replace("_", " ")] if " " not in said else [said]
+    return " ".join("\n".join(texts).lower().split())
+
+
+SPEAKING = (".py", ".html", ".js", ".toml", ".csv")
+
+
+def test_the_package_still_says_what_has_a_translation():
+    """A word that changes in the source left its German behind, and the page became English."""
+    source = said_by_the_package()
+
+    def is_said(chunk):  # whole, or put together of two
+        words = chunk.lower().split()
+        parts = [(" ".join(words[:k]), " ".join(words[k:])) for k in range(len(words))]
+        return any(all(part in source for part in pair) for pair in parts)
+
+    assert is_said("load on the film")
+    assert not is_said("load in the film that nobody says")
+    for code in LANGUAGES:
+        sentences = Text(code).of_package()
+        own = {
+            english
+            for english, other in sentences.items()
+            if MARKS.sub("", english) == re.sub(r"\{\d\}", "", MARKS.sub("", other))
+        }
+        chunks = {each: MARKS.split(each) for each in sentences.keys() - own - OTHERS}
+        assert not [
+            (each, part)
+            for each, parts in chunks.items()
+            for part in parts
+            if WORD.search(part) and not is_said(part)
+        ]
 
 
 def test_language_is_the_chosen_one_then_the_browser_s():

@@ -181,7 +181,8 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
         return "No file gave usable numbers: see the reasons below."
     cautions = sum(one.verdict == "caution" for one in usable)
     of = f"{cautions} of {_counted(len(usable), 'usable files')}"
-    tail = f" {of} {'carries' if cautions == 1 else 'carry'} a caution." if cautions else ""
+    carry = "carries a caution" if cautions == 1 else "carry a caution"
+    tail = f" {of} {carry}." if cautions else ""
     tables = {table.name: table for table in analysis.study.tables}
     if kind == "human_slip":
         judged = [one for one in usable if "slip" in one.main]
