@@ -84,3 +84,15 @@ def test_everybody_slips_by_the_fitted_sole_over_the_fitted_pressure(made):
     middle = study.subjects[module._middle(study.subjects)].walker
     assert study.representative.motion.walker == middle
     assert not study.full
+
+
+def test_people_hold_their_shoe_angle_unless_the_recorded_fall_is_asked_for():
+    times = np.linspace(0.0, 0.4, 9)
+    for asked, falls in (({}, False), ({"recorded_angle": True}, True)):
+        people = Population(subjects=30, **asked).walkers()
+        angles = [each.demands(times)[2] for each in people if each.history.foot_angle is not None]
+        assert angles
+        assert [bool(np.ptp(angle) > 0.01) for angle in angles] == [falls] * len(angles)
+        assert [angle[0] for angle in angles] == [
+            each.shoe_angle for each in people if each.history.foot_angle is not None
+        ]
