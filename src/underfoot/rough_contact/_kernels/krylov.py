@@ -1,7 +1,8 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from operator import gt
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
 
-from .members import counted, each, flat, numbers, products, sums
+from .members import counted, each, flat, products, sums
 from .operators import Operators
 
 _DEPENDENT = 1e-5
@@ -40,7 +41,7 @@ class Restriction:
             self._mask = xp.astype(rows, xp.float32)
             self.size = self.points
             return
-        self.size = int(self.nodes[0])
+        self.size = self.nodes[0]
         only = rows[0, :]
         self._index = xp.nonzero(only)[0]
         if xp is np:
@@ -79,10 +80,8 @@ class Restriction:
 
     def centre(self, vector: AnyArray) -> None:
         """Take the mean over the nodes off a vector, in place."""
-        if self.gathered:
-            vector -= self.xp.mean(vector)
-        else:
-            vector -= self._mask * self.mean(vector)
+        mean = self.mean(vector)
+        vector -= mean if self.gathered else self._mask * mean
 
     def mean(self, vector: AnyArray) -> AnyArray:
         """Return the mean over the nodes (members, 1) of a vector."""
@@ -138,7 +137,7 @@ def residual_correction(
     operators: Operators,
     part: Restriction,
     residual: AnyArray,
-    reduction: AnyArray,
+    reduction: Sequence[float],
     workspace: Workspace,
 ) -> AnyArray:
     """Return the correction c with sum c = 0 and A c = residual up to a constant, a row a member.
@@ -154,10 +153,10 @@ def residual_correction(
     steps = images.shape[1]
     triangle = np.zeros((r.shape[0], steps, steps))
     weights = np.zeros((r.shape[0], steps))
-    left = numbers(xp.vecdot(r, r))[0] ** 0.5
-    goal = reduction * left
+    left = [square**0.5 for square in on_host(xp.vecdot(r, r)).tolist()]
+    goal = [share * size for share, size in zip(reduction, left, strict=True)]
     step = 0
-    while step < steps and (going := left > goal).any():
+    while step < steps and any(map(gt, left, goal)):
         z = part.through(operators.pressure, r)
         part.centre(z)
         w = part.through(operators.displacement, z)
@@ -166,26 +165,29 @@ def residual_correction(
         overlap = products(images[:, :step, :], w)
         if step:
             w -= sums(overlap, images[:, :step, :])
-        found = xp.concat((overlap.T, xp.stack((raw, xp.vecdot(w, w), xp.vecdot(w, r)))))
-        *before, raw, square, along = on_host(found).astype(float)
-        going &= square > _DEPENDENT**2 * raw
-        left[~going] = 0.0
-        if not going.any():
+        sizes = (size[:, None] for size in (raw, xp.vecdot(w, w), xp.vecdot(w, r)))
+        scale = []
+        for n, row in enumerate(on_host(xp.concat((overlap, *sizes), axis=1)).tolist()):
+            *before, raw, square, along = row
+            if not (left[n] > goal[n] and square > _DEPENDENT**2 * raw):
+                # no image and a direction of no weight for a member that has stopped
+                left[n], triangle[n, step, step] = 0.0, 1.0
+                scale.append(0.0)
+                continue
+            length = square**0.5
+            triangle[n, :step, step], triangle[n, step, step] = before, length
+            weights[n, step] = weight = along / length
+            # the images are orthonormal
+            left[n] = max(left[n] ** 2 - weight**2, 0.0) ** 0.5
+            scale.append(1.0 / length)
+        if not any(scale):
             break
-        # a member that has stopped gets an empty image, and a direction of no weight
-        length = np.where(going, square, 1.0) ** 0.5
-        if step:
-            triangle[:, :step, step] = np.where(going, before, 0.0).T
-        triangle[:, step, step] = length
-        weights[:, step] = np.where(going, along / length, 0.0)
-        w *= each(going / length, w)
+        w *= each(scale, w)
         images[:, step, :] = w
         if directions is not None:
             directions[:, step, :] = z
-        w *= each(weights[:, step], w)
+        w *= each(weights[:, step].tolist(), w)
         r -= w
-        # the images are orthonormal
-        left = np.maximum(left**2 - weights[:, step] ** 2, 0.0) ** 0.5
         step += 1
     if step == 0:
         return xp.zeros_like(r)
@@ -193,7 +195,7 @@ def residual_correction(
     if directions is not None:
         return sums(operators.asarray(y.astype(np.float32)), directions[:, :step, :])
     # the sum of y times the residuals of each step, by their images; S of it is that of y times z
-    r *= each(y.sum(axis=1), r)
+    r *= each(y.sum(axis=1).tolist(), r)
     factors = (weights[:, :step] * np.cumsum(y, axis=1)).astype(np.float32)
     r += sums(operators.asarray(factors), images[:, :step, :])
     z = part.through(operators.pressure, r)

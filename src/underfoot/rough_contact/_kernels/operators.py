@@ -60,7 +60,7 @@ class Operators:
         self._body = body
         waves = self.asarray(np.repeat(qx[None], shape[0], axis=0))
         self._waves = waves, self.asarray(qy[None])
-        self._scale = each(np.reshape(body.scale, -1), waves)
+        self._scale = each(np.reshape(body.scale, -1).tolist(), waves)
         self.rows, self._inverse_rows = self.asarray(rows), self.asarray(1.0 / rows)
         self._lossy = np.iscomplexobj(rows)
         single = xp.complex64 if self._lossy else xp.float32
