@@ -9,6 +9,7 @@ from underfoot.compute import solve
 from underfoot.compute.numerical_error import numerical_errors
 from underfoot.compute.positions import place_numbers
 from underfoot.compute.prepare import prepared
+from underfoot.compute.read import _last_instant
 from underfoot.compute.solve import averaged, solved, solved_motion, start_film
 from underfoot.compute.summary import headline
 from underfoot.core import SourcedValue, Status
@@ -190,6 +191,34 @@ def test_the_numerical_error_of_a_motion_holds_its_steps_in_time(shoe, fluid, mo
         off = abs(finest.answer(name) - positions.answer(name))
         assert off < 1.96 * errors.steps[name], name
         assert errors.deviation(name) > errors.steps[name] > 0
+
+
+@pytest.mark.parametrize("fluid", ["water", "glycerol_50pct"])
+def test_a_history_may_begin_under_its_load(fluid):
+    """No step takes a sole from the air to 300 N at once: it comes up before, as in a step."""
+
+    def held(*loads):
+        keep = {"speed": "0.3 m/s", "shoe_angle": "14 deg"}
+        points = [{"time": time, "normal_force": load, **keep} for time, load in loads]
+        return {"model": "history", "history_points": points}
+
+    case = untreaded(shoe="work_shoe_half_tread", contaminant=fluid)
+    found = []
+    for loads in (
+        (("0 s", "300 N"), ("0.15 s", "300 N")),
+        (("0 s", "0 N"), ("0.01 s", "300 N"), ("0.16 s", "300 N")),
+    ):
+        parts = prepared(case.replace("motion", held(*loads)), 1.2e-3)
+        contact = solved_motion(parts)
+        assert contact.status is Status.CONVERGED
+        found.append(place_numbers(parts, contact))
+    begun, risen = found
+    assert begun["cof"] == pytest.approx(risen["cof"], rel=1e-4)
+    assert begun["fluid_load"] == pytest.approx(risen["fluid_load"], rel=1e-3)
+    begun_at_once = case.replace("motion", held(("0 s", "300 N"), ("0.15 s", "300 N")))
+    instant = _last_instant(begun_at_once)
+    assert "where 300 N come up within 10 ms" in instant
+    assert "come up" not in _last_instant(case.replace("motion", "heel_strike_to_flat"))
 
 
 def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
