@@ -1,17 +1,35 @@
 // Words of the package in the language of the page, and its decimal sign: every text and label, from
 // wherever it comes. "{}" of a catalogue's sentence stands for a part that changes and is itself put
-// into the language; user's names and files carry translate="no".
+// into the language; user's names and files carry translate="no", and stay in a sentence too where
+// they stand in quotes, look like a file, or are among the project's.
 const LABELS = ["aria-label", "aria-valuetext", "title", "alt", "label"];
+const FILE = /^[^\s{}]*[^\s\d{}][^\s{}]*\.[A-Za-z]\w{1,4}$/;
 const exactWords = new Map(), sentenceForms = [], translations = new Map(), written = new WeakMap();
+const ownNames = new Set(spoken.names ?? []);
 
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
-  const form = english.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
-  const fixed = english.replaceAll("{}", "").length; // what joins any two parts comes last, as the file has it
-  const joins = fixed < 6, withWords = joins && /[a-z]/.test(english.replaceAll("{}", ""));
-  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, joins ? 0 : fixed, withWords]);
+  const pieces = english.split("{}"), text = pieces.join("");
+  const form = pieces.map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
+  const quoted = pieces.slice(1).map((after, k) => /["„]$/.test(pieces[k]) && /^["“]/.test(after));
+  const joins = text.length < 6; // what joins any two parts comes last, as the file has it
+  const words = wordsOf(english.replaceAll("{}", "\0")).filter((word) => !word.includes("\0"));
+  const withWords = joins && /[a-z]/.test(text);
+  sentenceForms.push({ form: new RegExp(`^${form}$`, "s"), other, quoted, words, withWords, fixed: joins ? 0 : text.length });
 }
-sentenceForms.sort((a, b) => b[2] - a[2]);
+sentenceForms.sort((a, b) => b.fixed - a.fixed);
+const byWord = new Map(), anywhere = []; // places of the forms, by the word that the fewest have
+{
+  const count = new Map();
+  for (const { words } of sentenceForms) for (const word of new Set(words)) count.set(word, (count.get(word) ?? 0) + 1);
+  sentenceForms.forEach(({ words }, place) => {
+    const [rarest] = words.slice().sort((a, b) => count.get(a) - count.get(b));
+    if (rarest === undefined) anywhere.push(place);
+    else byWord.set(rarest, [...(byWord.get(rarest) ?? []), place]);
+  });
+}
+
+function wordsOf(text) { return text.toLowerCase().match(/[a-z\0']+/g) ?? []; }
 
 function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
@@ -48,14 +66,21 @@ function formed(core, depth) {
 }
 
 function asForm(core, small, depth, wanted) {
-  for (const [form, other, fixed, withWords] of sentenceForms) {
-    const as = form.test(core) ? core : small, parts = wanted(fixed) && form.exec(as);
-    if (!parts || (withWords && parts.slice(1).some((part) => !isKnown(part, depth)))) continue;
-    const said = other.replace(/\{(\d+)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
+  const places = [...new Set(wordsOf(core))].flatMap((word) => byWord.get(word) ?? []);
+  for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
+    const { form, other, quoted, withWords, fixed } = sentenceForms[place];
+    if (!wanted(fixed)) continue;
+    const parts = (form.exec(core) ?? form.exec(small))?.slice(1), as = form.test(core) ? core : small;
+    if (!parts || (withWords && parts.some((part) => !isKnown(part, depth)))) continue;
+    const put = (k) => (quoted[k] || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
+    const said = other.replace(/\{(\d+)\}/g, (_, k) => put(Number(k)));
     return as === core ? said : capital(said);
   }
   return null;
 }
+
+// Whether a part is a name of the user's: of a variant of the project, or of a file.
+function isOwn(part) { return ownNames.has(part.trim()) || FILE.test(part.trim()); }
 
 // Whether the catalogue has words for a part, or it has none: "to" in a sentence that is not known joins nothing.
 function isKnown(part, depth) {
