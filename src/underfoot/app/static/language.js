@@ -5,29 +5,28 @@
 const LABELS = ["aria-label", "aria-valuetext", "title", "alt", "label"];
 const FILE = /^[^\s{}]*[^\s\d{}][^\s{}]*\.[A-Za-z]\w{1,4}$/;
 const exactWords = new Map(), sentenceForms = [], translations = new Map(), written = new WeakMap();
-const ownNames = new Set(spoken.names ?? []);
+const ownNames = new Set(typeof namesOfUser === "undefined" ? [] : namesOfUser);
 
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const pieces = english.split("{}"), text = pieces.join("");
-  const form = pieces.map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
   const quoted = pieces.slice(1).map((after, k) => /["„]$/.test(pieces[k]) && /^["“]/.test(after));
-  const joins = text.length < 6; // what joins any two parts comes last, as the file has it
-  const words = wordsOf(english.replaceAll("{}", "\0")).filter((word) => !word.includes("\0"));
-  const withWords = joins && /[a-z]/.test(text);
-  sentenceForms.push({ form: new RegExp(`^${form}$`, "s"), other, quoted, words, withWords, fixed: joins ? 0 : text.length });
+  const joins = text.length < 6 || !/[A-Za-z]{4}/.test(text);
+  const words = wordsOf(pieces.join("\0")).filter((word) => !word.includes("\0"));
+  const withWords = joins && /[a-z]/.test(text), fixed = text.length < 6 ? 0 : text.length;
+  sentenceForms.push({ pieces, form: null, other, quoted, words, joins, withWords, fixed });
 }
-sentenceForms.sort((a, b) => b.fixed - a.fixed);
-const byWord = new Map(), anywhere = []; // places of the forms, by the word that the fewest have
-{
-  const count = new Map();
-  for (const { words } of sentenceForms) for (const word of new Set(words)) count.set(word, (count.get(word) ?? 0) + 1);
-  sentenceForms.forEach(({ words }, place) => {
-    const [rarest] = words.slice().sort((a, b) => count.get(a) - count.get(b));
-    if (rarest === undefined) anywhere.push(place);
-    else byWord.set(rarest, [...(byWord.get(rarest) ?? []), place]);
-  });
-}
+sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
+
+// Places of the forms by the word that the fewest of them have: a text is held against few forms.
+const byWord = new Map(), anywhere = [], count = new Map();
+for (const { words } of sentenceForms) for (const word of words) count.set(word, (count.get(word) ?? 0) + 1);
+sentenceForms.forEach(({ words }, place) => {
+  if (!words.length) { anywhere.push(place); return; }
+  const rarest = words.reduce((least, word) => (count.get(word) < count.get(least) ? word : least));
+  if (!byWord.has(rarest)) byWord.set(rarest, []);
+  byWord.get(rarest).push(place);
+});
 
 function wordsOf(text) { return text.toLowerCase().match(/[a-z\0']+/g) ?? []; }
 
@@ -55,28 +54,34 @@ function formed(core, depth) {
   const small = core[0].toLowerCase() + core.slice(1);
   if (small !== core && exactWords.has(small)) return capital(exactWords.get(small));
   if (!/[A-Za-z]{2}/.test(core)) return withDecimals(core);
-  const whole = asForm(core, small, depth, (fixed) => fixed > 0);
+  const whole = asForm(core, small, depth, (joins) => !joins);
   if (whole !== null) return whole;
   const [, where, what] = /^([^:]+): (.+)$/s.exec(core) ?? []; // of an error
   if (exactWords.has(where)) return `${exactWords.get(where)}: ${inLanguage(what, depth + 1)}`;
   const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
   if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
   if (core.endsWith(".")) return inLanguage(core.slice(0, -1), depth + 1) + ".";
-  return asForm(core, small, depth, (fixed) => fixed === 0) ?? withDecimals(core);
+  return asForm(core, small, depth, (joins) => joins) ?? withDecimals(core);
 }
 
 function asForm(core, small, depth, wanted) {
   const places = [...new Set(wordsOf(core))].flatMap((word) => byWord.get(word) ?? []);
   for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
-    const { form, other, quoted, withWords, fixed } = sentenceForms[place];
-    if (!wanted(fixed)) continue;
-    const parts = (form.exec(core) ?? form.exec(small))?.slice(1), as = form.test(core) ? core : small;
+    const { pieces, other, quoted, joins, withWords } = sentenceForms[place];
+    if (!wanted(joins)) continue;
+    const form = (sentenceForms[place].form ??= formOf(pieces)), as = form.test(core) ? core : small;
+    const parts = form.exec(as)?.slice(1);
     if (!parts || (withWords && parts.some((part) => !isKnown(part, depth)))) continue;
     const put = (k) => (quoted[k] || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
     const said = other.replace(/\{(\d+)\}/g, (_, k) => put(Number(k)));
     return as === core ? said : capital(said);
   }
   return null;
+}
+
+function formOf(pieces) {
+  const fixed = pieces.map((piece) => piece.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
+  return new RegExp(`^${fixed.join("(.+?)")}$`, "s");
 }
 
 // Whether a part is a name of the user's: of a variant of the project, or of a file.
