@@ -13,7 +13,7 @@ from .jobs import RUNNING, Jobs, Task
 from .project import Project
 from .projects import Servers
 from .session import Exchange, Page, Session
-from .text import LANGUAGES, Text, chosen_language
+from .text import LANGUAGES, Text, as_json, chosen_language
 
 HEAD = """
 <link rel="stylesheet" href="/style/palette.css"><link rel="stylesheet" href="/style/viewer.css">
@@ -25,6 +25,8 @@ HEAD = """
 <script defer src="/viewer/viewer_page.js"></script>
 <script defer src="/static/app.js"></script>
 """
+WORDS = "/words/"
+"""Where the scripts with the words of each language are."""
 LOOK = 0.5
 """s between two looks at the jobs."""
 MOST_SHOWN = 12
@@ -54,7 +56,9 @@ def framed(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")
-    ui.add_head_html(f"<script>{text.script()}</script>{HEAD}")
+    names = as_json(session.project.variants())
+    words = f'<script src="{WORDS}{text.script_name}"></script>'
+    ui.add_head_html(f"{words}<script>const namesOfUser = {names};</script>{HEAD}")
     ui.on_exception(session.tell)
     ui.colors(primary="#0b6fa4")
     with ui.header(fixed=False).classes("app-bar"):

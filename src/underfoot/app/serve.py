@@ -21,7 +21,7 @@ from platformdirs import user_state_path
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
 
-from .frame import framed, open_session
+from .frame import WORDS, framed, open_session
 from .gate import UPLOADS, Gate, own_name
 from .inputs import read_in_unit
 from .jobs import Jobs
@@ -29,6 +29,7 @@ from .pages import PAGES
 from .project import Project
 from .projects import Servers, remember
 from .session import PICTURES, Exchange, Page, problem_parts
+from .text import LANGUAGES, Text
 from .uploads import MOST_BYTES, received
 
 PORT = 8642
@@ -103,6 +104,14 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
         pages_app.add_static_files(route, str(files(package) / "templates"))
     for page in PAGES:
         _route(page, project, jobs, exchange, elsewhere)
+
+    @application.get(WORDS + "{name}")
+    async def words(name: str) -> Response:
+        language = name.partition("-")[0]
+        if language not in LANGUAGES or name != (text := Text(language)).script_name:
+            return Response(status_code=404)
+        headers = {"cache-control": "private, max-age=31536000, immutable"}
+        return Response(text.script(), media_type="text/javascript", headers=headers)
 
     @application.get("/api/content/{key}")
     async def content(key: str) -> Response:

@@ -36,11 +36,11 @@ def positive_array(values: ArrayLike, where: str, *, zero: bool = False) -> Arra
     array = np.asarray(values, dtype=float)
     good = np.isfinite(array) & ((array >= 0) if zero else (array > 0))
     if array.size == 0 or not good.all():
-        shown = f"{array[~good].flat[0]:g}" if array.size else "an empty array"
         bound = "of 0 or more" if zero else "above 0"
-        raise InputError(
-            f"{shown} is not a finite number {bound}", where=where, allowed=f"{bound}, in SI"
-        )
+        what = "an empty array"
+        if array.size:
+            what = f"{array[~good].flat[0]:g} is not a finite number {bound}"
+        raise InputError(what, where=where, allowed=f"{bound}, in SI")
     return array
 
 

@@ -1,17 +1,34 @@
 // Words of the package in the language of the page, and its decimal sign: every text and label, from
 // wherever it comes. "{}" of a catalogue's sentence stands for a part that changes and is itself put
-// into the language; user's names and files carry translate="no".
+// into the language; user's names and files carry translate="no", and stay in a sentence too where
+// they stand in quotes, look like a file, or are among the project's.
 const LABELS = ["aria-label", "aria-valuetext", "title", "alt", "label"];
+const FILE = /^[^\s{}]*[^\s\d{}][^\s{}]*\.[A-Za-z]\w{1,4}$/;
 const exactWords = new Map(), sentenceForms = [], translations = new Map(), written = new WeakMap();
+const ownNames = new Set(typeof namesOfUser === "undefined" ? [] : namesOfUser);
 
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
-  const form = english.split("{}").map((part) => part.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).join("(.+?)");
-  const fixed = english.replaceAll("{}", "").length; // what joins any two parts comes last, as the file has it
-  const joins = fixed < 6, withWords = joins && /[a-z]/.test(english.replaceAll("{}", ""));
-  sentenceForms.push([new RegExp(`^${form}$`, "s"), other, joins ? 0 : fixed, withWords]);
+  const pieces = english.split("{}"), text = pieces.join("");
+  const quoted = pieces.slice(1).map((after, k) => /["„]$/.test(pieces[k]) && /^["“]/.test(after));
+  const joins = text.length < 6 || !/[A-Za-z]{4}/.test(text);
+  const words = wordsOf(pieces.join("\0")).filter((word) => !word.includes("\0"));
+  const withWords = joins && /[a-z]/.test(text), fixed = text.length < 6 ? 0 : text.length;
+  sentenceForms.push({ pieces, form: null, other, quoted, words, joins, withWords, fixed });
 }
-sentenceForms.sort((a, b) => b[2] - a[2]);
+sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
+
+// Places of the forms by the word that the fewest of them have: a text is held against few forms.
+const byWord = new Map(), anywhere = [], count = new Map();
+for (const { words } of sentenceForms) for (const word of words) count.set(word, (count.get(word) ?? 0) + 1);
+sentenceForms.forEach(({ words }, place) => {
+  if (!words.length) { anywhere.push(place); return; }
+  const rarest = words.reduce((least, word) => (count.get(word) < count.get(least) ? word : least));
+  if (!byWord.has(rarest)) byWord.set(rarest, []);
+  byWord.get(rarest).push(place);
+});
+
+function wordsOf(text) { return text.toLowerCase().match(/[a-z\0']+/g) ?? []; }
 
 function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
@@ -37,25 +54,38 @@ function formed(core, depth) {
   const small = core[0].toLowerCase() + core.slice(1);
   if (small !== core && exactWords.has(small)) return capital(exactWords.get(small));
   if (!/[A-Za-z]{2}/.test(core)) return withDecimals(core);
-  const whole = asForm(core, small, depth, (fixed) => fixed > 0);
+  const whole = asForm(core, small, depth, (joins) => !joins);
   if (whole !== null) return whole;
   const [, where, what] = /^([^:]+): (.+)$/s.exec(core) ?? []; // of an error
   if (exactWords.has(where)) return `${exactWords.get(where)}: ${inLanguage(what, depth + 1)}`;
   const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
   if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
   if (core.endsWith(".")) return inLanguage(core.slice(0, -1), depth + 1) + ".";
-  return asForm(core, small, depth, (fixed) => fixed === 0) ?? withDecimals(core);
+  return asForm(core, small, depth, (joins) => joins) ?? withDecimals(core);
 }
 
 function asForm(core, small, depth, wanted) {
-  for (const [form, other, fixed, withWords] of sentenceForms) {
-    const as = form.test(core) ? core : small, parts = wanted(fixed) && form.exec(as);
-    if (!parts || (withWords && parts.slice(1).some((part) => !isKnown(part, depth)))) continue;
-    const said = other.replace(/\{(\d+)\}/g, (_, k) => inLanguage(parts[Number(k) + 1], depth + 1));
+  const places = [...new Set(wordsOf(core))].flatMap((word) => byWord.get(word) ?? []);
+  for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
+    const { pieces, other, quoted, joins, withWords } = sentenceForms[place];
+    if (!wanted(joins)) continue;
+    const form = (sentenceForms[place].form ??= formOf(pieces)), as = form.test(core) ? core : small;
+    const parts = form.exec(as)?.slice(1);
+    if (!parts || (withWords && parts.some((part) => !isKnown(part, depth)))) continue;
+    const put = (k) => (quoted[k] || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
+    const said = other.replace(/\{(\d+)\}/g, (_, k) => put(Number(k)));
     return as === core ? said : capital(said);
   }
   return null;
 }
+
+function formOf(pieces) {
+  const fixed = pieces.map((piece) => piece.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
+  return new RegExp(`^${fixed.join("(.+?)")}$`, "s");
+}
+
+// Whether a part is a name of the user's: of a variant of the project, or of a file.
+function isOwn(part) { return ownNames.has(part.trim()) || FILE.test(part.trim()); }
 
 // Whether the catalogue has words for a part, or it has none: "to" in a sentence that is not known joins nothing.
 function isKnown(part, depth) {

@@ -9,6 +9,7 @@ these in.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import tomllib
@@ -48,9 +49,13 @@ class Text:
 
     def script(self) -> str:
         """Return the script that tells a page its language and the words of the package."""
-        words = {"words": self.of_package(), "decimal": self("frame.decimal")}
-        spoken = as_json(words)
-        return f'document.documentElement.lang = "{self.language}"; const spoken = {spoken};'
+        return _script(self.language)
+
+    @property
+    def script_name(self) -> str:
+        """Name of the script as a file, another one for other words: a browser may keep it."""
+        mark = hashlib.sha256(self.script().encode()).hexdigest()[:12]
+        return f"{self.language}-{mark}.js"
 
     @property
     def comma(self) -> bool:
@@ -84,6 +89,13 @@ def put_language(page: Path | None) -> None:
 def as_json(content: Any) -> str:
     """Return data as JSON that may stand in a page."""
     return json.dumps(content, ensure_ascii=False).replace("<", "\\u003c")
+
+
+@cache
+def _script(language: str) -> str:
+    text = Text(language)
+    spoken = as_json({"words": text.of_package(), "decimal": text("frame.decimal")})
+    return f'document.documentElement.lang = "{language}"; const spoken = {spoken};'
 
 
 @cache
