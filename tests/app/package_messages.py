@@ -83,9 +83,8 @@ def _names(node):
             yield each.id
         elif isinstance(each, ast.Attribute):
             yield each.attr
-        elif isinstance(each, ast.Constant) and isinstance(each.value, str):
-            if re.fullmatch(r"[\w.]+:\w+", each.value):  # of another process, a door
-                yield each.value.partition(":")[2]
+        elif isinstance(each, ast.Constant) and re.fullmatch(r"[\w.]+:\w+", str(each.value)):
+            yield each.value.partition(":")[2]  # in another process, behind a door
 
 
 @cache
@@ -230,7 +229,7 @@ def messages():
             for node in _told(piece):
                 parts = node.elts if isinstance(node, ast.Tuple | ast.List) else [node]
                 for form in (form for part in parts for form in forms.of(part)):
-                    form = re.sub(r"(\{\})+", "{}", form).replace(" ()", "").strip(" ,;")
+                    form = re.sub(r"(\{\})+", "{}", form).replace(" ()", "").strip(" ,;\n")
                     if PHRASE.search(form) and form[:1] not in "<[":
                         found.setdefault(form, []).append(f"{piece.file}:{node.lineno}")
     return found
@@ -253,7 +252,8 @@ class Words:
         for each in words.keys() - self.exact:
             pieces = each.split("{}")
             text = "".join(pieces)
-            between = not re.search(r"\w", pieces[0] + pieces[-1]) and len(text.split()) < 2
+            few = re.fullmatch(r"\W*(\w+|\w{1,5} \w{1,5})\W*", text, re.ASCII)
+            between = few and not re.search(r"\w", pieces[0] + pieces[-1], re.ASCII)
             joins = len(text) < 6 or between or not re.search("[A-Za-z]{4}", text)
             form = re.compile("(.+?)".join(map(re.escape, pieces)), re.S)
             whole = joins and re.search("[a-z]", text) is not None
@@ -290,7 +290,9 @@ class Words:
         for _, joining, whole, form in self.forms:
             if joining is not joins:
                 continue
-            for each in dict.fromkeys((text, small, text.removesuffix("."), small.removesuffix("."))):
+            for each in dict.fromkeys(
+                (text, small, text.removesuffix("."), small.removesuffix("."))
+            ):
                 parts = form.fullmatch(each)
                 if parts and (joins or not any(map(BREAK.search, parts.groups()))):
                     known = all(map(self.has, parts.groups()))

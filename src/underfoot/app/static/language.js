@@ -10,26 +10,22 @@ const ownNames = new Set(typeof namesOfUser === "undefined" ? [] : namesOfUser);
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const pieces = english.split("{}"), text = pieces.join("");
-  const quoted = pieces.slice(1).map((after, k) => /["„]$/.test(pieces[k]) && /^["“]/.test(after));
-  const between = !/\w/.test(pieces[0] + pieces.at(-1)) && (text.match(/\w+/g) ?? []).length < 2;
+  const between = !/\w/.test(pieces[0] + pieces.at(-1)) && /^\W*(\w+|\w{1,5} \w{1,5})\W*$/.test(text);
   const joins = text.length < 6 || between || !/[A-Za-z]{4}/.test(text);
-  const words = wordsOf(pieces.join("\0")).filter((word) => !word.includes("\0"));
   const withWords = joins && /[a-z]/.test(text), fixed = text.length < 6 ? 0 : text.length;
-  sentenceForms.push({ pieces, form: null, other, quoted, words, joins, withWords, fixed });
+  sentenceForms.push({ english, pieces, form: null, other, joins, withWords, fixed });
 }
 sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
 
-// Places of the forms by the word that the fewest of them have: a text is held against few forms.
-const byWord = new Map(), anywhere = [], count = new Map();
-for (const { words } of sentenceForms) for (const word of words) count.set(word, (count.get(word) ?? 0) + 1);
-sentenceForms.forEach(({ words }, place) => {
-  if (!words.length) { anywhere.push(place); return; }
-  const rarest = words.reduce((least, word) => (count.get(word) < count.get(least) ? word : least));
-  if (!byWord.has(rarest)) byWord.set(rarest, []);
-  byWord.get(rarest).push(place);
+// Places of the forms by their longest word that touches no part: a text is held against few forms.
+const byWord = new Map(), anywhere = [];
+sentenceForms.forEach(({ english }, place) => {
+  const words = english.toLowerCase().match(/(?<![a-z'}])[a-z']+(?![a-z'{])/g);
+  if (!words) { anywhere.push(place); return; }
+  const longest = words.reduce((most, word) => (word.length > most.length ? word : most));
+  if (!byWord.has(longest)) byWord.set(longest, []);
+  byWord.get(longest).push(place);
 });
-
-function wordsOf(text) { return text.toLowerCase().match(/[a-z\0']+/g) ?? []; }
 
 function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
@@ -71,16 +67,17 @@ function formed(core, depth) {
 
 function asForm(core, small, depth, wanted) {
   const spellings = [core, small, ...(core.endsWith(".") ? [core.slice(0, -1), small.slice(0, -1)] : [])];
-  const places = [...new Set(wordsOf(core))].flatMap((word) => byWord.get(word) ?? []);
+  const places = [...new Set(core.toLowerCase().match(/[a-z']+/g))].flatMap((word) => byWord.get(word) ?? []);
   for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
-    const { pieces, other, quoted, joins, withWords } = sentenceForms[place];
+    const { pieces, other, joins, withWords } = sentenceForms[place];
     if (!wanted(joins)) continue;
     const form = (sentenceForms[place].form ??= formOf(pieces)), as = spellings.find((each) => form.test(each));
     if (as === undefined) continue;
     const parts = form.exec(as).slice(1);
     if (!joins && parts.some((part) => BREAK.test(part))) continue; // each sentence for itself
     if (withWords && parts.some((part) => !isKnown(part, depth))) continue;
-    const put = (k) => (quoted[k] || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
+    const quoted = (k) => /["„]$/.test(pieces[k]) && /^["“]/.test(pieces[k + 1]);
+    const put = (k) => (quoted(k) || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
     const said = other.replace(/\{(\d+)\}/g, (_, k) => put(Number(k)));
     return (as[0] === core[0] ? said : capital(said)) + core.slice(as.length);
   }
