@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from package_messages import filled
 from web_app import coarsened, drawn, page_of, served
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
@@ -122,6 +123,50 @@ def test_sentences_are_put_in_whole_and_numbers_have_their_signs(tmp_path):
             page.wait_for_timeout(50)
             label = page.evaluate("document.querySelector('p').ariaLabel")
             assert (label, page.inner_text("p")) == ("1,234 mm", "0,138")
+
+
+def spoken(german, value):
+    """Return a sentence of the catalogue with a value for each part, as ``filled`` gives them."""
+    return re.sub(r"\{(\d+)\}", lambda part: value.format(part[1]), german)
+
+
+def test_no_sentence_is_taken_for_another(tmp_path):
+    """A short form, "{} with {}", took parts of sentences that have a translation of their own."""
+    package = text.Text("de").of_package()
+    page_file = tmp_path / "page.html"
+    page_file.write_text("<p></p>")
+    with page_of(page_file.as_uri()) as page:
+        page.evaluate("w => { window.spoken = { words: w, decimal: ',' }; }", package)
+        page.add_script_tag(path=text.FOLDER.parent / "static" / "language.js")
+        for value in ("{}", "QX{}"):  # numbers, names
+            given = [filled(each, value) for each in package]
+            wanted = [spoken(each, value) for each in package.values()]
+            told = page.evaluate("all => all.map((each) => inLanguage(each))", given)
+            assert len(told) > 3000
+            assert not [
+                each for each in zip(given, wanted, told, strict=True) if each[1] != each[2]
+            ]
+
+
+def test_names_of_the_user_stay_as_they_are(tmp_path):
+    """A shoe called "sample" was a "Probe" in a German sentence, a quoted word was German."""
+    page_file = tmp_path / "page.html"
+    page_file.write_text("<p></p>")
+    said = {
+        "sample has the highest COF, 0.02 above hard (probability 0.9).":
+        "sample hat den höchsten Reibwert, 0,02 über hart (Wahrscheinlichkeit 0,9).",
+        'there is no variant "hard"': 'die Variante "hard" gibt es nicht',
+        "slip.csv: the file is empty": "slip.csv: die Datei ist leer",
+        "no force plate can be used: slip.csv": "keine Kraftmessplatte ist brauchbar: slip.csv",
+        "sample and hard": "sample und hart",
+    }  # fmt: skip
+    with page_of(page_file.as_uri()) as page:
+        page.evaluate(
+            "w => { window.spoken = { words: w, decimal: ',' }; window.namesOfUser = ['sample']; }",
+            text.Text("de").of_package(),
+        )
+        page.add_script_tag(path=text.FOLDER.parent / "static" / "language.js")
+        assert {each: page.evaluate("t => inLanguage(t)", each) for each in said} == said
 
 
 APART = (

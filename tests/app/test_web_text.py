@@ -7,6 +7,7 @@ from pathlib import Path
 from string import Formatter
 
 import pytest
+from package_messages import Forms, Piece, Words, filled, messages
 
 pytest.importorskip("nicegui")
 
@@ -111,6 +112,40 @@ def test_the_package_still_says_what_has_a_translation():
             for part in parts
             if WORD.search(part) and not is_said(part)
         ]
+
+
+CODE = """
+def refused(name, worn):
+    where = "at the heel" if worn else "at the toe"
+    text = f"{name} is worn {where}"
+    if worn:
+        text += " by now"
+    raise InputError(text, remedy="Take a new one" + f", a {name}")
+"""
+
+
+def test_forms_of_a_message_follow_names_arms_and_pieces():
+    function = ast.parse(CODE).body[0]
+    piece = Piece("app/project.py", "", function)
+    call = next(each for each in ast.walk(function) if isinstance(each, ast.Call))
+    told = Forms(piece).of(call.args[0])
+    heel, toe = "{} is worn at the heel", "{} is worn at the toe"
+    assert told == [heel, toe, f"{heel} by now", f"{toe} by now"]
+    assert Forms(piece).of(call.keywords[0].value) == ["Take a new one, a {}"]
+    sentences = {"{} is worn {}": "{0} ist {1} abgenutzt", "at the heel": "an der Ferse"}
+    sentences["Take {}"] = "{0} nehmen"
+    known = [Words(sentences).has(filled(each)) for each in (heel, toe, "Take a shoe.")]
+    assert known == [True, False, False]
+
+
+@pytest.mark.parametrize("language", [code for code in LANGUAGES if code != "en"])
+def test_every_message_that_the_app_can_show_has_a_translation(language):
+    """A remedy that nobody translated stood in English on a German page."""
+    told, words = messages(), Words(Text(language).of_package())
+    assert len(told) > 1500
+    assert {"the file is empty", "{} is no count", "excluded by hand"} <= told.keys()
+    missing = {form: places[0] for form, places in told.items() if not words.has(filled(form))}
+    assert not missing, f"{language}.package.toml lacks {missing}"
 
 
 def test_language_is_the_chosen_one_then_the_browser_s():

@@ -106,7 +106,7 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
         _route(page, project, jobs, exchange, elsewhere)
 
     @application.get(WORDS + "{name}")
-    async def words(name: str) -> Response:
+    async def language_script(name: str) -> Response:
         language = name.partition("-")[0]
         if language not in LANGUAGES or name != (text := Text(language)).script_name:
             return Response(status_code=404)

@@ -152,11 +152,12 @@ def read_plan(
         readings=readings,
     )
     budget, grid = method.budget, method.design == "grid"
+    takes = "the grid takes" if grid else "one design takes"
     least = plan.cases_per_design * (plan.designs if grid else 1)
     reader.refuse_if(
         budget is not None and budget < least,
         "method.budget",
-        f"a budget of {budget} runs is less than {'the grid' if grid else 'one design'} takes",
+        f"a budget of {budget} runs is less than {takes}",
         allowed=f"from {least} ({'designs times ' * grid}conditions times draws)",
     )
     cases = plan.designs * plan.cases_per_design

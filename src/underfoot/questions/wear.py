@@ -344,10 +344,10 @@ class WearSeries(Presentable):
             [each[measure] for each in (crossing.at, crossing.low, crossing.high)]
             for measure in ("tread_left", "worn_patch_area")
         )
-        text = f"{subject} exceeds {self.limit:g} N with {_interval(tread, 'm')} of tread left"
+        left = f"{_interval(tread, 'm')} of tread left at the most worn place"
         worn = any(each > 0 for each in patch)
         area = f" and a worn patch of {_interval(patch, 'm^2')}" if worn else ""
-        return f"{text} at the most worn place{area}{share}."
+        return f"{subject} exceeds {self.limit:g} N with {left}{area}{share}."
 
 
 def wear_series(

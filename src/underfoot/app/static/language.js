@@ -10,25 +10,22 @@ const ownNames = new Set(typeof namesOfUser === "undefined" ? [] : namesOfUser);
 for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const pieces = english.split("{}"), text = pieces.join("");
-  const quoted = pieces.slice(1).map((after, k) => /["„]$/.test(pieces[k]) && /^["“]/.test(after));
-  const joins = text.length < 6 || !/[A-Za-z]{4}/.test(text);
-  const words = wordsOf(pieces.join("\0")).filter((word) => !word.includes("\0"));
+  const between = !/\w/.test(pieces[0] + pieces.at(-1)) && /^\W*(\w+|\w{1,5} \w{1,5})\W*$/.test(text);
+  const joins = text.length < 6 || between || !/[A-Za-z]{4}/.test(text);
   const withWords = joins && /[a-z]/.test(text), fixed = text.length < 6 ? 0 : text.length;
-  sentenceForms.push({ pieces, form: null, other, quoted, words, joins, withWords, fixed });
+  sentenceForms.push({ english, pieces, form: null, other, joins, withWords, fixed });
 }
 sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
 
-// Places of the forms by the word that the fewest of them have: a text is held against few forms.
-const byWord = new Map(), anywhere = [], count = new Map();
-for (const { words } of sentenceForms) for (const word of words) count.set(word, (count.get(word) ?? 0) + 1);
-sentenceForms.forEach(({ words }, place) => {
-  if (!words.length) { anywhere.push(place); return; }
-  const rarest = words.reduce((least, word) => (count.get(word) < count.get(least) ? word : least));
-  if (!byWord.has(rarest)) byWord.set(rarest, []);
-  byWord.get(rarest).push(place);
+// Places of the forms by their longest word that touches no part: a text is held against few forms.
+const byWord = new Map(), anywhere = [];
+sentenceForms.forEach(({ english }, place) => {
+  const words = english.toLowerCase().match(/(?<![a-z'}])[a-z']+(?![a-z'{])/g);
+  if (!words) { anywhere.push(place); return; }
+  const longest = words.reduce((most, word) => (word.length > most.length ? word : most));
+  if (!byWord.has(longest)) byWord.set(longest, []);
+  byWord.get(longest).push(place);
 });
-
-function wordsOf(text) { return text.toLowerCase().match(/[a-z\0']+/g) ?? []; }
 
 function capital(text) { return text[0].toUpperCase() + text.slice(1); }
 
@@ -38,6 +35,7 @@ function withDecimals(text) { // 1,200.5 is 1.200,5 where the decimal sign is a 
   return text.replace(NUMBER, (_, whole, part) => whole.replaceAll(",", ".") + (part ? spoken.decimal + part : ""));
 }
 
+const BREAK = /(?<=[.!?]) (?=[A-Z]|\d+ of \d)/; // between two sentences
 function inLanguage(text, depth = 0) {
   const core = text.trim(), plain = core.replaceAll("\u00a0", " ");
   if (!core || depth > 20) return text;
@@ -53,28 +51,35 @@ function formed(core, depth) {
   if (exactWords.has(core)) return exactWords.get(core);
   const small = core[0].toLowerCase() + core.slice(1);
   if (small !== core && exactWords.has(small)) return capital(exactWords.get(small));
+  const bare = core.replace(/\.$/, ""), dot = core.slice(bare.length);
+  if (dot && exactWords.has(bare)) return exactWords.get(bare) + dot;
+  if (dot && exactWords.has(small.slice(0, -1))) return capital(exactWords.get(small.slice(0, -1))) + dot;
   if (!/[A-Za-z]{2}/.test(core)) return withDecimals(core);
   const whole = asForm(core, small, depth, (joins) => !joins);
   if (whole !== null) return whole;
   const [, where, what] = /^([^:]+): (.+)$/s.exec(core) ?? []; // of an error
   if (exactWords.has(where)) return `${exactWords.get(where)}: ${inLanguage(what, depth + 1)}`;
-  const sentences = core.split(/(?<=[.!?]) (?=[A-Z])/);
+  const sentences = core.split(BREAK);
   if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
-  if (core.endsWith(".")) return inLanguage(core.slice(0, -1), depth + 1) + ".";
+  if (dot) return inLanguage(bare, depth + 1) + dot;
   return asForm(core, small, depth, (joins) => joins) ?? withDecimals(core);
 }
 
 function asForm(core, small, depth, wanted) {
-  const places = [...new Set(wordsOf(core))].flatMap((word) => byWord.get(word) ?? []);
+  const spellings = [core, small, ...(core.endsWith(".") ? [core.slice(0, -1), small.slice(0, -1)] : [])];
+  const places = [...new Set(core.toLowerCase().match(/[a-z']+/g))].flatMap((word) => byWord.get(word) ?? []);
   for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
-    const { pieces, other, quoted, joins, withWords } = sentenceForms[place];
+    const { pieces, other, joins, withWords } = sentenceForms[place];
     if (!wanted(joins)) continue;
-    const form = (sentenceForms[place].form ??= formOf(pieces)), as = form.test(core) ? core : small;
-    const parts = form.exec(as)?.slice(1);
-    if (!parts || (withWords && parts.some((part) => !isKnown(part, depth)))) continue;
-    const put = (k) => (quoted[k] || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
+    const form = (sentenceForms[place].form ??= formOf(pieces)), as = spellings.find((each) => form.test(each));
+    if (as === undefined) continue;
+    const parts = form.exec(as).slice(1);
+    if (!joins && parts.some((part) => BREAK.test(part))) continue; // each sentence for itself
+    if (withWords && parts.some((part) => !isKnown(part, depth))) continue;
+    const quoted = (k) => /["„]$/.test(pieces[k]) && /^["“]/.test(pieces[k + 1]);
+    const put = (k) => (quoted(k) || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
     const said = other.replace(/\{(\d+)\}/g, (_, k) => put(Number(k)));
-    return as === core ? said : capital(said);
+    return (as[0] === core[0] ? said : capital(said)) + core.slice(as.length);
   }
   return null;
 }
@@ -89,7 +94,7 @@ function isOwn(part) { return ownNames.has(part.trim()) || FILE.test(part.trim()
 
 // Whether the catalogue has words for a part, or it has none: "to" in a sentence that is not known joins nothing.
 function isKnown(part, depth) {
-  return !/[A-Za-z]{4}/.test(part) || inLanguage(part, depth + 1) !== withDecimals(part) || exactWords.has(part.trim());
+  return isOwn(part) || !/[A-Za-z]{4}/.test(part) || inLanguage(part, depth + 1) !== withDecimals(part) || exactWords.has(part.trim());
 }
 
 function speakAll(root) {

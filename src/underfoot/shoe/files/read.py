@@ -123,8 +123,8 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     if bad:
         raise DataError(f"a corner of {bad} faces is no number", where=str(path), remedy=AGAIN)
     if content != promised:
-        ending = path.suffix or "no ending"
-        remark = f"The file is named {ending} but holds {content}; it was read as {content}."
+        named = f"is named {path.suffix} but holds" if path.suffix else "has no ending and holds"
+        remark = f"The file {named} {content}; it was read as {content}."
         mesh = replace(mesh, remarks=(remark, *mesh.remarks))
     return mesh
 

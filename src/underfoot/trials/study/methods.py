@@ -83,7 +83,7 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
     ]
     if speeds:
         text += (
-            f" {len(speeds)} contacts were on treadmill belts at {min(speeds):.2f} to "
+            f" Treadmill belts carried {len(speeds)} contacts at {min(speeds):.2f} to "
             f"{max(speeds):.2f} m/s, found where standing feet are carried backward; heel speeds "
             "are those over the belt. Its forces are those of steady walking only while the belt "
             "keeps its speed."
@@ -146,7 +146,7 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "{filter}; baseline: {baseline}; calibration: {calibration}.",
         "COF is the {average} in a window of {window}; shear: {shear}; {filter}; baseline: "
         "{baseline}; calibration: {calibration}.",
-        "COF is {cof}, the {average} ({window}).",
+        "COF is taken as {cof}, the {average} ({window}).",
     ),
 }
 _DONE = {
