@@ -40,9 +40,9 @@ ALONE = 1e-3
 """m"""
 PEAKS = {True: 0.3, False: 0.05}
 """Relative standard deviation of peaks and of what a sensor reads."""
-IN_TIME = 0.007
-"""Standard deviation of ln F / (W - F) that twice the steps in time don't tell: learned from seven
-histories on the quick grid (``python -m benchmarks history_steps``)."""
+IN_TIME = 0.003
+"""Standard deviation of ln F / (W - F) that twice the steps in time don't tell: what the worst of
+eight motions needs for 95 % (``python -m benchmarks history_steps``), rounded up."""
 GRID_OF_CONTACT = 1.1
 """Factor by which cells alone raise the friction of the contact at most."""
 CHECKED = 2 * RESOLVED
