@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+from contextlib import nullcontext
 from functools import partial
 from importlib import import_module
 from types import SimpleNamespace
@@ -13,8 +14,18 @@ from nicegui import ui
 from nicegui.testing.user_simulation import user_simulation
 
 from underfoot.app import trials_plots, work_sole
-from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING, STOPPED, WAITING, Jobs, Task
-from underfoot.app.pages import PAGES, answer, measured_file
+from underfoot.app.jobs import (
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    RUNNING,
+    STOPPED,
+    WAITING,
+    Jobs,
+    Lane,
+    Task,
+)
+from underfoot.app.pages import PAGES, answer, design, measured_file, studies, trials
 from underfoot.app.pages.trials_trial import TrialView
 from underfoot.app.project import Project
 from underfoot.app.session import Exchange, Session
@@ -74,7 +85,7 @@ def test_every_page_opens_with_a_heading_with_and_without_a_variant(tmp_path, ca
     assert not [each for each in caplog.records if each.levelname == "ERROR"]
 
 
-def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_path):
+def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_path, caplog):
     session = session_of(tmp_path)
     for name in "abc":
         new_variant(session, name, shoe="work_shoe_half_tread", contaminant="detergent")
@@ -97,6 +108,7 @@ def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_pat
     value, visible, lines = shown(lambda: page.build(session), look)
     assert (value, visible) == (0.25, True)
     assert [task.about for task in session.jobs.tasks.values()] == ["a", "b", "c"]
+    assert not [each for each in caplog.records if each.levelname == "ERROR"]
     assert session.text("project.left", done=0, total=2, now="a") in lines
 
 
@@ -268,3 +280,106 @@ def test_two_soles_are_made_of_equal_land_by_the_width_of_channels_where_one_doe
     assert words["land"] != words["had"]
     again, _ = work_sole.equal_land(paths[0], paths[0], progress=lambda *_: None)
     assert again == {}
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_a_process_tells_how_far_it_is_until_its_answer_is_there_or_it_is_stopped(stopped):
+    heard, lane = [], Lane()
+
+    class Job:
+        done, fraction = False, 0.0
+
+        def result(self):
+            if stopped:
+                raise Cancelled("stopped")
+            return 7
+
+    class Worker:
+        def submit(self, call, function, *args):
+            self.asked, self.job = (function, *args), Job()
+            return self.job
+
+        def poll(self):
+            self.job.fraction += 0.5
+            self.job.done = self.job.fraction == 1.0
+
+        def cancel(self):
+            self.job.done = True
+
+    lane._worker = worker = cast(Any, Worker())
+
+    async def run():
+        asked = asyncio.create_task(
+            lane.ask("a:b", 3, heard=lambda job: heard.append(job.fraction))
+        )
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        if stopped:
+            lane.stop()
+        return await asked
+
+    if stopped:
+        with pytest.raises(Cancelled):
+            asyncio.run(run())
+        assert 1.0 not in heard
+    else:
+        assert asyncio.run(run()) == 7
+        assert heard == [0.5, 1.0]
+    assert worker.asked == ("a:b", 3)
+
+
+@pytest.mark.parametrize("had", ["", "sipes", "midsole"])
+def test_a_design_offers_sipes_and_a_midsole_where_there_are_none(tmp_path, had):
+    session = session_of(tmp_path)
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    changes = {
+        "": {},
+        "sipes": design._sipes(session.project.case(name)),
+        "midsole": design.MIDSOLE,
+    }
+    if changes[had]:
+        session.project.change(name, changes[had])
+    page = next(each for each in PAGES if each.route == "/design")
+    words = shown(lambda: page.build(session), words_of)
+    for part in ("sipes", "midsole"):
+        assert (session.text(f"sole.{part}") in words) is (part != had)
+
+
+def test_a_trial_is_shown_as_a_part_of_its_folder(monkeypatch):
+    made = []
+
+    class Ask:
+        async def __call__(self, function, asked, file):
+            return {"file": file, "asked": asked}
+
+    page: Any = SimpleNamespace(
+        session=SimpleNamespace(ask=Ask()), study=SimpleNamespace(asked="folder", name="walks"),
+        _turn=lambda **_: None, place=nullcontext(), overview=1, show=2,
+    )  # fmt: skip
+    monkeypatch.setattr(trials, "TrialView", lambda *given: made.append(given))
+    asyncio.run(trials._Trials.show(page, "walk.csv"))
+    view = {"file": "walk.csv", "asked": "folder"}
+    assert made == [(page.session, page.study, view, 1, 2)]
+
+
+@pytest.mark.parametrize(("typed", "read"), [("12", 12), ("", None), ("some", ...)])
+def test_a_number_of_a_study_is_read_when_its_field_is_left(tmp_path, typed, read):
+    kept = []
+
+    async def keep(*given, part):
+        kept.append((*given, part))
+
+    session = session_of(tmp_path)
+    page: Any = SimpleNamespace(session=session, text=session.text, keep=keep)
+
+    async def look(elements):
+        (field,) = (each for each in elements if isinstance(each, ui.input))
+        field.value = typed
+        (left,) = (each for each in field._event_listeners.values() if each.type == "blur")
+        with field:
+            await left.handler()
+        return field.error
+
+    error = shown(lambda: studies._Study._method(page, "budget", (), {"budget": 5}), look)
+    assert kept == ([] if read is ... else [("method", {"budget": read}, True)])
+    assert bool(error) is (read is ...)
