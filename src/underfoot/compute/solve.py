@@ -24,7 +24,7 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
-from .position_draws import Place, TreadPositions
+from .position_draws import Place, TreadPositions, log_film_odds
 from .positions import (
     TURNED,
     place_numbers,
@@ -108,25 +108,32 @@ def film_spreads(
         return {}
     case, moving = parts.case, parts
     steady = case.motion.build() is None
-    if not steady and "compliance" not in parts.objects:
-        moving = parts.on(sole_map(case, case.numerics.quick_grid_spacing))
+    quick = case.numerics.quick_grid_spacing
+    if not steady and "compliance" not in parts.objects and parts.spacing != quick:
+        moving = parts.on(sole_map(case, quick))
 
     def odds(asperities: PressureGapLaw) -> float:
         here = moving.on(asperities=asperities)
         end = continued(contact, here)[-1] if steady else solved_motion(here, progress=progress)
         if not end.status.usable:
             raise ConvergenceError(str(end.status), history=[])
-        share = min(max(end.fluid_load / end.normal_force, 1e-6), 1 - 1e-6)
-        return math.log(share / (1 - share))
+        return film_odds(end)
 
+    own = not steady and moving is parts
     try:
-        unchanged = odds(law)
+        unchanged = film_odds(contact) if own else odds(law)
         return {
             name: (odds(less) - unchanged, odds(more) - unchanged)
             for name, (less, more) in changed.items()
         }
     except ConvergenceError:
         return {}
+
+
+def film_odds(contact: SoleContact) -> float:
+    """Return ln F / (W - F) of the load F on the film of W."""
+    film, whole = contact.fluid_load, contact.normal_force
+    return float(log_film_odds(film, whole - film))
 
 
 def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
