@@ -105,13 +105,18 @@ def test_a_history_on_the_quick_grid_is_marched_with_the_changes_alone(monkeypat
         loads = {"fluid_load": film, "normal_force": 700.0}
         return SimpleNamespace(contact_pressure=pressure, status=status, **loads)
 
-    def march(parts, **_):
+    def march(parts, *, progress):
         marched.append(parts.spacing)
+        for done in (0.0, 1.0):
+            progress("Following the motion", done)
         return contact(200.0 if len(marched) == 1 else 50.0)
 
     monkeypatch.setattr(solve, "solved_motion", march)
-    spreads = film_spreads(prepared(case, case.numerics.quick_grid_spacing), contact(100.0))
+    told = []
+    parts = prepared(case, case.numerics.quick_grid_spacing)
+    spreads = film_spreads(parts, contact(100.0), lambda _, done, *__: told.append(done))
     assert len(marched) == 2
+    assert told == [0.0, 0.5, 0.5, 1.0]  # one after the other, not each from the start
     expected = [math.log(6 * film / (700 - film)) for film in (200.0, 50.0)]
     assert spreads[LEAK] == pytest.approx(expected)
     marched.clear()
