@@ -17,9 +17,8 @@ from underfoot.compute.numbers import FILM_ERROR
 from underfoot.compute.position_draws import Place, log_film_odds
 from underfoot.compute.positions import case_places, shoe_angles, treaded
 from underfoot.compute.prepare import prepared
-from underfoot.compute.solve import LEAST_FILM, solved_at
+from underfoot.compute.solve import LEAST_FILM, film_odds, solved_at
 from underfoot.core import UnderfootError
-from underfoot.sole_contact.solver import SoleContact
 
 EXAMPLES = (
     "work_shoe_untreaded_glycerol",
@@ -45,11 +44,6 @@ DEVIATIONS = {
 """Standard deviations of what nobody measured, m, as ``underfoot sensitivity`` varies it."""
 LEAST = 0.2e-3  # m
 SOLES, DRAWS, SEED = 40, 2, 51
-
-
-def film_odds(contact: SoleContact) -> float:
-    """Return ln F / (W - F)."""
-    return float(log_film_odds(contact.fluid_load, contact.normal_force - contact.fluid_load))
 
 
 def march(case: Case, turn: float = 0.0) -> float:

@@ -4,7 +4,7 @@
 of level walking, a history of a few points, a load that is held for a time and a history of forty
 points, each at its own place on 1 mm with the steps of a run, twice and four times as many. Prints
 by how much four times as many move a number, over the standard deviation that is printed, and what
-``IN_TIME`` has to be. It was chosen on the first half (five minutes).
+``IN_TIME`` has to be of the film (five minutes).
 """
 
 from __future__ import annotations

@@ -1,9 +1,13 @@
 """Order of the foot's time stepping."""
 
 import numpy as np
+import pytest
 
 from slip_floors import Floor, constant, slippery_sole, walker
+from underfoot import Case
+from underfoot.compute.slips import slip_population, slip_setting
 from underfoot.slip.dynamics import packaged_histories, slip_motion
+from underfoot.slip.dynamics.full_model import SoleFoot
 
 
 def test_full_stepping_is_of_second_order():
@@ -40,3 +44,24 @@ def test_default_steps_are_fine_enough():
     sole = slippery_sole()
     fine = sole.motion(person, step=2e-5).peak_speed
     assert abs(sole.motion(person).peak_speed - fine) < 1e-3 * fine
+
+
+@pytest.mark.slow
+def test_the_steps_of_a_case_hold_a_slip_on_a_film():
+    """Peak and distance with 8 ms beside 2 ms: a slip that is caught, and one that is not."""
+    found = []
+    for shoe, fluid in (
+        ("work_shoe_half_tread", "glycerol_90pct"),
+        ("work_shoe_untreaded", "glycerol_75pct"),
+    ):
+        case = Case(shoe=shoe, floor="vinyl_g4", contaminant=fluid, motion="slip_tester_g4")
+        setting, person = slip_setting(case), slip_population(case, subjects=1).walkers()[0]
+        default = case.slip.time_step
+        for step in (default, default / 4):
+            foot = SoleFoot(setting, person.shoe_angle, 700.0)
+            motion = slip_motion(person, foot, step=step)
+            found.append((motion.peak_speed, motion.distance[-1]))
+    caught, caught_finely, lost, lost_finely = found
+    assert caught[0] == caught_finely[0] == 0.0
+    assert abs(caught[1] - caught_finely[1]) < 0.3e-3
+    assert lost == pytest.approx(lost_finely, rel=0.01)

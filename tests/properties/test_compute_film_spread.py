@@ -1,6 +1,7 @@
 """How unknown the film is: roughness that lets fluid leak, in its load, in COF and in previews."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from underfoot import Case, run
 from underfoot.calibrate.pair_readings import PairReading, calibrated_pair
 from underfoot.case.surfaces import BEYOND_DEVIATION, FLOOR_RQ
+from underfoot.compute import solve
 from underfoot.compute.continuation import Continuation
 from underfoot.compute.numbers import FILM_ERROR, GRID_NAMES, with_film_spread
 from underfoot.compute.prepare import prepared
@@ -97,6 +99,35 @@ def test_the_spread_is_that_of_marches_on_other_roughness(case):
     expected = [odds(march(factor)) - odds(contact) for factor in (1 / width, width)]
     assert expected[0] > 0.1 > -0.1 > expected[1]  # a rougher pair leaks more
     assert spreads[LEAK] == pytest.approx(expected, rel=0.1)
+
+
+def test_a_history_on_the_quick_grid_is_marched_with_the_changes_alone(monkeypatch):
+    """Its own contact is what the changes are compared with: no march more."""
+    case = flat().replace("motion", "heel_strike_to_flat")
+    marched = []
+
+    def contact(film):
+        pressure, status = np.ones((2, 2)), SimpleNamespace(usable=True)
+        loads = {"fluid_load": film, "normal_force": 700.0}
+        return SimpleNamespace(contact_pressure=pressure, status=status, **loads)
+
+    def march(parts, *, progress):
+        marched.append(parts.spacing)
+        for done in (0.0, 1.0):
+            progress("Following the motion", done)
+        return contact(200.0 if len(marched) == 1 else 50.0)
+
+    monkeypatch.setattr(solve, "solved_motion", march)
+    told = []
+    parts = prepared(case, case.numerics.quick_grid_spacing)
+    spreads = film_spreads(parts, contact(100.0), lambda _, done, *__: told.append(done))
+    assert len(marched) == 2
+    assert told == [0.0, 0.5, 0.5, 1.0]  # one after the other, not each from the start
+    expected = [math.log(6 * film / (700 - film)) for film in (200.0, 50.0)]
+    assert spreads[LEAK] == pytest.approx(expected)
+    marched.clear()
+    film_spreads(prepared(case, 2 * case.numerics.quick_grid_spacing), contact(100.0))
+    assert len(marched) == 3  # another grid: what it is compared with, too
 
 
 def test_a_known_roughness_leaves_the_model_alone():

@@ -173,7 +173,11 @@ BRAKING = {
 @pytest.mark.parametrize(
     ("shoe", "fluid", "motion"),
     [
-        ("athletic_shoe_untreaded", "canola_oil", {"motion": BRAKING}),
+        (
+            "athletic_shoe_untreaded",
+            "canola_oil",
+            {"motion": BRAKING, "numerics.quick_grid_spacing": "2 mm"},
+        ),
         ("athletic_shoe_half_tread", "glycerol_75pct", {"motion": BRAKING}),
         ("work_shoe_full_tread", "canola_oil", {"motion": "heel_strike_to_flat"}),
         ("work_shoe_half_tread", "glycerol_90pct", {"motion.duration": "0.12 s"}),

@@ -41,8 +41,9 @@ ALONE = 1e-3
 PEAKS = {True: 0.3, False: 0.05}
 """Relative standard deviation of peaks and of what a sensor reads."""
 IN_TIME = 0.003
-"""Standard deviation of ln F / (W - F) that twice the steps in time don't tell: what the worst of
-eight motions needs for 95 % (``python -m benchmarks history_steps``), rounded up."""
+"""Standard deviation of ln F / (W - F), and of the logarithm of peaks, that twice the steps in time
+don't tell. For 95 % the worst of sixteen motions needs 0.0008 of the film (``python -m benchmarks
+history_steps``), the worst of fifteen others 0.0025."""
 GRID_OF_CONTACT = 1.1
 """Factor by which cells alone raise the friction of the contact at most."""
 CHECKED = 2 * RESOLVED
@@ -220,7 +221,7 @@ def errors_by_steps(
         return 2 * sum(abs(finer[name] - own[name]) for name in names) / whole if whole else 0.0
 
     at = positions.values
-    errors = {name: moved(name) * positions.answer(name) for name in numbers}
+    errors = {name: math.hypot(moved(name), IN_TIME) * positions.answer(name) for name in numbers}
     film, solid = np.clip(at["fluid_load"] / force, 0.0, 1.0), sum(at[name] for name in ON_CONTACT)
     odds = [float(log_film_odds(*(one[load] for load in LOADS))) for one in positions.in_time]
     swing = math.hypot(2 * (odds[1] - odds[0]), IN_TIME)

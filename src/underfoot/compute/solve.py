@@ -24,7 +24,7 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
-from .position_draws import Place, TreadPositions
+from .position_draws import Place, TreadPositions, log_film_odds
 from .positions import (
     TURNED,
     place_numbers,
@@ -43,6 +43,8 @@ LANDING = 0.2e-3
 what lies above takes a hundredth of what a film of 20 um takes."""
 HISTORY_FINER = 2
 """How many times the steps of a held load a history takes: a shoe that rolls leaves its film."""
+OWN_MARCH = 0.4
+"""Share of a history's work at its own place that is its own march; the changes' are the rest."""
 MOST_STEPS = 20
 """Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 
@@ -72,8 +74,9 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
     """
     case, sole, law = parts.case, parts.sole, parts.local_law
     recorder = Recorder(case, law, sole, parts.viscosity)
-    contact = solved_motion(parts, watch=recorder, progress=progress)
-    spreads = film_spreads(parts, contact, progress)
+    done = 1.0 if case.motion.build() is None else OWN_MARCH
+    contact = solved_motion(parts, watch=recorder, progress=part(progress, 0.0, done))
+    spreads = film_spreads(parts, contact, part(progress, done, 1.0))
     friction = contact_friction(case, parts.context, law, sole, contact, spreads=spreads)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
     return Solution(contact, recorder, friction, sensor, spreads)
@@ -108,25 +111,36 @@ def film_spreads(
         return {}
     case, moving = parts.case, parts
     steady = case.motion.build() is None
-    if not steady and "compliance" not in parts.objects:
-        moving = parts.on(sole_map(case, case.numerics.quick_grid_spacing))
+    quick = case.numerics.quick_grid_spacing
+    if not steady and "compliance" not in parts.objects and parts.spacing != quick:
+        moving = parts.on(sole_map(case, quick))
 
-    def odds(asperities: PressureGapLaw) -> float:
+    def odds(asperities: PressureGapLaw, report: Progress) -> float:
         here = moving.on(asperities=asperities)
-        end = continued(contact, here)[-1] if steady else solved_motion(here, progress=progress)
+        end = continued(contact, here)[-1] if steady else solved_motion(here, progress=report)
         if not end.status.usable:
             raise ConvergenceError(str(end.status), history=[])
-        share = min(max(end.fluid_load / end.normal_force, 1e-6), 1 - 1e-6)
-        return math.log(share / (1 - share))
+        return film_odds(end)
 
+    own = not steady and moving is parts
+    laws = [*[law] * (not own), *(each for both in changed.values() for each in both)]
+    steps = np.linspace(0.0, 1.0, len(laws) + 1)
     try:
-        unchanged = odds(law)
-        return {
-            name: (odds(less) - unchanged, odds(more) - unchanged)
-            for name, (less, more) in changed.items()
-        }
+        ends = [odds(one, part(progress, *steps[k : k + 2])) for k, one in enumerate(laws)]
     except ConvergenceError:
         return {}
+    unchanged = film_odds(contact) if own else ends.pop(0)
+    pairs = zip(ends[::2], ends[1::2], strict=True)
+    return {
+        name: (less - unchanged, more - unchanged)
+        for name, (less, more) in zip(changed, pairs, strict=True)
+    }
+
+
+def film_odds(contact: SoleContact) -> float:
+    """Return ln F / (W - F) of the load F on the film of W."""
+    film, whole = contact.fluid_load, contact.normal_force
+    return float(log_film_odds(film, whole - film))
 
 
 def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
