@@ -17,7 +17,7 @@ from underfoot.compute.numbers import FILM_ERROR
 from underfoot.compute.position_draws import Place, log_film_odds
 from underfoot.compute.positions import case_places, shoe_angles, treaded
 from underfoot.compute.prepare import prepared
-from underfoot.compute.solve import solved_at
+from underfoot.compute.solve import LEAST_FILM, solved_at
 from underfoot.core import UnderfootError
 from underfoot.sole_contact.solver import SoleContact
 
@@ -76,7 +76,7 @@ def mean_odds(case: Case) -> float:
 
 def joint_draws() -> None:
     """Print what joint draws of the lengths do to the film of soles drawn at random."""
-    rng, moved = np.random.default_rng(SEED), list[float]()
+    rng, rows = np.random.default_rng(SEED), list[tuple[float, float]]()
     steadiness.SEED, steadiness.SOLES = SEED, SOLES
     for name, case in steadiness.soles():
         own, here = mean_odds(case), list[float]()
@@ -90,12 +90,17 @@ def joint_draws() -> None:
                 here.append(mean_odds(case.replace(drawn)) - own)
             except UnderfootError as error:  # such a heel can't be, or did not converge
                 print(f"  {name}: {error}")
-        moved += here
-        print(f"  {name}: {', '.join(f'{each:+.2f}' for each in here)}", flush=True)
-    rms, most = float(np.sqrt(np.mean(np.square(moved)))), float(np.max(np.abs(moved)))
-    within = int(np.sum(np.abs(moved) < 1.96 * FILM_ERROR))
-    print(f"{len(moved)} joint draws: rms {rms:.2f}, at most {most:.2f}; {within} lie within 95 %")
-    print(f"of the film's error of {FILM_ERROR:.2f}, {(rms / FILM_ERROR) ** 2:.0%} of its variance")
+        share = 1 / (1 + math.exp(-own))
+        rows += [(share, each) for each in here]
+        moves = ", ".join(f"{each:+.2f}" for each in here)
+        print(f"  {name}: {share:.2%} of the load; {moves}", flush=True)
+    share, moved = np.array(rows).T
+    for words, least in (("all", 0.0), (f"films from {LEAST_FILM:.1%} of the load on", LEAST_FILM)):
+        these = np.abs(moved[share >= least])
+        rms, within = float(np.sqrt(np.mean(these**2))), np.sum(these < 1.96 * FILM_ERROR)
+        print(f"{these.size} joint draws ({words}): rms {rms:.2f}, at most {these.max():.2f};")
+        print(f"{within} lie within 95 % of the film's error of {FILM_ERROR:.2f}, ", end="")
+        print(f"{(rms / FILM_ERROR) ** 2:.0%} of its variance")
 
 
 def main() -> None:

@@ -187,7 +187,7 @@ def slid(trial: Trial, rng: np.random.Generator, *, toe: bool, unknown: bool = F
 def _steps(trial: Trial) -> Iterator[tuple[tuple[str, int], float | None, bool, float, list[str]]]:
     """Place, RCOF, whether a caution, the bound of unseen gains, the cautions' names."""
     seen: dict[str, int] = defaultdict(int)
-    for step in required_frictions(trial):
+    for step in required_frictions(walkway_of(trial)):
         seen[step.stance.plate] += 1
         own = step.measurement
         bound = [f.measured for f in own.flags if f.name == "unseen gain"]

@@ -384,7 +384,7 @@ def _verdicts(trial: Trial) -> Verdicts:
     """RCOF, names of the cautions, contact, bound of unseen gains; by plate and contact on it."""
     found = {}
     seen: dict[str, int] = defaultdict(int)
-    for step in required_frictions(trial):
+    for step in required_frictions(walkway_of(trial)):
         own, plate = step.measurement, step.stance.plate
         seen[plate] += 1
         names = frozenset(flag.name for flag in own.caution_flags)

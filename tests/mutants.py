@@ -10,19 +10,20 @@ arguments. Which quick tests run which lines is recorded first (``mutants_map.py
 known yet. A fault meets the tests that run its line, in a copy of the repository, until the first
 that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or, where its line
 runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
-its room (they import its module, or are called ``test_<room>_``), then the others; each test once
-before one comes again with other parameters, the quickest first, ``--seconds`` of each at most. A
-line that runs at import meets the tests that run anything of its file or are of its room; one that
-no test runs in this process meets those of its room if it is compiled, else those that start a
-process. What survives is printed with its place: mend the tests, or say why it may live. A test
-that fails without a fault kills nothing; a fault that its room's test killed counts as dead while
-that test and the source stand. Not part of ``make test``.
+its room (they import its module, themselves or by a helper, or are called ``test_<room>_``), then
+the others; each test once before one comes again with other parameters, the quickest first,
+``--seconds`` of each at most. A line that runs at import meets the tests that run anything of its
+file or are of its room; one that no test runs in this process meets those of its room if it is
+compiled, else those that start a process. What survives is printed with its place: mend the tests,
+or say why it may live. A test that fails without a fault kills nothing; a fault that its room's
+test killed counts as dead while that test and the source stand. Not part of ``make test``.
 """
 
 import ast
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -52,6 +53,7 @@ NAMED = Path(__file__).with_suffix(".toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 CACHE = "__pycache__"
+IMPORTED = re.compile(r"(?m)^(?:from|import) (\w+)")
 PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")
 LEAST_TIME = 60  # s of CPU, below which no fault is called endless
 MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
@@ -245,6 +247,7 @@ def tests_of(file: str) -> tuple[str, ...]:
     names = (module, f"from {module.rpartition('.')[0]} import {parts[-1]}\n")
     nearest, others = [], []
     for path, text in test_texts():
+        text = with_helpers(text)
         if any(one in text for one in names):
             nearest.append(path)
         elif Path(path).name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
@@ -262,6 +265,12 @@ def test_texts() -> tuple[tuple[str, str], ...]:
         for name, path in zip(names, paths, strict=True)
         if name.split("/")[1] not in NO_TESTS_OF_CODE
     )
+
+
+def with_helpers(text: str) -> str:
+    """Return a text of tests with those of the helpers in ``tests`` that it imports."""
+    paths = (REPOSITORY / "tests" / f"{name}.py" for name in re.findall(IMPORTED, text))
+    return "\n".join([text, *(one.read_text(encoding="utf-8") for one in paths if one.exists())])
 
 
 class Test(NamedTuple):
@@ -450,7 +459,7 @@ def start(folder: Path, mutant: Mutant | None, tests: list[Test]) -> tuple[int, 
 
 
 def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
-    """Wait for a run; return it and the test that failed ("" at import), None where all passed."""
+    """Wait for a run; return it and the test that failed (or its file), None where all passed."""
     while True:
         for number, run in runs.items():
             late = time.monotonic() > run.until
@@ -467,8 +476,16 @@ def ended(runs: dict[int, Run]) -> tuple[Run, str | None]:
                 shutil.copy2(REPOSITORY / file, run.folder / file)
             if status == 0:
                 return run, None
-            return run, (run.folder / "runs").read_text(encoding="utf-8")
+            return run, (run.folder / "runs").read_text(encoding="utf-8") or at_import(run)
         time.sleep(0.02)
+
+
+def at_import(run: Run) -> str:
+    """Return a file of tests that could not be imported, one of the fault's room if there is."""
+    log = (run.folder / "log").read_text(encoding="utf-8", errors="replace")
+    files = re.findall(r"(?m)^ERROR (tests/\S+\.py)", log)
+    near = tests_of(run.mutant.file) if run.mutant else ()
+    return next((one for one in files if one in near), files[0] if files else "")
 
 
 def warm_deaths(
@@ -649,7 +666,8 @@ def main() -> None:
         copies = [copied(made / str(number)) for number in range(given.jobs)]
         while chosen:  # what a test killed that fails without a fault too meets the others
             told = met(chosen, lines, copies, seconds=given.seconds, own_only=given.own)
-            lines.false |= false_killers({one.killer for one in told if one.killer}, copies[0])
+            killers = {one.killer for one in told if one.killer and "::" in one.killer}
+            lines.false |= false_killers(killers, copies[0])
             answers += [one for one in told if one.killer not in lines.false]
             chosen = [one.mutant for one in told if one.killer in lines.false]
     finally:

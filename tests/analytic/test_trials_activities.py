@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from underfoot.trials import Trial, axes_of, body_weight, finished_plate, read_trial
+from underfoot.trials import Trial, axes_of, body_weight, finished_plate, read_trial, walkway_of
 from underfoot.trials import required_frictions as steps_of
 from underfoot.trials.simulator.activities import ACTIVITIES, activity, activity_c3d
 
@@ -32,13 +32,13 @@ def _on_one_plate(trial: Trial) -> Trial:
 def test_no_other_activity_is_an_accepted_step(tmp_path, name, markers, mass, crossed):
     trial = _trial(tmp_path, name, markers=markers, mass=mass, crossed=crossed)
     for recording in (trial, _on_one_plate(trial)):
-        assert all(step.verdict != "accepted" for step in steps_of(recording))
+        assert all(step.verdict != "accepted" for step in steps_of(walkway_of(recording)))
 
 
 @pytest.mark.parametrize("mass", [0.0, 70.0])
 @pytest.mark.parametrize("markers", [True, False])
 def test_walking_is_accepted(tmp_path, markers, mass):
-    steps = steps_of(_trial(tmp_path, "walk", markers=markers, mass=mass))
+    steps = steps_of(walkway_of(_trial(tmp_path, "walk", markers=markers, mass=mass)))
     assert [step.verdict for step in steps] == ["accepted", "accepted"]
     for step in steps:
         assert step.measurement.value == pytest.approx(0.2, abs=0.005)
@@ -52,7 +52,7 @@ def test_crossed_corners_are_put_in_order_and_said(tmp_path):
         assert plate.usable
         np.testing.assert_allclose(plate.force, other.force, atol=1e-6)
         assert "corners" in [flag.name for flag in plate.flags]
-    reasons = [step.measurement.reason for step in steps_of(crossed)]
+    reasons = [step.measurement.reason for step in steps_of(walkway_of(crossed))]
     assert any("one foot on both, or a jump" in reason for reason in reasons)
 
 

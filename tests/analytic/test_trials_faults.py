@@ -23,6 +23,7 @@ from underfoot.trials import (
     required_frictions,
     slip_of,
     stances,
+    walkway_of,
 )
 from underfoot.trials.simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
 from underfoot.trials.walking.slips import Outcome
@@ -229,7 +230,7 @@ def _outcomes(columns: Columns, folder: Path, unit: str = "N") -> list[tuple[str
     np.savetxt(path, data, delimiter=",", header=head, comments="", fmt="%.7g")
     profile.write_text(PROFILE.format(unit=unit))
     try:
-        steps = required_frictions(read_trial(path, profile))
+        steps = required_frictions(walkway_of(read_trial(path, profile)))
     except UnderfootError:
         return []
     return [
@@ -292,8 +293,8 @@ def _with_heel(trial: Trial, change: Callable[[np.ndarray, Callable[[float], int
 
 
 def _slip_of_plate_2(trial: Trial):
-    stance = next(s for s in stances(trial) if s.plate == "plate 2")
-    return slip_of(trial, stance)
+    stance = next(s for s in stances(walkway_of(trial)) if s.plate == "plate 2")
+    return slip_of(walkway_of(trial), stance)
 
 
 def test_the_slip_itself_is_right(slipped):
@@ -337,7 +338,7 @@ def test_exchanged_heels_contradict_the_events_of_the_file():
     trial = read_trial(DATA / "biomechzoo" / "HC030A05.c3d")
     left, right = trial.markers["LHEE"], trial.markers["RHEE"]
     exchanged = replace(trial, markers={**trial.markers, "LHEE": right, "RHEE": left})
-    for step in required_frictions(exchanged):
+    for step in required_frictions(walkway_of(exchanged)):
         assert "side" in [flag.name for flag in step.measurement.caution_flags]
 
 
@@ -345,7 +346,7 @@ def test_exchanged_heels_contradict_the_events_of_the_file():
 def test_forces_that_are_late_are_a_caution(late):
     trial = read_trial(DATA / "biomechzoo" / "HC030A05.c3d")
     plates = tuple(replace(plate, start=plate.start + late) for plate in trial.plates)
-    steps = required_frictions(replace(trial, plates=plates))
+    steps = required_frictions(walkway_of(replace(trial, plates=plates)))
     assert all(step.verdict != "accepted" for step in steps)
 
 
@@ -355,7 +356,7 @@ def test_forces_turned_against_the_markers_are_no_steps(turns):
     c, s = [(0, 1), (-1, 0), (0, -1)][turns - 1]
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     plates = tuple(replace(plate, force=plate.force @ turn.T) for plate in trial.plates)
-    for step in required_frictions(replace(trial, plates=plates)):
+    for step in required_frictions(walkway_of(replace(trial, plates=plates))):
         assert step.verdict != "accepted"
 
 

@@ -70,14 +70,16 @@ def test_a_speed_that_nobody_recorded_widens_the_limits_as_a_line_over_the_speed
 
 @pytest.mark.parametrize("name", SOUND)
 def test_sound_recorded_steps_are_accepted(name):
-    assert {step.verdict for step in required_frictions(read_trial(DATA / name))} == {"accepted"}
+    assert {step.verdict for step in required_frictions(walkway_of(read_trial(DATA / name)))} == {
+        "accepted"
+    }
 
 
 @pytest.mark.parametrize("name", SOUND)
 @pytest.mark.parametrize("factor", [0.4, 0.5, 2.0])
 def test_a_gain_of_the_shear_is_noticed_on_both_sides(name, factor):
     """No mass is needed: the force no longer points to the pelvis."""
-    steps = required_frictions(_shear(read_trial(DATA / name), factor))
+    steps = required_frictions(walkway_of(_shear(read_trial(DATA / name), factor)))
     assert steps
     assert all(step.verdict != "accepted" for step in steps)
 
@@ -104,21 +106,21 @@ def test_an_impossible_step_is_rejected_with_the_reason():
     assert not impossible({slope.feature: slope.mean})
     words = impossible({slope.feature: slope.mean + 12 * slope.sd})
     assert "is impossible" in words
-    (first, *_) = required_frictions(_shear(read_trial(DATA / SOUND[0]), 4.0))
+    (first, *_) = required_frictions(walkway_of(_shear(read_trial(DATA / SOUND[0]), 4.0)))
     assert first.verdict == "rejected"
     assert "impossible" in first.measurement.reason
 
 
 def test_what_cannot_be_judged_is_said():
     trial = read_trial(DATA / "bmc" / "Gait.c3d")
-    bare = required_frictions(replace(trial, markers={}))[0].measurement
+    bare = required_frictions(walkway_of(replace(trial, markers={})))[0].measurement
     words = [flag.message for flag in bare.flags if not flag.matters]
     assert any("body mass" in text and "can't be judged" in text for text in words)
     assert any("pelvis markers" in text for text in words)
 
 
 def test_a_turn_is_unlikely_as_a_straight_step():
-    (turn,) = required_frictions(read_trial(DATA / "biomechzoo" / "HC036A23.c3d"))
+    (turn,) = required_frictions(walkway_of(read_trial(DATA / "biomechzoo" / "HC036A23.c3d")))
     assert "sideways ratio" in {flag.name for flag in turn.measurement.caution_flags}
 
 
@@ -132,7 +134,7 @@ def test_shear_where_nothing_loads_the_plate_is_noticed(late, name):
         normal = np.outer(force @ up, up)
         return normal + np.roll(force - normal, late, axis=0)
 
-    for step in required_frictions(_changed(trial, shifted)):
+    for step in required_frictions(walkway_of(_changed(trial, shifted))):
         assert name in {flag.name for flag in step.measurement.caution_flags}
 
 
@@ -144,7 +146,7 @@ def test_samples_missing_without_a_trace_are_noticed():
         out[at:-30] = force[at + 30 :]
         return out
 
-    for step in required_frictions(_changed(trial, lost)):
+    for step in required_frictions(walkway_of(_changed(trial, lost))):
         assert "step of the forces" in {flag.name for flag in step.measurement.caution_flags}
 
 
@@ -187,13 +189,13 @@ def test_a_plate_that_rings_is_noticed():
         out[at:, :2] += (60 * np.exp(-time / 0.1) * np.sin(2 * np.pi * 20 * time))[:, None]
         return out
 
-    for step in required_frictions(_changed(trial, ringing)):
+    for step in required_frictions(walkway_of(_changed(trial, ringing))):
         assert "turns of the shear" in {flag.name for flag in step.measurement.caution_flags}
 
 
 def test_the_shape_of_the_normal_force_is_not_judged_in_fast_walks():
     trial = read_trial(DATA / SOUND[0])
-    (first, *_) = required_frictions(trial)
+    (first, *_) = required_frictions(walkway_of(trial))
     way = first.stance.walking
     faster = {
         name: replace(m, positions=m.positions + np.outer(m.time, 0.8 * way))
@@ -217,5 +219,5 @@ def test_forces_drawn_out_on_lines_are_noticed(rate):
             [np.interp(time, knots, np.interp(knots, time, column)) for column in force.T]
         )
 
-    for step in required_frictions(_changed(trial, drawn)):
+    for step in required_frictions(walkway_of(_changed(trial, drawn))):
         assert "samples drawn out" in {flag.name for flag in step.measurement.caution_flags}

@@ -70,7 +70,7 @@ def test_a_body_at_rest_on_a_ramp_needs_the_tangent_of_its_angle(degrees):
 @pytest.mark.parametrize("degrees", [-8.0, 5.0])
 def test_both_frames_give_the_number_of_the_walking_surface(walk, degrees):
     angle = math.radians(degrees)
-    first = required_frictions(walk)[0]
+    first = required_frictions(walkway_of(walk))[0]
     plates = tuple(
         replace(p, force=turned(p.force, angle), corners=turned(p.corners, angle))
         for p in walk.plates
@@ -97,7 +97,7 @@ def test_both_frames_give_the_number_of_the_walking_surface(walk, degrees):
 
 
 def test_level_is_what_it_was(walk):
-    plain = required_frictions(walk)[0].measurement
+    plain = required_frictions(walkway_of(walk))[0].measurement
     zero = walkway_of(walk, ramp=ramp_from("0 deg", "horizontal"))
     assert required_frictions(zero)[0].measurement.value == plain.value
     assert plain.conventions["surface"] == "level"

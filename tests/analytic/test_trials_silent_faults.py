@@ -38,7 +38,7 @@ def changed(trial, change):
 
 
 def cautions(trial):
-    steps = [step.measurement for step in required_frictions(trial)]
+    steps = [step.measurement for step in required_frictions(walkway_of(trial))]
     kept = [{flag.name for flag in one.caution_flags} for one in steps if one.estimated]
     assert kept
     return kept

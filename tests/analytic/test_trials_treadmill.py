@@ -53,7 +53,7 @@ def test_without_markers_the_centre_of_pressure_tells_the_belt(tmp_path):
 
 def test_a_heel_that_slides_on_the_belt_has_no_required_friction(tmp_path):
     _, trial = _recording(tmp_path, stances=9, slip=0.12)
-    steps = required_frictions(trial)
+    steps = required_frictions(walkway_of(trial))
     slides = [step for step in steps if "slides" in step.measurement.reason]
     assert [step.stance.number for step in slides] == [5]
     assert slides[0].slip.distance.value == pytest.approx(0.12, rel=0.1)
@@ -177,7 +177,7 @@ def test_dflow_text_gives_plates_markers_and_even_time(tmp_path):
     assert any("1 frames are not in the file" in note for note in read.notes)
     # The export has lost that it is made up: its force line is not that of a body.
     read = replace(read, settings={"software": MADE_UP})
-    steps = [s for s in required_frictions(read) if s.measurement.value is not None]
+    steps = [s for s in required_frictions(walkway_of(read)) if s.measurement.value is not None]
     assert len(steps) >= 8
     mean = np.mean([step.measurement.value for step in steps])
     assert mean == pytest.approx(made.truth["rcof"], abs=0.02)  # plates at 100 Hz

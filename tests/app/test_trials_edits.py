@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.trials import Edit, read_trial, required_frictions, stances
+from underfoot.trials import Edit, read_trial, required_frictions, stances, walkway_of
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.simulator import simulated_folder
 from underfoot.trials.study import analyse_folder
@@ -58,10 +58,12 @@ def test_side_and_toe_off_are_set():
         Edit(1, "side", "left", "markers exchanged"),
         Edit(2, "toe off", 4.1, "the other foot"),
     )
-    first, second = stances(trial.with_edits(*edits))
+    first, second = stances(walkway_of(trial.with_edits(*edits)))
     assert (first.side, first.heel) == ("left", "LHEE")
     assert second.toe_off == 4.1
-    rcof = [step.measurement.value for step in required_frictions(trial.with_edits(*edits))]
+    rcof = [
+        step.measurement.value for step in required_frictions(walkway_of(trial.with_edits(*edits)))
+    ]
     assert rcof[0] == pytest.approx(0.2159, abs=1e-4)
 
 
@@ -77,8 +79,10 @@ def test_one_foot_on_two_plates_is_given_to_one_of_them():
             replace(second, name="plate 9", force=0.4 * second.force),
         ),
     )
-    assert not any(stance.accepted for stance in stances(both))
-    (taken, left) = stances(both.with_edits(Edit(1, "plate", "plate 2", "toes only on 9")))
+    assert not any(stance.accepted for stance in stances(walkway_of(both)))
+    (taken, left) = stances(
+        walkway_of(both.with_edits(Edit(1, "plate", "plate 2", "toes only on 9")))
+    )
     assert taken.accepted
     assert taken.plate == "plate 2"
     assert "by hand: the step is on plate 2" in left.reason

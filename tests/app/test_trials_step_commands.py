@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from underfoot.cli.trials import trials_app
-from underfoot.trials import joined, read_trial, required_frictions
+from underfoot.trials import joined, read_trial, required_frictions, walkway_of
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study import analyse_folder
 
@@ -52,8 +52,8 @@ def test_export_is_read_by_ezc3d_and_gives_the_same_steps(tmp_path):
     source = read_trial(WALK)
     for plate, other in zip(theirs["data"]["platform"], source.plates, strict=True):
         np.testing.assert_allclose(plate["force"].T, other.force, atol=1e-3)
-    before = [s.measurement.value for s in required_frictions(source)]
-    after = [s.measurement.value for s in required_frictions(read_trial(out))]
+    before = [s.measurement.value for s in required_frictions(walkway_of(source))]
+    after = [s.measurement.value for s in required_frictions(walkway_of(read_trial(out)))]
     assert after == pytest.approx(before, abs=1e-6)
     assert _run("export", WALK, "--out", out).exit_code == 2
 
@@ -65,7 +65,7 @@ def test_export_of_text_files_keeps_the_numbers(tmp_path):
     assert _run("export", files[0], "--with", files[1], "--out", out).exit_code == 0
     trial = read_trial(out)
     source = joined(*(read_trial(file) for file in files))
-    steps = [s.stance for s in required_frictions(source) if s.measurement.estimated]
+    steps = [s.stance for s in required_frictions(walkway_of(source)) if s.measurement.estimated]
     strikes = [event.time for event in trial.events if event.name == "heel contact"]
     assert strikes == pytest.approx([stance.contact for stance in steps], abs=1e-4)
 

@@ -19,10 +19,7 @@ TREADS = {
     "herringbone": Tread("chevrons", 5 * MM, 3 * MM, 3 * MM, angle=0.7, arm_length=15 * MM),
     "circles": Tread("circles", 9 * MM, 3 * MM, 3.5 * MM),
 }
-SLOW = [
-    pytest.param(*each, marks=pytest.mark.slow)
-    for each in [*((name, "1 mm") for name in TREADS if name != "hexagons"), ("hexagons", "0.6 mm")]
-]
+SOLES = [*((name, "1 mm") for name in TREADS), ("hexagons", "0.6 mm")]
 
 
 def sole_file(folder, tread):
@@ -33,7 +30,8 @@ def sole_file(folder, tread):
     return write_stl(folder / "sole.stl", triangles(body))
 
 
-@pytest.mark.parametrize(("name", "spacing"), [("hexagons", "1 mm"), *SLOW])
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "spacing"), SOLES)
 def test_a_whole_sole_converges(tmp_path, name, spacing):
     case = Case(
         name=name,

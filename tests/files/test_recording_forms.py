@@ -459,7 +459,7 @@ def test_the_heel_that_was_held_is_named(tmp_path):
     for path in sorted(tmp_path.glob("*.c3d")):
         trial = read_trial(path)
         for stance in stances(walkway_of(trial)):
-            whole = slip_of(trial, stance)
+            whole = slip_of(walkway_of(trial), stance)
             if not whole.slipped or not stance.heel:
                 continue
             marker = trial.marker(stance.heel)
@@ -469,7 +469,7 @@ def test_the_heel_that_was_held_is_named(tmp_path):
             assert unseen(held)[HELD][first + 1 : first + 45].all()
             lost = np.where(unseen(held)[HELD][:, None], np.nan, held)
             markers = {**trial.markers, stance.heel: replace(marker, positions=lost, note="held")}
-            found = slip_of(replace(trial, markers=markers), stance)
+            found = slip_of(walkway_of(replace(trial, markers=markers)), stance)
             assert found.slipped is None
             assert "(held)" in found.peak_speed.reason
             judged += 1

@@ -468,7 +468,7 @@ def test_a_long_file_read_in_parts_holds_what_it_holds_as_a_whole(path, monkeypa
 
 
 def test_a_long_recording_gives_the_same_friction_and_checksum(monkeypatch):
-    from underfoot.trials import readers, required_frictions
+    from underfoot.trials import readers, required_frictions, walkway_of
 
     path = DATA / "biomechzoo/HC030A05.c3d"
     whole = read_trial(path)
@@ -476,7 +476,8 @@ def test_a_long_recording_gives_the_same_friction_and_checksum(monkeypatch):
     parts = read_trial(path)
     assert parts.checksum == whole.checksum
     first, second = (
-        [step.measurement.value for step in required_frictions(one)] for one in (whole, parts)
+        [step.measurement.value for step in required_frictions(walkway_of(one))]
+        for one in (whole, parts)
     )
     assert second == pytest.approx(first, rel=1e-5)
     assert len(first) == 2
@@ -486,12 +487,15 @@ def test_steps_of_a_long_record_are_those_of_the_short_one(tmp_path):
     """A walk again and again: each time the same steps."""
     from benchmarks.long_records import WALKS, write_repeated
 
-    from underfoot.trials import required_frictions
+    from underfoot.trials import required_frictions, walkway_of
 
     walk = WALKS["291 points"]
     write_repeated(walk, 3.5e-6 * walk.stat().st_size, tmp_path / "long.c3d")
-    once = [step.measurement.value for step in required_frictions(read_trial(walk))]
-    again = [s.measurement.value for s in required_frictions(read_trial(tmp_path / "long.c3d"))]
+    once = [step.measurement.value for step in required_frictions(walkway_of(read_trial(walk)))]
+    again = [
+        s.measurement.value
+        for s in required_frictions(walkway_of(read_trial(tmp_path / "long.c3d")))
+    ]
     assert len(again) > 2 * len(once)
     assert again[: len(once)] == pytest.approx(once, abs=2e-3)
 

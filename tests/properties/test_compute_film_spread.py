@@ -78,7 +78,13 @@ def test_roughness_that_is_not_given_is_drawn_over_what_is_usual():
 AT_ONCE = {"motion.steady": False, "motion.duration": "0.5 s"}
 
 
-@pytest.mark.parametrize("case", [heel().replace(AT_ONCE), flat()], ids=["lugs", "flat"])
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(heel().replace(AT_ONCE), marks=pytest.mark.slow, id="lugs"),
+        pytest.param(flat(), id="flat"),
+    ],
+)
 def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spacing = case.numerics.quick_grid_spacing
 

@@ -679,7 +679,11 @@ def test_a_place_that_does_not_converge_is_said_first_and_widens_the_error(monke
     monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
     monkeypatch.setattr(numerical_error, "tread_on_sole", lambda _: (np.eye(2),))
     parts = SimpleNamespace(
-        case=SimpleNamespace(numerics=SimpleNamespace(grid_check=False)), objects={}, sole=None
+        case=SimpleNamespace(
+            numerics=SimpleNamespace(grid_check=False), motion=SimpleNamespace(end_time=None)
+        ),
+        objects={},
+        sole=None,
     )
     for left_out in (0, 2):
         positions = TreadPositions(places(np.eye(2), 4), values, left_out, own)

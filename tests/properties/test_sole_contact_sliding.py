@@ -56,7 +56,7 @@ def solve(
     )
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(
     viscosity=st.floats(1e-3, 0.3),
     speed=st.floats(-1.0, 1.0),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from underfoot.trials import read_trial, required_frictions
+from underfoot.trials import read_trial, required_frictions, walkway_of
 from underfoot.trials.simulator import Defects, SlipTruth, walk_c3d, walk_with_slip
 
 
@@ -108,7 +108,7 @@ EARLIER = {"a person a quarter heavier": 4e-3}
 def told(trial):
     """Return verdict, RCOF and its ±, its moment and the slip of each step, by time."""
     rows = []
-    for one in sorted(required_frictions(trial), key=lambda each: each.stance.contact):
+    for one in sorted(required_frictions(walkway_of(trial)), key=lambda each: each.stance.contact):
         began, slid = one.stance.contact, one.slip
         numbers = [one.measurement.value, one.measurement.uncertainty, one.peak_time - began]
         if slid is not None:

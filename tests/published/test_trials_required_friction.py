@@ -39,7 +39,7 @@ def _trial(name: str):
 
 
 def _rcof(trial, definition="default"):
-    found = required_frictions(trial, DEFINITIONS[definition])
+    found = required_frictions(walkway_of(trial), DEFINITIONS[definition])
     return [f.measurement.value for f in found if f.measurement.estimated]
 
 
@@ -60,7 +60,7 @@ SEEN = [
 @pytest.mark.parametrize(("name", "values", "vertical", "feet"), SEEN)
 def test_rcof_of_real_walking(name, values, vertical, feet):
     trial = _trial(name)
-    found = required_frictions(trial)
+    found = required_frictions(walkway_of(trial))
     taken = [f for f in found if f.measurement.estimated]
     assert [f.measurement.value for f in taken] == pytest.approx(values, abs=0.01)
     assert axis_name(axes_of(trial).up) == vertical
@@ -72,7 +72,7 @@ def test_rcof_of_real_walking(name, values, vertical, feet):
 
 
 def test_cut_stances_are_rejected_with_the_reason():
-    found = required_frictions(_trial("opensim/leg69_stance_grf.mot"))
+    found = required_frictions(walkway_of(_trial("opensim/leg69_stance_grf.mot")))
     reasons = [f.measurement.reason for f in found if not f.measurement.estimated]
     assert reasons == ["begins before the record", "ends after the record"]
     assert found[1].stance.direction.source == "treadmill"
@@ -81,7 +81,7 @@ def test_cut_stances_are_rejected_with_the_reason():
 def test_a_heel_beside_the_plate_is_a_partial_hit():
     """The left heel of this file lands 136 mm behind plate 1; its 0.18 is no required friction."""
     trial = _trial("opensim/walking5.c3d")
-    first = required_frictions(trial)[0]
+    first = required_frictions(walkway_of(trial))[0]
     assert first.measurement.reason == "a partial hit: the heel stands 136 mm outside the plate"
     blind = replace(trial, markers={})
     assert _rcof(blind) == pytest.approx([0.18, 0.21], abs=0.01)  # as seen without the markers
@@ -117,9 +117,11 @@ def test_definitions_move_rcof_as_known():
 
 
 def test_forces_named_in_body_weight_need_the_mass():
-    heavy = required_frictions(_trial("biomechzoo/HC030A05.c3d"), DEFINITIONS["gate-body-weight"])
+    heavy = required_frictions(
+        walkway_of(_trial("biomechzoo/HC030A05.c3d")), DEFINITIONS["gate-body-weight"]
+    )
     assert all(f.measurement.estimated for f in heavy)
-    none = required_frictions(_trial("bmc/Gait.c3d"), DEFINITIONS["gate-body-weight"])
+    none = required_frictions(walkway_of(_trial("bmc/Gait.c3d")), DEFINITIONS["gate-body-weight"])
     assert all("mass is not known" in f.measurement.reason for f in none)
 
 
@@ -154,8 +156,8 @@ def test_turned_laboratories_give_the_same_numbers():
 def test_nobody_slips_in_dry_walking():
     """Speed peak between the first two minima: 0.03-0.08 m/s in this set (its description)."""
     trial = _trial("biomechzoo/HC030A05.c3d")
-    for stance in stances(trial):
-        slip = slip_of(trial, stance)
+    for stance in stances(walkway_of(trial)):
+        slip = slip_of(walkway_of(trial), stance)
         assert slip.slipped is False
         assert 0.03 <= slip.peak_speed.value < 0.085
         assert slip.margin.value == pytest.approx(slip.peak_speed.value - 0.2)
@@ -166,18 +168,23 @@ def test_contacts_from_heels_alone_agree_with_the_plates():
     for name in ("biomechzoo/HC030A05.c3d", "kineticstoolkit/c3d_sample.c3d", "walk1"):
         trial = _trial(name)
         axes = axes_of(trial)
-        for stance in stances(trial):
+        for stance in stances(walkway_of(trial)):
             found = contact_from_heel(trial.marker(stance.heel), axes.up)
             assert min(abs(time - stance.contact) for time in found) < 0.025
 
 
 def test_mean_of_steps():
-    found = [f.measurement for f in required_frictions(_trial("kineticstoolkit/c3d_sample.c3d"))]
+    found = [
+        f.measurement
+        for f in required_frictions(walkway_of(_trial("kineticstoolkit/c3d_sample.c3d")))
+    ]
     mean = mean_of(found)
     values = [m.value for m in found]
     assert mean.value == pytest.approx(np.mean(values))
     assert mean.uncertainty == pytest.approx(np.std(values, ddof=1) / np.sqrt(3))
-    other = required_frictions(_trial("bmc/Gait.c3d"), RcofDefinition(filter=LowPass(cutoff=20.0)))
+    other = required_frictions(
+        walkway_of(_trial("bmc/Gait.c3d")), RcofDefinition(filter=LowPass(cutoff=20.0))
+    )
     with pytest.raises(InputError, match="different conventions"):
         mean_of([*found, other[0].measurement])
     none = mean_of([Measurement.not_estimated("rcof", "cut"), Measurement("rcof", 0.2)])

@@ -11,7 +11,14 @@ import pytest
 from underfoot.case import Case
 from underfoot.compute import numerical_error
 from underfoot.compute.numbers import GRID_NAMES
-from underfoot.compute.numerical_error import NumericalErrors, with_numerical_error
+from underfoot.compute.numerical_error import (
+    IN_TIME,
+    NumericalErrors,
+    errors_by_steps,
+    with_numerical_error,
+)
+from underfoot.compute.position_draws import Place, ShoeAngles
+from underfoot.compute.positions import remembers, tread_positions
 from underfoot.compute.run import run
 from underfoot.compute.solve import solved_motion
 from underfoot.core import SourcedValue, Status
@@ -138,8 +145,8 @@ def test_the_error_by_steps_is_that_of_the_first_order(monkeypatch):
     parts = SimpleNamespace(case=Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml"),
                             viscosity=0.2, sole=None)  # fmt: skip
 
-    def at(here, place, spacing, *, finer=1, progress=None):
-        return here, SimpleNamespace(steps=finer, status=Status.CONVERGED)
+    def at(here, place, spacing, *, progress=None):
+        return here, SimpleNamespace(steps=place.finer, status=Status.CONVERGED)
 
     monkeypatch.setattr(numerical_error, "solved_at", at)
     monkeypatch.setattr(numerical_error, "_read", lambda _, one: {"cof": 5 + 0.4 / one.steps})
@@ -147,3 +154,56 @@ def test_the_error_by_steps_is_that_of_the_first_order(monkeypatch):
     found = numerical_error._compared(parts, {"cof": 5.7}, lambda *_: None)
     assert found.steps["cof"] == pytest.approx(0.4)
     assert found.grid["cof"] == pytest.approx(0.3)
+
+
+def test_a_motion_that_ends_has_the_error_of_its_steps_from_twice_as_many():
+    """Numbers a (1 + 0.1 / n) with n times the steps: what is left of one times is a tenth."""
+    parts = {"cof_adhesion": 0.05, "cof_hysteresis": 0.03, "cof_viscous": 0.02}
+    whole = {**parts, "cof": 0.1, "contact_load": 300.0, "peak_fluid_pressure": 1e5}
+
+    def with_steps(n):
+        moved = {name: value * (1 + 0.1 / n) for name, value in whole.items()}
+        return {**moved, "contact_load": 300.0, "fluid_load": 100.0 * (1 + 0.1 / n)}
+
+    own, finer = with_steps(1), with_steps(2)
+    at = {name: np.full(3, value) for name, value in own.items()}
+    steady = ShoeAngles((Place(),) * 3, at, 0, own)
+    names, force = ("cof", "fluid_load", "peak_fluid_pressure"), 410.0
+    assert errors_by_steps(steady, names, force) == {}
+    ended = replace(steady, in_time=(own, finer))
+    found = errors_by_steps(ended, names, force)
+    left = 0.1 / 1.1  # of the numbers with one times
+    assert found["peak_fluid_pressure"] == pytest.approx(left * at["peak_fluid_pressure"][0])
+    share = 110 / force
+    film = share * (1 - share) * force
+    assert found["fluid_load"] == pytest.approx(
+        film * math.hypot(2 * math.log(1.1 / 1.05), IN_TIME)
+    )
+    solid = own["cof_adhesion"] + own["cof_hysteresis"]
+    assert found["cof"] == pytest.approx(math.hypot(left * own["cof"], IN_TIME * share * solid))
+    unmoved = errors_by_steps(replace(steady, in_time=(own, own)), names, force)
+    assert unmoved["fluid_load"] == pytest.approx(film * IN_TIME)  # no error vanishes by accident
+    assert unmoved["cof"] > 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "marched"),
+    [({}, False), ({"motion.duration": "0.12 s"}, True), ({"motion": "heel_strike_to_flat"}, True)],
+)
+def test_only_a_motion_that_ends_is_marched_with_more_steps(changes, marched):
+    case = Case.load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace(changes)
+    own = {"cof": 0.1, "fluid_load": 100.0, "contact_load": 300.0,
+           **dict.fromkeys(("cof_adhesion", "cof_hysteresis", "cof_viscous"), 0.03)}  # fmt: skip
+    asked = []
+
+    def at_places(places):
+        asked.extend(places)
+        return ((k, own) for k in range(len(places)))
+
+    spacing = case.numerics.grid_spacing
+    made = tread_positions(case, {Place(): own}, at_places, spacing=spacing, quick=False)
+    finer = (Place(finer=2), case.numerics.quick_grid_spacing)
+    assert (finer in asked) == marched
+    assert made.in_time == ((own, own) if marched else ())
+    assert all(place.finer == 1 for place in made.places)
+    assert not remembers(case.replace("contaminant", "none"))

@@ -17,9 +17,12 @@ from underfoot.core.threads import namespace
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import (
     ContactTable,
+    SlidingSettings,
     contact_table,
+    contacts_of,
     flow_factors,
     sliding_input,
+    steady,
     steady_sliding,
 )
 from underfoot.rough_contact._kernels import krylov, nested, operators
@@ -36,6 +39,15 @@ ANOTHER_DEVICE = array_api_strict.Device("device1")
 def waves(nodes: int = 32) -> np.ndarray:
     c = np.cos(2 * np.pi * np.arange(nodes) / nodes)
     return 1e-5 * c[:, None] * c[None, :]
+
+
+def rough(nodes: int) -> np.ndarray:
+    """Return random heights over waves of 4 to nodes / 8 to the side, with an rms slope of 0.3."""
+    spectrum = np.fft.rfft2(np.random.default_rng(3).standard_normal((nodes, nodes)))
+    q = np.hypot(np.fft.fftfreq(nodes, 1 / nodes)[:, None], np.arange(nodes // 2 + 1))
+    spectrum *= np.where((q >= 4) & (q <= nodes / 8), q.clip(1) ** -1.8, 0.0)
+    height = np.fft.irfft2(spectrum)
+    return height * 0.3e-5 / np.std(np.diff(height, axis=0)) / 2**0.5
 
 
 def on_device(height: np.ndarray, device: str) -> Any:
@@ -143,24 +155,69 @@ def test_torch_takes_the_steps_and_products_of_numpy(monkeypatch, cost, nodes, p
 
 
 @pytest.mark.parametrize("device", DEVICES)
-@pytest.mark.parametrize("share", [0.02, 0.5, 0.9, 1.0])
-def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, share):
+@pytest.mark.parametrize("shares", [(0.02,), (0.5,), (0.9,), (1.0,), (0.02, 0.5, 1.0)])
+def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, shares):
     generator = np.random.default_rng(2)
-    inside = generator.permutation(35 * 24).reshape(35, 24) < share * 35 * 24
-    field = generator.standard_normal((35, 24)).astype(np.float32)
+    least = 35 * 24 * np.array(shares)[:, None, None]
+    inside = generator.permutation(35 * 24).reshape(1, 35, 24) < least
+    field = generator.standard_normal(inside.shape).astype(np.float32)
     xp_mask, xp_field = on_device(inside, device), on_device(field, device)
     xp = namespace(xp_field)
     part = Restriction(xp_mask, xp)
     reference = Restriction(inside, np)
     assert part.size == reference.size
-    assert part.nodes == reference.nodes == np.count_nonzero(inside)
+    assert part.nodes == inside.sum(axis=(1, 2)).tolist()
     vector = part.take(xp_field)
     np.testing.assert_array_equal(on_host(part.spread(vector)), np.where(inside, field, 0))
     part.centre(vector)
-    mean = field[inside].mean(dtype=float)
+    mean = field.mean(axis=(1, 2), where=inside, dtype=float)[:, None, None]
     np.testing.assert_allclose(
         on_host(part.spread(vector)), np.where(inside, field - mean, 0), atol=1e-6
     )
+
+
+LOADS = [(p, v) for v in (0.01, 1.0) for p in (3e3, 2e4, 1e5, 3e6)]  # the last in full contact
+
+
+@pytest.mark.parametrize("device", ["numpy", *DEVICES])
+@pytest.mark.parametrize("most", [60, 10])  # steps; with 10 some go by thinner mattresses
+def test_contacts_side_by_side_are_those_of_numpy_alone(device, most):
+    height = rough(64)
+    there = height if device == "numpy" else on_device(height, device)
+    settings = SlidingSettings(max_iterations=most, tolerance=1e-8)
+    given = {"spacing": 1e-5, "modulus": MATERIAL, "settings": settings}
+    batch = contacts_of(there, loads=LOADS, **given)
+    alone = [steady_sliding(height, pressure=p, speed=v, **given) for p, v in LOADS]
+    assert {contact.full_contact for contact in alone} == {True, False}
+    by_mattresses = [contact.iterations > 20 for contact in alone]
+    assert any(by_mattresses) == (most == 10)
+    assert not all(by_mattresses)
+    for one, two in zip(alone, batch, strict=True):
+        assert (two.nominal_pressure, two.speed) == (one.nominal_pressure, one.speed)
+        assert (two.status, two.full_contact) == (one.status, one.full_contact)
+        assert two.notes == one.notes
+        for name in ("cof_hysteresis", "real_contact_fraction", "mean_gap", "cof_slope"):
+            assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6, abs=1e-20)
+        np.testing.assert_allclose(
+            on_host(two.pressure), one.pressure, atol=1e-5 * one.pressure.max()
+        )
+
+
+def test_contacts_side_by_side_share_their_transforms(monkeypatch):
+    """A batch calls the device as often as its slowest contact, and a few times a contact more."""
+    height, calls = on_device(rough(64), "strict"), []
+    back = ArrayTransform.backward
+    monkeypatch.setattr(
+        ArrayTransform, "backward", lambda *given: (calls.append(0), back(*given))[1]
+    )
+    counts = []
+    for loads in ([load] for load in LOADS):
+        calls.clear()
+        contacts_of(height, 1e-5, MATERIAL, loads)
+        counts.append(len(calls))
+    calls.clear()
+    contacts_of(height, 1e-5, MATERIAL, LOADS)
+    assert len(calls) < 1.5 * max(counts) < 0.3 * sum(counts)
 
 
 def refused_input(call: Any) -> str | None:
@@ -309,20 +366,32 @@ def test_a_device_that_is_not_there_is_refused(monkeypatch):
     assert not devices.on_card("auto", 2048**2)
 
 
-def test_a_table_on_the_card_names_it_and_is_kept_apart(monkeypatch, tmp_path):
+@pytest.mark.parametrize("batch", [sliding_input._BATCH, 3 * 32 * 32])  # all at once, by threes
+@pytest.mark.parametrize("rough_shoe", [False, True])
+def test_a_table_on_the_card_names_it_and_is_kept_apart(monkeypatch, tmp_path, batch, rough_shoe):
     """Another device of array_api_strict in the place of the card."""
     floor, cache = HeightMap(waves(), 1e-5, periodic=True), Cache("card", tmp_path)
-    given = ([floor], MATERIAL, [1e4, 2e4, 3e4, 4e4], [0.1])
-    one = ContactTable.from_surfaces(*given, cache=cache, device="auto")
+    given = ([floor], MATERIAL, [1e4, 2e4, 3e4, 4e4], [0.1, 0.2])
+    shoes = [HeightMap(0.5 * rough(32), 1e-5, periodic=True)] if rough_shoe else None
+    one = ContactTable.from_surfaces(*given, shoe_surfaces=shoes, cache=cache, device="auto")
+    sizes = []
+    of_batch = steady.contacts_of
+
+    def counted(height, spacing, modulus, loads, *rest, **options):
+        sizes.append(len(loads))
+        return of_batch(height, spacing, modulus, loads, *rest, **options)
+
+    monkeypatch.setattr(steady, "contacts_of", counted)
+    monkeypatch.setattr(sliding_input, "_BATCH", batch)
     monkeypatch.setattr(devices, "card", lambda: "a card")
     monkeypatch.setattr(contact_table, "card", lambda: "a card")
-    monkeypatch.setattr(
-        "underfoot.rough_contact.steady.to_card", lambda h: on_device(h, "strict device1")
-    )
-    two = ContactTable.from_surfaces(*given, cache=cache, device="cuda")
-    assert any("4 contacts on a card" in note for note in two.notes)
+    monkeypatch.setattr(steady, "to_card", lambda h: on_device(h, "strict device1"))
+    two = ContactTable.from_surfaces(*given, shoe_surfaces=shoes, cache=cache, device="cuda")
+    assert sum(sizes) == (16 if rough_shoe else 8)  # the floor alone too, for its hysteresis
+    # pressures and speeds of the floor together, those of a composite at each speed
+    assert max(sizes) == min(8, batch // 32**2)
+    assert any("8 contacts on a card" in note for note in two.notes)
     assert not any("card" in note for note in one.notes)
     assert one.key != two.key
-    np.testing.assert_allclose(
-        two.values["cof_hysteresis"], one.values["cof_hysteresis"], rtol=1e-6
-    )
+    for name, values in two.values.items():
+        np.testing.assert_allclose(values, one.values[name], rtol=1e-6)

@@ -25,6 +25,7 @@ from underfoot.trials import (
     required_frictions,
     slip_of,
     stances,
+    walkway_of,
 )
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -49,7 +50,7 @@ def _refinished(plate: Plate, force: np.ndarray, **changes) -> Plate:
 
 
 def _reasons(trial: Trial) -> list[str]:
-    return [f.measurement.reason for f in required_frictions(trial)]
+    return [f.measurement.reason for f in required_frictions(walkway_of(trial))]
 
 
 def test_an_overloaded_plate_is_rejected(walk):
@@ -72,7 +73,7 @@ def test_two_feet_on_one_plate_are_rejected(walk):
     (reason,) = _reasons(replace(walk, plates=(both,)))
     assert "both heels" in reason or "more than one foot" in reason
     blind = replace(walk, plates=(both,), markers={})
-    (step,) = required_frictions(blind)  # without markers the shape of the force tells
+    (step,) = required_frictions(walkway_of(blind))  # without markers the shape of the force tells
     assert step.verdict == "caution"
     assert "single hump" in [flag.name for flag in step.measurement.caution_flags]
 
@@ -151,7 +152,7 @@ def test_wrong_units_are_noticed(walk):
 def test_lost_samples_reject_the_step(walk):
     plate = walk.plates[1]
     force = plate.force.copy()
-    middle = int((stances(walk)[0].contact + 0.1 - plate.start) * plate.rate)
+    middle = int((stances(walkway_of(walk))[0].contact + 0.1 - plate.start) * plate.rate)
     force[middle : middle + 40] = np.nan
     holes = _refinished(plate, force)
     reasons = _reasons(replace(walk, plates=(holes,)))
@@ -159,13 +160,13 @@ def test_lost_samples_reject_the_step(walk):
 
 
 def test_a_heel_missing_at_contact_gives_no_slip(walk):
-    stance = stances(walk)[0]
+    stance = stances(walkway_of(walk))[0]
     heel = walk.marker(stance.heel)
     path = heel.positions.copy()
     first = int((stance.contact - heel.start) * heel.rate)
     path[first - 15 : first + 15] = np.nan
     trial = replace(walk, markers={**walk.markers, stance.heel: replace(heel, positions=path)})
-    found = slip_of(trial, stance)
+    found = slip_of(walkway_of(trial), stance)
     assert found.slipped is None
     assert "missing" in found.peak_speed.reason
 

@@ -23,6 +23,7 @@ from underfoot.trials import (
     required_frictions,
     slip,
     stances,
+    walkway_of,
 )
 from underfoot.trials.recording.plates import channel_forces, ordered_corners, plate_axes
 from underfoot.trials.recording.protocols import protocol
@@ -58,7 +59,7 @@ def test_a_step_whose_heel_slides_has_no_required_friction(tmp_path):
     truth = SlipTruth(rcof=0.23, acof=0.16, peak_speed=0.61)
     path = tmp_path / "slip.c3d"
     path.write_bytes(walk_c3d(walk_with_slip(truth, Defects(), np.random.default_rng(2))))
-    dry, sliding = required_frictions(read_trial(path))
+    dry, sliding = required_frictions(walkway_of(read_trial(path)))
     assert dry.measurement.value == pytest.approx(0.23, abs=0.005)
     assert sliding.measurement.value is None
     assert "available friction (ACOF), not required" in sliding.measurement.reason
@@ -223,7 +224,10 @@ def _table(tmp_path, head: str) -> Trial:
 
 
 def test_four_causes_of_no_contact_are_told_apart(tmp_path):
-    reason = no_contact_reason
+
+    def reason(trial):
+        return no_contact_reason(walkway_of(trial))
+
     assert reason(Trial("t")) == "the file holds no force plate"
     assert "no columns are recognised" in reason(_table(tmp_path, "time,Kraft X1,Kraft Z1"))
     unit = reason(_table(tmp_path, "time (s),Fx (furlong),Fy (furlong),Fz (furlong)"))
@@ -271,12 +275,12 @@ def test_standard_deviation_and_standard_error_have_different_signs():
 
 
 def test_one_step_has_an_uncertainty_of_its_plate_and_filter(walk):
-    stance = stances(walk)[0]
-    usual = required_friction(walk, stance).measurement
+    stance = stances(walkway_of(walk))[0]
+    usual = required_friction(walkway_of(walk), stance).measurement
     exact = replace(
         walk, plates=tuple(replace(p, accuracy=PlateAccuracy(0.0, 0.0)) for p in walk.plates)
     )
-    rest = required_friction(exact, stance).measurement
+    rest = required_friction(walkway_of(exact), stance).measurement
     assert usual.uncertainty**2 - rest.uncertainty**2 == pytest.approx(
         (2 * (0.01 * usual.value) ** 2 + 0.01**2) / 3, rel=1e-6
     )
@@ -312,7 +316,9 @@ def test_a_protocol_takes_every_definition(tmp_path):
         ("gate-body-weight", 'rcof_gate_body_weight = "15 %"\n'),
         ("plain-maximum", 'rcof_peak = "plain-maximum"\nrcof_braking = "no"\n'),
     ):
-        expected = [s.measurement.value for s in required_frictions(trial, DEFINITIONS[name])]
+        expected = [
+            s.measurement.value for s in required_frictions(walkway_of(trial), DEFINITIONS[name])
+        ]
         assert rcof(lines) == expected
     (folder / "mine.toml").write_text(head + 'rcof_peek = "x"\n')
     wrong = protocol("mine", [folder])
@@ -341,8 +347,8 @@ def test_gait_context_of_a_made_up_walk(tmp_path):
     path = tmp_path / "walk.c3d"
     path.write_bytes(activity_c3d(activity("walk", np.random.default_rng(1))))
     trial = read_trial(path)
-    found = stances(trial)
-    first, second = (gait_context(trial, stance, found) for stance in found)
+    found = stances(walkway_of(trial))
+    first, second = (gait_context(walkway_of(trial), stance, found) for stance in found)
     assert first.step_length is None
     assert second.step_length == pytest.approx(0.62, abs=0.01)
     assert second.step_time == pytest.approx(0.55, abs=0.02)
@@ -353,8 +359,8 @@ def test_gait_context_of_a_made_up_walk(tmp_path):
 
 def test_gait_context_of_a_real_walk(walk):
     """A child of 45.8 kg at 1.05 m/s lands on its heel, 15 to 30 deg toe up."""
-    found = stances(walk)
-    one = gait_context(walk, found[1], found)
+    found = stances(walkway_of(walk))
+    one = gait_context(walkway_of(walk), found[1], found)
     assert 0.9 < one.walking_speed < 1.2
     assert 0.4 < one.step_length < 0.7
     assert one.step_time == pytest.approx(found[1].contact - found[0].contact)
@@ -363,7 +369,7 @@ def test_gait_context_of_a_real_walk(walk):
 
 
 def test_what_is_held_shows_itself_shortly(walk):
-    step = required_frictions(walk)[0]
+    step = required_frictions(walkway_of(walk))[0]
     for one in (walk, step, step.measurement):
         assert len(repr(one)) < 200
         assert len(one.summary().splitlines()) > 3
@@ -374,3 +380,11 @@ def test_what_is_held_shows_itself_shortly(walk):
 def test_a_plate_never_unloaded_is_a_caution():
     stood = finished_plate("plate 1", np.full((3000, 3), [0.0, 0.0, 700.0]), rate=1000.0, up=UP)
     assert [flag.name for flag in stood.flags if flag.matters] == ["baseline"]
+
+
+def test_a_trial_itself_answers_with_a_warning_for_one_version():
+    trial = read_trial(DATA / "biomechzoo" / "HC030A05.c3d")
+    with pytest.warns(FutureWarning, match=r"required_frictions\(walkway_of\(trial\)\)"):
+        steps = required_frictions(trial)  # pyright: ignore[reportArgumentType]
+    expected = required_frictions(walkway_of(trial))
+    assert [s.measurement for s in steps] == [s.measurement for s in expected]

@@ -88,7 +88,7 @@ def test_a_file_of_each_set_has_its_heels_or_a_caution(tmp_path, name):
     plain = read_trial(WALK)
     names = dict(zip(SETS[name].split(), PLACES, strict=True))
     markers = {own: plain.markers[place] for own, place in names.items()}
-    stances = [step.stance for step in required_frictions(plain)]
+    stances = [step.stance for step in required_frictions(walkway_of(plain))]
     path = tmp_path / f"{name}.c3d"
     path.write_bytes(c3d_with_events(replace(plain, markers=markers), stances))
     walk = walkway_of(read_trial(path))
@@ -97,7 +97,7 @@ def test_a_file_of_each_set_has_its_heels_or_a_caution(tmp_path, name):
     known = {place.side for own in names if (place := landmark(own)) and place.kind == "heel"}
     assert heels == ({"left": "LHEE", "right": "RHEE"} if known else {})
     assert len(steps) == 2
-    for step, other in zip(steps, required_frictions(plain), strict=True):
+    for step, other in zip(steps, required_frictions(walkway_of(plain)), strict=True):
         assert step.measurement.value == pytest.approx(other.measurement.value, abs=1e-3)
         told = [flag.name for flag in step.measurement.caution_flags]
         assert step.stance.side == other.stance.side if known else "heel" in told
@@ -106,7 +106,7 @@ def test_a_file_of_each_set_has_its_heels_or_a_caution(tmp_path, name):
 
 def test_a_heel_of_no_known_name_makes_every_step_a_caution():
     trial = renamed(STRANGE)
-    steps = [s for s in required_frictions(trial) if s.measurement.estimated]
+    steps = [s for s in required_frictions(walkway_of(trial)) if s.measurement.estimated]
     assert steps
     for step in steps:
         assert "heel" in [flag.name for flag in step.measurement.caution_flags]
@@ -125,7 +125,7 @@ def test_a_laboratorys_own_names_stand_for_places():
     )  # fmt: skip
     walk = walkway_of(renamed(STRANGE), landmarks=profile.landmarks)
     assert walk.heels == {"left": "F07", "right": "F12"}
-    plain = required_frictions(read_trial(WALK))
+    plain = required_frictions(walkway_of(read_trial(WALK)))
     for own, other in zip(required_frictions(walk), plain, strict=True):
         assert own.measurement.value == other.measurement.value
         assert (own.stance.side, own.verdict) == (other.stance.side, other.verdict)

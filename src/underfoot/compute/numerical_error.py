@@ -1,7 +1,7 @@
 """How far the numbers of a run may lie from those of endlessly fine cells and steps."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,8 +14,16 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import readings
-from .position_draws import Place, ShoeAngles, TreadPositions
-from .positions import CLOSEST, RATES
+from .position_draws import (
+    COF_PARTS,
+    LOADS,
+    ON_CONTACT,
+    Place,
+    ShoeAngles,
+    TreadPositions,
+    log_film_odds,
+)
+from .positions import CLOSEST, RATES, remembers
 from .prepare import Prepared
 from .sensors import scanned
 from .sole import RESOLVED, cells_along, tread_on_sole
@@ -32,6 +40,9 @@ ALONE = 1e-3
 """m"""
 PEAKS = {True: 0.3, False: 0.05}
 """Relative standard deviation of peaks and of what a sensor reads."""
+IN_TIME = 0.003
+"""Standard deviation of ln F / (W - F) that twice the steps in time don't tell: what the worst of
+eight motions needs for 95 % (``python -m benchmarks history_steps``), rounded up."""
 GRID_OF_CONTACT = 1.1
 """Factor by which cells alone raise the friction of the contact at most."""
 CHECKED = 2 * RESOLVED
@@ -137,7 +148,7 @@ def numerical_errors(
     the difference to the quick grid. g lies between the grid of the run and endlessly fine ones
     (``BETWEEN_GRIDS``):
     c F (1 - F / W) of the load F on the film of W; of COF, since contact loses what the film gains,
-    (c F / W) (adhesion + hysteresis) + c_v viscous, and a share of all.
+    (c F / W) (adhesion + hysteresis) + c_v viscous, and a share of all. Steps: ``errors_by_steps``.
     ``numerics.grid_check`` compares with a coarser quick grid, without lugs with ``CHECKED`` cells
     along the sliding on it, and these with twice the steps in time (first order).
 
@@ -186,7 +197,38 @@ def numerical_errors(
     origin = f"{count} {positions.several}"
     if not (lugs or alone):
         origin = f"difference to {_cells(parts, columns)}"
-    return NumericalErrors(grid, {}, f"{origin}, and finer grids")
+    origin += ", and finer grids"
+    if remembers(case) and not positions.in_time:
+        origin += "; steps in time not estimated: a march with twice as many did not converge"
+    return NumericalErrors(grid, errors_by_steps(positions, numbers, force), origin)
+
+
+def errors_by_steps(
+    positions: TreadPositions, numbers: Iterable[str], force: float
+) -> dict[str, float]:
+    """Return standard deviations of the steps in time by name; empty of steady sliding.
+
+    Of the first order: at one place twice as many move a number by half of what is left, the load
+    on the film of ``force`` (N) in its odds, which with ``IN_TIME`` move the contact too.
+    """
+    if not positions.in_time:
+        return {}
+    own, finer = positions.in_time
+
+    def moved(*names: str) -> float:
+        whole = sum(own[name] for name in names)
+        return 2 * sum(abs(finer[name] - own[name]) for name in names) / whole if whole else 0.0
+
+    at = positions.values
+    errors = {name: moved(name) * positions.answer(name) for name in numbers}
+    film, solid = np.clip(at["fluid_load"] / force, 0.0, 1.0), sum(at[name] for name in ON_CONTACT)
+    odds = [float(log_film_odds(*(one[load] for load in LOADS))) for one in positions.in_time]
+    swing = math.hypot(2 * (odds[1] - odds[0]), IN_TIME)
+    errors["fluid_load"] = swing * float((film * (1 - film)).mean()) * force
+    errors["cof"] = math.hypot(
+        moved(*COF_PARTS) * positions.answer("cof"), IN_TIME * float((film * solid).mean())
+    )
+    return errors
 
 
 def _compared(
@@ -197,7 +239,7 @@ def _compared(
     here, contact = solved_at(parts, Place(), spacing, progress=progress)
     contacts = [contact]
     if parts.viscosity is not None:  # a dry contact has no memory
-        contacts.append(solved_at(parts, Place(), spacing, finer=2, progress=progress)[1])
+        contacts.append(solved_at(parts, Place(finer=2), spacing, progress=progress)[1])
     cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
         return f"not estimated: a march on {cells} did not converge"

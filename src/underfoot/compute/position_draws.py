@@ -40,12 +40,13 @@ def log_film_odds(film: Array | float, contact: Array | float) -> Array:
 class Place:
     """Where a tread lies: its pattern shifted by (x, y), m, and turned by ``yaw``, rad.
 
-    ``turn``, rad, is added to the shoe angle.
+    ``turn``, rad, is added to the shoe angle; ``finer``: how many times the steps in time.
     """
 
     shift: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
     yaw: float = 0.0
+    finer: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +102,8 @@ class TreadPositions:
         bevel: Of the heel, where its angle is not exact.
         further: Scalars by name at turns (rad) that only such a bevel reaches; not in the means.
         uncompared: Cells, m, where no other grid was compared with; else 0.
+        in_time: Of a motion that ends: the scalars at one place on the quick grid, with the steps
+            of the run and with twice as many; empty of steady sliding and where one is missing.
     """
 
     origin: ClassVar[str] = "tread_position"
@@ -117,6 +120,7 @@ class TreadPositions:
     bevel: UncertainBevel | None = field(default=None, kw_only=True)
     further: Mapping[float, Mapping[str, float]] = field(default_factory=dict, kw_only=True)
     uncompared: float = field(default=0.0, kw_only=True)
+    in_time: tuple[Mapping[str, float], ...] = field(default=(), kw_only=True)
 
     def answer(self, name: str) -> float:
         """Return the scalar of the result: its mean over the places."""

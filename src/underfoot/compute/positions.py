@@ -53,6 +53,8 @@ USUAL_STEP = 2 / 3
 WITHOUT_LUGS = 5.0
 """How many times as long a sole without lugs takes: on the report's four, five times as many cells
 are wet as on its eight with lugs."""
+FINER_MARCH = 1.5
+"""How many times as long a march with twice the steps in time takes."""
 RATES = {1: 1.0, 2: 0.75}
 """Rate of the rule of positions by the number of periods of the tread, where the film jumps with
 the place (docs/physics/coupled_contact.md)."""
@@ -155,7 +157,8 @@ def tread_positions(
     the run too. The ratio of the means on both takes all to the grid of the run, and under lugs on
     to that of ``FINEST``, where numbers move by the first order of the cells (``carried``).
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
-    case's own position.
+    case's own position. A motion that ends is solved at the first place on the quick grid with
+    twice the steps in time too.
 
     ``known`` are the numbers at the case's own place, and what is
     known of others, on the grid of the run, of ``spacing`` (m); ``at_places`` solves places,
@@ -169,6 +172,8 @@ def tread_positions(
     asked += [(place, coarse) for place in all_places if coarse != spacing]
     further = further_angles(case)
     asked += [(place, coarse) for place in further]
+    both = [(place, coarse) for place in (all_places[0], replace(all_places[0], finer=2))]
+    asked += both[1:] * remembers(case)
     ended = dict(at_places(asked))
     at = {(place, spacing): numbers for place, numbers in known.items()}
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
@@ -217,6 +222,7 @@ def tread_positions(
             place.turn: {n: v[k] for n, v in beyond.items()} for k, place in enumerate(further)
         },
         uncompared=0.0 if compared else spacing,
+        in_time=tuple(at[one] for one in both) if all(one in at for one in both) else (),
     )
 
 
@@ -312,6 +318,11 @@ def treaded(case: Case) -> bool:
     return float(file_surface(case).tread_depth.max()) > 0
 
 
+def remembers(case: Case) -> bool:
+    """Return whether the result of a case hangs on the steps in time that led to it."""
+    return case.motion.end_time is not None and case.contaminant is not None
+
+
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
     count, lugs, numerics = position_count(case, quick=quick), treaded(case), case.numerics
@@ -325,6 +336,7 @@ def first_share(case: Case, *, quick: bool) -> float:
         marches = 1 + math.ceil(count / 2) * lugs + (count + further) * share**2
     if lugs:  # a history of the motion is marched at both angles
         marches += len(TURNED) * (case.motion.build() is not None)
+    marches += FINER_MARCH * (1.0 if quick else share**2) * remembers(case)
     return 1 / marches
 
 

@@ -12,6 +12,7 @@ from underfoot.friction.pair_contact import UnexpectedReading
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
 from underfoot.slip import SlipRisk
 from underfoot.sole_contact.edge_peak import peak_pressure
+from underfoot.sole_contact.motion_history import LANDED
 from underfoot.sole_contact.slits import slit_words
 
 from . import numbers
@@ -162,6 +163,10 @@ def _last_instant(case: Case) -> str:
         at += f", where the shoe is at rest: that of sliding off at {display(SLOWEST, 'm/s')}"
     if case.contaminant is not None:
         at += f", from {display(start_film(case, steady=False), 'm')} above the floor at touch-down"
+        if history is not None and history.normal_force[0] > 0:
+            rise = min(case.motion.force_rise_time, LANDED)
+            load = display(history.normal_force[0], "N")
+            at += f", where {load} come up within {display(rise, 's')}"
     return at
 
 

@@ -42,8 +42,7 @@ LANDING = 0.2e-3
 """Height from which a sole lands in a deeper pool, m. The time to squeeze a film goes with 1 / h^2:
 what lies above takes a hundredth of what a film of 20 um takes."""
 HISTORY_FINER = 2
-"""How many times the steps of a held load a history takes: a shoe that rolls leaves its film. Twice
-as many again lower COF of a step by 0.8 % in an untreaded shoe, by 0.6 % in a treaded one."""
+"""How many times the steps of a held load a history takes: a shoe that rolls leaves its film."""
 MOST_STEPS = 20
 """Parts, failed ones included, that a step may fall into: more would cost as much as a march."""
 
@@ -137,15 +136,12 @@ def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
 
 
 def solved_at(
-    parts: Prepared, place: Place, spacing: float, *, finer: float = 1, progress: Progress = silent
+    parts: Prepared, place: Place, spacing: float, *, progress: Progress = silent
 ) -> tuple[Prepared, SoleContact]:
-    """Return case and contact with the tread at a place, on cells of ``spacing`` (m).
-
-    ``finer`` divides the tolerance and the time steps, as in ``solver_settings``.
-    """
+    """Return case and contact with the tread at a place, on cells of ``spacing`` (m)."""
     sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
     here = parts.on(sole, turn=place.turn)
-    return here, solved_motion(here, finer=finer, progress=progress)
+    return here, solved_motion(here, finer=place.finer, progress=progress)
 
 
 def averaged(

@@ -17,7 +17,7 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.rough_contact import (
     ContactTable,
     SteadySliding,
-    sliding_on_card,
+    contacts_on_card,
     steady_sliding,
     table_over_scales,
 )
@@ -258,9 +258,12 @@ def solved(
 ) -> tuple[SteadySliding, FlowFactors]:
     """Return the contact and the flow factors of its gap."""
     accelerated, began = on_card(device, floor.heights.size), time.perf_counter()
-    solve = sliding_on_card if accelerated else steady_sliding
-    contact = solve(floor.heights, floor.spacing, rubber, speed, pressure, poisson_ratio)
-    if accelerated:
+    if not accelerated:
+        given = floor.heights, floor.spacing, rubber, speed, pressure, poisson_ratio
+        contact = steady_sliding(*given)
+    else:
+        given = floor.heights, floor.spacing, rubber, [(pressure, speed)], poisson_ratio
+        (contact,) = contacts_on_card(*given)
         cost = f"contact solved on {card()}, {time.perf_counter() - began:.1f} s"
         contact = replace(contact, notes=(*contact.notes, cost))
     if not contact.status.usable:

@@ -17,6 +17,7 @@ from .pressure_gap_law import persson_law as persson_law
 from .scales import table_over_scales as table_over_scales
 from .steady import SlidingSettings as SlidingSettings
 from .steady import SteadySliding as SteadySliding
-from .steady import sliding_on_card as sliding_on_card
+from .steady import contacts_of as contacts_of
+from .steady import contacts_on_card as contacts_on_card
 from .steady import steady_sliding as steady_sliding
 from .theory import TheoryContact as TheoryContact

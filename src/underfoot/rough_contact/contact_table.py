@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import pickle
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby, islice
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -25,7 +26,7 @@ from .composite import RESTING, composite_surface
 from .flow_factor import flow_factors
 from .pressure_gap_law import TabulatedLaw
 from .sliding_input import Modulus, modulus_function, slow_transform
-from .steady import SteadySliding, sliding_on_card, steady_sliding
+from .steady import SteadySliding, contacts_on_card, steady_sliding
 
 QUANTITIES = {
     "real_contact_fraction": "1",
@@ -110,9 +111,9 @@ class ContactTable(Presentable):
             finer: Table of the waves that the surfaces leave out, at the same speeds: what they do
                 at the pressure of each point of contact counts (``table_over_scales``).
             processes: Worker processes; with more than 1 the modulus must be picklable (no lambda).
-            device: "cpu"; "cuda", contacts on the graphics card, one after the other (extra
-                ``accelerator``); "auto": there from 512 x 512 points on where there is one. Flow
-                factors are the processor's. A note tells the card and the time.
+            device: "cpu"; "cuda", contacts on the graphics card, all of a surface side by side
+                (extra ``accelerator``); "auto": there from 512 x 512 points on where there is one.
+                Flow factors are the processor's. A note tells the card and the time.
             cache: Where finished parts are kept; None takes the user's cache.
             progress: Receives the fraction done; may raise ``Cancelled``: finished parts stay in
                 the cache.
@@ -143,8 +144,12 @@ class ContactTable(Presentable):
         progress("contact table", done / len(parts))
         rest = [parts[n] for n in missing]
         began = time.perf_counter()
-        workers = 1 if accelerated else max(processes, 1)
-        for index, column in in_processes(_column, rest, workers):
+        columns_of = (
+            _columns_on_card(rest)
+            if accelerated
+            else in_processes(_column, rest, max(processes, 1))
+        )
+        for index, column in columns_of:
             columns[missing[index]] = column
             store.store(keys[missing[index]], column)
             done += 1
@@ -437,20 +442,42 @@ class _Part(NamedTuple):
 
 def _column(part: _Part) -> dict[str, np.ndarray]:
     """Return the averages of one surface at one speed over all pressures, with their remarks."""
+
+    def contacts_of(heights: np.ndarray) -> Iterator[SteadySliding]:
+        for p in part.pressure.tolist():
+            given = (part.spacing, part.modulus, part.speed, p, part.poisson_ratio)
+            yield steady_sliding(heights, *given, layer_thickness=part.layer_thickness)
+
+    floor = part.floor_heights
+    return _averaged(part, contacts_of(part.heights), None if floor is None else contacts_of(floor))
+
+
+def _columns_on_card(parts: list[_Part]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+    """Yield (number, ``_column``) of parts whose contacts the graphics card solves in batches."""
+
+    def contacts_of(name: str) -> Iterator[SteadySliding]:
+        for _, run in groupby(parts, lambda part: id(getattr(part, name))):
+            first, *others = run
+            loads = [(p, part.speed) for part in (first, *others) for p in part.pressure.tolist()]
+            given = (first.spacing, first.modulus, loads, first.poisson_ratio)
+            thickness = first.layer_thickness
+            yield from contacts_on_card(getattr(first, name), *given, layer_thickness=thickness)
+
+    contacts, frictions = contacts_of("heights"), contacts_of("floor_heights")
+    for n, part in enumerate(parts):
+        yield n, _averaged(part, contacts, None if part.floor_heights is None else frictions)
+
+
+def _averaged(
+    part: _Part, contacts: Iterator[SteadySliding], frictions: Iterator[SteadySliding] | None
+) -> dict[str, np.ndarray]:
+    """Return the column of a part from the next contacts, one for each pressure."""
     rows: list[list[float]] = []
     errors: list[float] = []
     remarks: list[str] = []
     out_of_range: list[str] = []
-
-    def contact_of(heights: np.ndarray, pressure: float) -> SteadySliding:
-        given = (part.spacing, part.modulus, part.speed, pressure, part.poisson_ratio)
-        solve = sliding_on_card if part.on_card else steady_sliding
-        return solve(heights, *given, layer_thickness=part.layer_thickness)
-
-    for p in part.pressure.tolist():
-        contact = friction = contact_of(part.heights, p)
-        if contact.status.usable and part.floor_heights is not None:
-            friction = contact_of(part.floor_heights, p)
+    for contact in islice(contacts, part.pressure.size):
+        friction = contact if frictions is None else next(frictions)
         errors.append(max(contact.complementarity_error, friction.complementarity_error))
         if not (contact.status.usable and friction.status.usable):
             rows.append([np.nan] * len(QUANTITIES))

@@ -36,6 +36,10 @@ FEWEST_NODES = 30
 """Nodes in contact below which area, gap and friction rest on too few spots (assumed)."""
 ARRAYS = 10
 """Most double arrays of its grid that a contact takes beside the heights (measured)."""
+BATCH_ARRAYS = 24
+"""The same for each contact of a batch, which holds whole fields as search directions."""
+_BATCH = 2**25
+"""Points of a batch (assumed): 128 contacts of 512 x 512, more than a card computes at once."""
 _NEGLIGIBLE_LOSS_TANGENT = 1e-3
 _SMALL = 128 * 128
 """Points below which a contact takes a few hundredths of a second on a grid of any size."""
@@ -49,8 +53,12 @@ def checked_contact_input(
     pressure: float,
     poisson_ratio: float,
     layer_thickness: float | None,
+    members: int = 1,
 ) -> tuple[AnyArray, tuple[float, float]]:
-    """Return (heights as floats, (dx, dy)) or raise InputError with the remedy."""
+    """Return (heights as floats, (dx, dy)) or raise InputError with the remedy.
+
+    ``members`` contacts must fit into the memory together.
+    """
     h, finite = _as_floats(height)
     shape = tuple(h.shape)
     if h.ndim != 2:
@@ -80,29 +88,41 @@ def checked_contact_input(
     if (steps.shape[0] if hasattr(steps, "shape") else len(steps)) != 2:
         raise InputError(f"spacing {spacing}", where="spacing", allowed="one length or two, m")
     dx, dy = (_positive("spacing", steps[axis], "m") for axis in (0, 1))
-    _positive("pressure", pressure, "Pa")
-    _single_number("speed", speed)
+    check_load(pressure, speed)
     _single_number("poisson_ratio", poisson_ratio)
-    if not math.isfinite(speed):
-        raise InputError(f"speed {speed} m/s", where="speed", allowed="a finite speed, m/s")
     check_poisson_ratio(poisson_ratio)
     if layer_thickness is not None:
         _positive("layer_thickness", layer_thickness, "m")
-    _check_memory(h)
+    _check_memory(h, members)
     return h, (dx, dy)
 
 
-def _check_memory(height: AnyArray) -> None:
+def check_load(pressure: float, speed: float) -> None:
+    """Refuse a pressure (Pa) that is not above zero, and a speed (m/s) that is not finite."""
+    _positive("pressure", pressure, "Pa")
+    _single_number("speed", speed)
+    if not math.isfinite(speed):
+        raise InputError(f"speed {speed} m/s", where="speed", allowed="a finite speed, m/s")
+
+
+def batch_size(points: int, free: int | None) -> int:
+    """Return how many contacts of so many points a batch holds: its points fill a card, and fit."""
+    fits = _BATCH if free is None else free // (8 * BATCH_ARRAYS)
+    return max(min(_BATCH, fits) // max(points, 1), 1)
+
+
+def _check_memory(height: AnyArray, members: int) -> None:
     """Refuse a grid that does not fit beside what is in memory where it lies."""
     points, free = math.prod(height.shape), free_memory(height)
-    needed = 8 * ARRAYS * points
+    arrays = ARRAYS if members == 1 else members * BATCH_ARRAYS
+    needed = 8 * arrays * points
     if free is not None and needed > free:
-        side = math.isqrt(free // (8 * ARRAYS))
+        side = math.isqrt(free // (8 * arrays))
         raise InputError(
             f"a contact of {points} points takes {needed / 1e9:.1f} GB, "
             f"{free / 1e9:.1f} GB are free on {getattr(height, 'device', 'cpu')}",
             where="height",
-            allowed=f"{needed} bytes free, {ARRAYS} double arrays of the grid",
+            allowed=f"{needed} bytes free, {arrays} double arrays of the grid",
             remedy=f"Take a coarser grid (about {side} x {side} points fit)",
         )
 

@@ -1,6 +1,7 @@
 """Steady sliding of a smooth viscoelastic half-space or layer over a rough rigid surface."""
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, Progress, Status, display, silent
 from underfoot.core.arrays import Array
-from underfoot.core.device import to_card
+from underfoot.core.device import free_memory, to_card
 from underfoot.core.fourier import transform
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.status import worst
@@ -23,6 +24,8 @@ from ._kernels.operators import Body
 from .sliding_input import (
     Modulus,
     SlowTransform,
+    batch_size,
+    check_load,
     checked_contact_input,
     loss_reason,
     modulus_function,
@@ -163,22 +166,64 @@ def steady_sliding(
     J. Mech. Phys. Solids 61:1822; active set of Hintermueller, Ito and Kunisch (2002) SIAM J.
     Optim. 13:865.
     """
+    given = spacing, modulus, [(pressure, speed)], poisson_ratio
+    options = {"layer_thickness": layer_thickness, "settings": settings, "progress": progress}
+    (contact,) = contacts_of(height, *given, **options)
+    return contact
+
+
+def contacts_of(
+    height: ArrayLike,
+    spacing: float | tuple[float, float],
+    modulus: Modulus,
+    loads: Sequence[tuple[float, float]],
+    poisson_ratio: float = 0.5,
+    *,
+    layer_thickness: float | None = None,
+    settings: SlidingSettings | None = None,
+    progress: Progress = silent,
+) -> list[SteadySliding]:
+    """Return ``steady_sliding`` of one surface at each (pressure, speed), in one batch.
+
+    A graphics card computes a batch of small grids in hardly more time than one of them; a
+    processor takes twice as long as one by one. Each contact is solved to the same tolerance as
+    alone; ``operator_applications`` are the products of the batch while it was part of it.
+
+    Parameters:
+        height, spacing, modulus, poisson_ratio, layer_thickness: As in ``steady_sliding``.
+        loads: (pressure, Pa; speed, m/s) of each contact.
+        settings, progress: As in ``steady_sliding``; the error is the largest of the batch.
+
+    Raises:
+        InputError: As ``steady_sliding``; more contacts than fit into the memory at once.
+    """
     settings = settings or SlidingSettings()
     tolerance, threads, fft = settings.tolerance, settings.threads, settings.fft
+    if len(loads) == 0:
+        return []
+    (pressure, speed), *others = loads
     h, steps = checked_contact_input(
-        height, spacing, speed, pressure, poisson_ratio, layer_thickness
+        height, spacing, speed, pressure, poisson_ratio, layer_thickness, len(loads)
     )
+    for load in others:
+        check_load(*load)
     shape: tuple[int, int] = tuple(h.shape)
     xp = namespace(h)
     qx, qy = periodic.wavenumbers(shape, steps)
     length = shape[0] * steps[0]
-    frequencies = 2.0 * math.pi / length * abs(speed) * np.arange(shape[0] // 2 + 1)
-    young = modulus_function(modulus, frequencies)
-    table = young(frequencies)
     asarray = converter(h)
     odd = asarray(periodic.odd_wavenumbers(shape, steps))
+    wave = np.arange(shape[0] // 2 + 1)
+    frequencies = [2.0 * math.pi / length * abs(speed) * wave for _, speed in loads]
+    youngs = [modulus_function(modulus, w) for w in frequencies]
+    moduli = [young(w) for young, w in zip(youngs, frequencies, strict=True)]
     body = Body(
-        partial(periodic.sliding_moduli, table, length, speed > 0.0),
+        lambda qx: np.stack(
+            [
+                periodic.sliding_moduli(table, length, speed > 0.0, qx)
+                for table, (_, speed) in zip(moduli, loads, strict=True)
+            ]
+        ),
         partial(periodic.unit_compliance, thickness=layer_thickness, poisson_ratio=poisson_ratio),
         steps,
         xp=xp,
@@ -187,97 +232,127 @@ def steady_sliding(
         library=fft,
     )
     with threads_limited(threads):
-        exact = transform(shape, xp.float64, xp=xp, threads=threads, library=fft)
+        exact = transform((1, *shape), xp.float64, xp=xp, threads=threads, library=fft)
         slope, short = periodic.slope_numbers(
-            exact.forward(h), asarray(qx) ** 2 + asarray(qy) ** 2, shape, 0.5 * math.pi / max(steps)
+            exact.forward(h[None, ...]),
+            asarray(qx) ** 2 + asarray(qy) ** 2,
+            shape,
+            0.5 * math.pi / max(steps),
         )
         if slope == 0.0:
-            return _flat(h, float(pressure), float(speed), xp)
+            return [_flat(h, float(pressure), float(speed), xp) for pressure, speed in loads]
         rms = float(xp.std(h))
-        unit = 0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
-        unit /= 1.0 - poisson_ratio**2
-        state, operators, applications = solve_nested(
-            (h - xp.mean(h)) / rms,
-            replace(body, scale=unit / rms),
-            pressure / unit,
+        units = [
+            0.5 * slope * abs(complex(young(np.asarray([slope / rms * abs(speed)]))[0]))
+            for young, (_, speed) in zip(youngs, loads, strict=True)
+        ]
+        units = [unit / (1.0 - poisson_ratio**2) for unit in units]
+        states, operators, cost = solve_nested(
+            ((h - xp.mean(h)) / rms)[None, ...],
+            replace(body, scale=np.array(units) / rms),
+            [pressure / unit for (pressure, _), unit in zip(loads, units, strict=True)],
             exact=exact,
             tolerance=tolerance,
             max_steps=settings.max_iterations,
             report=lambda error: progress("rough contact", _done(error, tolerance), error),
         )
-        p, gap = _physical(state, unit, rms, float(pressure), xp)
-        transformed = exact.forward(p)
-        on_slope = periodic.work_against_slope(transformed, exact.forward(h), odd, shape)
-        lost = 0.0
-        if np.any(table.imag):
-            lost = (
-                rms
-                / unit
-                * periodic.dissipation(transformed, operators.unit(), operators.rows, odd, shape)
+        contacts = []
+        for n, (pressure, speed) in enumerate(loads):
+            state, one = states.pop(0), operators.of([n])
+            p, gap = _physical(state, units[n], rms, float(pressure), xp)
+            transformed = exact.forward(p[None, ...])
+            on_slope = periodic.work_against_slope(
+                transformed, exact.forward(h[None, ...]), odd, shape
             )
-    status = Status.CONVERGED if state.converged else Status.NOT_CONVERGED
-    plain, corrected = periodic.contact_fractions(p > 0.0, steps, xp)
-    negligible = loss_reason(table, frequencies)
+            lost = 0.0
+            if np.any(moduli[n].imag):
+                lost = periodic.dissipation(transformed, one.unit(), one.rows, odd, shape)
+                lost *= rms / units[n]
+            del transformed
+            plain, corrected = periodic.contact_fractions(p > 0.0, steps, xp)
+            touching = int(xp.sum(xp.astype(p > 0.0, xp.int64)))
+            out_of_range = tuple(resolution_breaches(slope, short, touching))
+            status = Status.CONVERGED if state.converged else Status.NOT_CONVERGED
+            contact = SteadySliding(
+                pressure=p,
+                gap=gap,
+                nominal_pressure=float(pressure),
+                speed=float(speed),
+                mean_gap=float(xp.mean(gap)),
+                real_contact_fraction=plain,
+                real_contact_fraction_corrected=corrected,
+                cof_hysteresis=lost / pressure,
+                cof_slope=on_slope / pressure,
+                rms_slope=slope,
+                full_contact=state.full,
+                iterations=state.steps,
+                operator_applications=cost[n],
+                complementarity_error=state.error,
+                history=tuple(state.history),
+                status=worst(status, Status.OUT_OF_RANGE) if out_of_range else status,
+                notes=(),
+                breaches=out_of_range,
+                negligible_loss=loss_reason(moduli[n], frequencies[n]),
+                slow_transform=slow_transform(shape),
+            )
+            contacts.append(
+                replace(contact, notes=tuple(_notes(contact, state.converged, tolerance)))
+            )
+    return contacts
+
+
+def _notes(contact: SteadySliding, converged: bool, tolerance: float) -> list[str]:
+    """Return what a reader must know of a contact."""
     notes = []
-    if state.full:
+    if contact.full_contact:
         notes.append(
             "the pressure closes the surface everywhere: full contact, solved in closed form"
         )
-    if speed == 0.0:
+    if contact.speed == 0.0:
         notes.append("speed 0: elastic contact of the relaxed rubber")
-    else:
-        notes += [negligible] if negligible else []
-    slow = slow_transform(shape)
-    notes += [str(slow)] if slow else []
-    if not state.converged:
+    elif contact.negligible_loss:
+        notes.append(contact.negligible_loss)
+    if contact.slow_transform is not None:
+        notes.append(str(contact.slow_transform))
+    if not converged:
         notes.append(
-            f"stopped after {state.steps} iterations at an error of {state.error:.1e} "
-            f"(asked for {tolerance:.1e}): the numbers are not a result"
+            f"stopped after {contact.iterations} iterations at an error of "
+            f"{contact.complementarity_error:.1e} (asked for {tolerance:.1e}): the numbers are not "
+            "a result"
         )
-    touching = int(xp.sum(xp.astype(p > 0.0, xp.int64)))
-    out_of_range = tuple(resolution_breaches(slope, short, touching))
-    return SteadySliding(
-        pressure=p,
-        gap=gap,
-        nominal_pressure=float(pressure),
-        speed=float(speed),
-        mean_gap=float(xp.mean(gap)),
-        real_contact_fraction=plain,
-        real_contact_fraction_corrected=corrected,
-        cof_hysteresis=lost / pressure,
-        cof_slope=on_slope / pressure,
-        rms_slope=slope,
-        full_contact=state.full,
-        iterations=state.steps,
-        operator_applications=applications,
-        complementarity_error=state.error,
-        history=tuple(state.history),
-        status=worst(status, Status.OUT_OF_RANGE) if out_of_range else status,
-        notes=tuple(notes),
-        breaches=out_of_range,
-        negligible_loss=negligible,
-        slow_transform=slow,
-    )
+    return notes
 
 
-def sliding_on_card(height: Array, *given: Any, **settings: Any) -> SteadySliding:
-    """Return ``steady_sliding`` of heights (nx, ny) of NumPy on the graphics card, maps of NumPy.
+def contacts_on_card(
+    height: Array,
+    spacing: float | tuple[float, float],
+    modulus: Modulus,
+    loads: Sequence[tuple[float, float]],
+    *given: Any,
+    **settings: Any,
+) -> Iterator[SteadySliding]:
+    """Yield ``contacts_of`` heights (nx, ny) of NumPy on the graphics card, with maps of NumPy.
+
+    A batch is as large as fills the card and fits into its memory.
 
     Raises:
         InputError: As ``steady_sliding``.
     """
-    found = steady_sliding(to_card(height), *given, **settings)
-    return replace(found, pressure=on_host(found.pressure), gap=on_host(found.gap))
+    there = to_card(height)
+    size = batch_size(math.prod(there.shape), free_memory(there))
+    for n in range(0, len(loads), size):
+        for one in contacts_of(there, spacing, modulus, loads[n : n + size], *given, **settings):
+            yield replace(one, pressure=on_host(one.pressure), gap=on_host(one.gap))
 
 
 def _physical(
     state: ContactState, unit: float, rms: float, mean: float, xp: Any
 ) -> tuple[Any, Any]:
     """Return pressure and gap in SI: both >= 0, one of them 0 everywhere, the mean exact."""
-    p = xp.astype(state.pressure, xp.float64)
+    p = xp.astype(state.pressure[0, ...], xp.float64)
     p = xp.where(p > 0.0, p, xp.zeros_like(p))
     p *= mean / float(xp.mean(p))
-    gap = xp.astype(state.gap, xp.float64)
+    gap = xp.astype(state.gap[0, ...], xp.float64)
     gap = xp.where((gap > 0.0) & (p == 0.0), gap * rms, xp.zeros_like(gap))
     return p, gap
 

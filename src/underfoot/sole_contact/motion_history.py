@@ -22,6 +22,9 @@ from .stepping import Reporting, SlidingSole
 STEPS = 3.0
 """Inner steps into which the whole history falls at least, over the time resolution; every point of
 the history ends one."""
+LANDED = 0.01
+"""s before a history, at most, in which the load comes up that stands at its first instant: as the
+first 314 N of the recorded steps do. A shorter ``rise_time`` of the settings holds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +107,8 @@ def solve_history(
     )
     rows = np.column_stack([history.time, history.normal_force, history.speed, history.shoe_angle])
     _, force, speed, angle = (float(value) for value in rows[0])
-    sliding.begin(normal_force=force, speed=speed, shoe_angle=angle)
+    before = min(sliding.settings.rise_time, LANDED)
+    sliding.begin(normal_force=force, speed=speed, shoe_angle=angle, rise_time=before)
     duration, fastest = float(history.time[-1]), float(np.abs(history.speed).max())
     passing = math.inf if viscosity is None else passing_time(sole, fastest)
     longest = min(duration / STEPS, longest_step(duration, passing))

@@ -257,19 +257,33 @@ class SlidingSole:
         rests = hovers if self._time >= longest * (1 - 1e-12) else slow
         return self._state(done or rests())
 
-    def begin(self, *, normal_force: float, speed: float, shoe_angle: float | None = None) -> None:
+    def begin(
+        self,
+        *,
+        normal_force: float,
+        speed: float,
+        shoe_angle: float | None = None,
+        rise_time: float = 0.0,
+    ) -> None:
         """Set what holds at time 0, before the first ``advance``, which ramps from here.
 
-        Without it the load starts at 0 and the speed at that of the first ``advance``.
+        Without it the load starts at 0 and the speed at that of the first ``advance``. In a fluid
+        the load comes up within the ``rise_time`` (s) before, which nobody watches: no step takes a
+        sole from the air to a load that stands there at once.
         """
         check_demand(1.0, normal_force, speed, shoe_angle)
         if self.counts.time_steps:
             raise InputError("the sole is moving already", where="begin", allowed="a new sole")
-        self._load, self._speed = normal_force, speed
         if shoe_angle is not None and shoe_angle != self._angle:
             self._check_stretch(shoe_angle)
             self._march.turn(self._clearance(shoe_angle))
             self._angle = shoe_angle
+        if rise_time and normal_force and self.viscosity is not None:
+            watched, self._reporting = self._reporting, replace(self._reporting, watch=None)
+            longest = rise_time / self.settings.time_resolution
+            self.advance(rise_time, normal_force=normal_force, speed=speed, longest_step=longest)
+            self._reporting, self._time, self.history = watched, 0.0, History()
+        self._load, self._speed = normal_force, speed
 
     def bookmark(self) -> Bookmark:
         """Return this instant, for another sole to take over."""

@@ -16,7 +16,7 @@ from underfoot.block.prony_march import (
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.checks import choice, host_array
 from underfoot.core.threads import threads_limited
-from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contact
+from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contacts
 from underfoot.rough_contact._kernels.krylov import Workspace
 from underfoot.rough_contact._kernels.operators import Body, Operators
 from underfoot.rough_contact._kernels.periodic import ShiftedMap, unit_compliance
@@ -125,7 +125,7 @@ class _March:
         height = self.floor.at(0.0) + self.shoe
         guess = np.maximum(height - np.quantile(height, 0.5), 0.0).astype(np.float32)
         state = self._contact(height, guess)
-        self.displacement = np.asarray(self.operators.displacement(state.pressure), dtype=float)
+        self.displacement = np.asarray(_displacement(self.operators, state.pressure), dtype=float)
         if start == "relaxed":
             self.memory = relaxed_memory(self.displacement, self.fractions)
         self.operators = moving
@@ -136,7 +136,7 @@ class _March:
         known = known_displacement(self.memory, self.displacement, self.coefficients)
         height = self.floor.at(distance) + self.shoe - known
         state = self._contact(height, guess)
-        new = known + self.operators.displacement(state.pressure)
+        new = known + _displacement(self.operators, state.pressure)
         advance_memory(self.memory, self.displacement, new, self.coefficients)
         self.displacement = new
         return state
@@ -155,7 +155,9 @@ class _March:
     def _loaded(self, height: np.ndarray, guess: np.ndarray, mean: float) -> ContactState:
         guess = guess * np.float32(mean / max(float(guess.mean()), 1e-30))
         search = Search(self.tolerance, max_steps=40, exact=False)
-        state = solved_contact(self.operators, height, guess, mean, self.workspace, search)
+        batch = height[None], guess[None], [mean]
+        (state,) = solved_contacts(self.operators, *batch, self.workspace, search)
+        state.pressure, state.gap = state.pressure[0], state.gap[0]
         self.failures += not state.converged
         return state
 
@@ -182,13 +184,17 @@ class _March:
 
     def _operators(self, modulus: float) -> Operators:
         body = replace(self._body, moduli=lambda qx: np.full(qx.shape, modulus))
-        return Operators(body, self.shape)
+        return Operators(body, (1, *self.shape))
+
+
+def _displacement(operators: Operators, pressure: np.ndarray) -> np.ndarray:
+    return operators.displacement(pressure[None])[0]
 
 
 def _separation(state: ContactState, height: np.ndarray, operators: Operators) -> float:
     """Return d of the solved contact: mean of height - A p where the surfaces touch."""
     touching = state.pressure > 0.0
-    reach = height - operators.displacement(state.pressure)
+    reach = height - _displacement(operators, state.pressure)
     return float(reach[touching].mean())
 
 

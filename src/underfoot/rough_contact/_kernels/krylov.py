@@ -1,7 +1,8 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from operator import gt
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
 
+from .members import counted, each, flat, products, sums
 from .operators import Operators
 
 _DEPENDENT = 1e-5
@@ -19,50 +21,51 @@ _LARGEST_INT32 = 2**31 - 1
 
 
 class Restriction:
-    """Single-precision vectors on the nodes where ``inside`` is true.
+    """Single-precision vectors on the nodes where ``inside`` (members, nx, ny) is true.
 
-    Gathered: a vector holds those nodes. Masked: it is the whole field, zero elsewhere. NumPy puts
-    a gathered vector back by assignment into one buffer; the array API has none by index, so that
+    A row a member. Gathered: it holds the nodes of the one member. Masked: it is the whole field,
+    zero elsewhere; so are those of several members, whose nodes differ in number. NumPy puts a
+    gathered vector back by assignment into one buffer; the array API has none by index, so that
     other arrays take each point from the vector by its number there, a zero behind it elsewhere.
     """
 
     def __init__(self, inside: AnyArray, xp: Any) -> None:
         self.xp = xp
-        flat = xp.reshape(inside, (-1,))
-        self.points = flat.shape[0]
-        self.nodes = int(xp.count_nonzero(flat))
-        self.gathered = self.nodes < _GATHER_BELOW * self.points
+        rows = flat(inside, xp)
+        self.points = rows.shape[1]
+        self.nodes = counted(rows, xp)
+        self.gathered = rows.shape[0] == 1 and self.nodes[0] < _GATHER_BELOW * self.points
         self._shape = inside.shape
         self._buffer: AnyArray = None
         if not self.gathered:
-            self._mask = xp.astype(flat, xp.float32)
+            self._mask = xp.astype(rows, xp.float32)
             self.size = self.points
             return
-        self.size = self.nodes
-        self._index = xp.nonzero(flat)[0]
+        self.size = self.nodes[0]
+        only = rows[0, :]
+        self._index = xp.nonzero(only)[0]
         if xp is np:
             self._buffer = np.empty(inside.shape, np.float32)
         else:
             integer = xp.int32 if self.points <= _LARGEST_INT32 else xp.int64
-            number = xp.cumulative_sum(xp.astype(flat, integer), dtype=integer)
-            self._number = xp.where(flat, number - 1, xp.full_like(number, self.nodes))
-            self._zero = xp.zeros_like(flat[:1], dtype=xp.float32)
+            number = xp.cumulative_sum(xp.astype(only, integer), dtype=integer)
+            self._number = xp.where(only, number - 1, xp.full_like(number, self.size))
+            self._zero = xp.zeros_like(only[:1], dtype=xp.float32)
 
     def take(self, field: AnyArray) -> AnyArray:
         """Return a new vector with the values of ``field`` on the nodes."""
-        flat = self.xp.reshape(field, (-1,))
         if self.gathered:
-            return flat[self._index]
-        return flat * self._mask
+            return self.xp.reshape(field, (-1,))[self._index][None, :]
+        return flat(field, self.xp) * self._mask
 
     def through(self, product: Callable[..., AnyArray], vector: AnyArray) -> AnyArray:
         """Return ``product`` of the field of a vector as a new vector."""
         field = product(self.spread(vector), self._buffer)
         if self.gathered:
             return self.take(field)
-        flat = self.xp.reshape(field, (-1,))
-        flat *= self._mask
-        return flat
+        rows = flat(field, self.xp)
+        rows *= self._mask
+        return rows
 
     def spread(self, vector: AnyArray) -> AnyArray:
         """Return the field of a vector: a shared buffer or a view, not to be written to."""
@@ -71,16 +74,18 @@ class Restriction:
             return xp.reshape(vector, self._shape)
         if xp is np:
             self._buffer[...] = 0.0
-            xp.reshape(self._buffer, (-1,))[self._index] = vector
+            xp.reshape(self._buffer, (-1,))[self._index] = vector[0]
             return self._buffer
-        return xp.reshape(xp.concat((vector, self._zero))[self._number], self._shape)
+        return xp.reshape(xp.concat((vector[0, :], self._zero))[self._number], self._shape)
 
     def centre(self, vector: AnyArray) -> None:
         """Take the mean over the nodes off a vector, in place."""
-        if self.gathered:
-            vector -= self.xp.mean(vector)
-        else:
-            vector -= self._mask * (self.xp.sum(vector) / self.nodes)
+        mean = self.mean(vector)
+        vector -= mean if self.gathered else self._mask * mean
+
+    def mean(self, vector: AnyArray) -> AnyArray:
+        """Return the mean over the nodes (members, 1) of a vector."""
+        return self.xp.sum(vector, axis=1, keepdims=True) / each(self.nodes, vector)
 
 
 class Workspace:
@@ -102,15 +107,14 @@ class Workspace:
         self._directions: AnyArray = None
         self._length = 0
 
-    def rows(self, size: int, points: int) -> tuple[AnyArray, AnyArray]:
-        """Return (steps, size) of undefined content for images, and for directions or None.
-
-        ``points`` are those of the grid.
+    def rows(self, members: int, size: int, points: int) -> tuple[AnyArray, AnyArray]:
+        """Return (members, steps, size) of undefined content for images, and for directions or
+        None. ``points`` are those of the grid.
         """
         room = self._arrays * points
         both = self.steps * size <= room
         steps = min(self.steps, max(3, int(min(2.0 * room / size, 1e6))))
-        shape, end = (steps, size), steps * size
+        shape, end = (members, steps, size), members * steps * size
         if end > self._length or (both and self._directions is None):
             self.release()
             self._length = end
@@ -133,59 +137,67 @@ def residual_correction(
     operators: Operators,
     part: Restriction,
     residual: AnyArray,
-    reduction: float,
+    reduction: Sequence[float],
     workspace: Workspace,
 ) -> AnyArray:
-    """Return the correction c with sum c = 0 and A c = residual up to a constant.
+    """Return the correction c with sum c = 0 and A c = residual up to a constant, a row a member.
 
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero
-    sum, images A z orthonormal. Stops when the residual's norm has fallen by ``reduction``, or
-    after the workspace's steps. ``residual`` has zero mean and is overwritten. The host waits
-    for the device once a step.
+    sum, images A z orthonormal. A member stops when its residual's norm has fallen by its
+    ``reduction``, all after the workspace's steps. ``residual`` has zero mean and is overwritten.
+    The host waits for the device once a step.
     """
     xp = operators.xp
-    images, directions = workspace.rows(part.size, part.points)
-    steps = images.shape[0]
-    triangle = np.zeros((steps, steps))
-    weights = np.zeros(steps)
     r = residual
-    left = float(r @ r) ** 0.5
-    goal = reduction * left
+    images, directions = workspace.rows(r.shape[0], part.size, part.points)
+    steps = images.shape[1]
+    triangle = np.zeros((r.shape[0], steps, steps))
+    weights = np.zeros((r.shape[0], steps))
+    left = [square**0.5 for square in on_host(xp.vecdot(r, r)).tolist()]
+    goal = [share * size for share, size in zip(reduction, left, strict=True)]
     step = 0
-    while left > goal and step < steps:
+    while step < steps and any(map(gt, left, goal)):
         z = part.through(operators.pressure, r)
         part.centre(z)
         w = part.through(operators.displacement, z)
         part.centre(w)
-        raw = w @ w
-        overlap = images[:step, :] @ w
+        raw = xp.vecdot(w, w)
+        overlap = products(images[:, :step, :], w)
         if step:
-            w -= overlap @ images[:step, :]
-        *before, raw, square, along = on_host(
-            xp.concat((overlap, xp.stack((raw, w @ w, w @ r))))
-        ).tolist()
-        if not square > _DEPENDENT**2 * raw:
+            w -= sums(overlap, images[:, :step, :])
+        sizes = (size[:, None] for size in (raw, xp.vecdot(w, w), xp.vecdot(w, r)))
+        scale = []
+        for n, row in enumerate(on_host(xp.concat((overlap, *sizes), axis=1)).tolist()):
+            *before, raw, square, along = row
+            if not (left[n] > goal[n] and square > _DEPENDENT**2 * raw):
+                # no image and a direction of no weight for a member that has stopped
+                left[n], triangle[n, step, step] = 0.0, 1.0
+                scale.append(0.0)
+                continue
+            length = square**0.5
+            triangle[n, :step, step], triangle[n, step, step] = before, length
+            weights[n, step] = weight = along / length
+            # the images are orthonormal
+            left[n] = max(left[n] ** 2 - weight**2, 0.0) ** 0.5
+            scale.append(1.0 / length)
+        if not any(scale):
             break
-        length = square**0.5
-        triangle[:step, step], triangle[step, step] = before, length
-        weight = along / length
-        w *= 1.0 / length
-        images[step, :] = w
+        w *= each(scale, w)
+        images[:, step, :] = w
         if directions is not None:
-            directions[step, :] = z
-        weights[step] = weight
-        w *= weight
+            directions[:, step, :] = z
+        w *= each(weights[:, step].tolist(), w)
         r -= w
-        left = max(left**2 - weight**2, 0.0) ** 0.5  # the images are orthonormal
         step += 1
     if step == 0:
         return xp.zeros_like(r)
-    y = np.linalg.solve(triangle[:step, :step], weights[:step])
+    y = np.linalg.solve(triangle[:, :step, :step], weights[:, :step, None])[:, :, 0]
     if directions is not None:
-        return operators.asarray(y.astype(np.float32)) @ directions[:step, :]
+        return sums(operators.asarray(y.astype(np.float32)), directions[:, :step, :])
     # the sum of y times the residuals of each step, by their images; S of it is that of y times z
-    r *= float(y.sum())
-    r += operators.asarray((weights[:step] * np.cumsum(y)).astype(np.float32)) @ images[:step, :]
+    r *= each(y.sum(axis=1).tolist(), r)
+    factors = (weights[:, :step] * np.cumsum(y, axis=1)).astype(np.float32)
+    r += sums(operators.asarray(factors), images[:, :step, :])
     z = part.through(operators.pressure, r)
     part.centre(z)
     return z

@@ -1,13 +1,14 @@
 """Contact from coarse to fine grids: each grid starts from the contact of the one before."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform
 
-from .complementarity import ContactState, Search, solved_contact
+from .complementarity import ContactState, Search, solved_contacts
 from .krylov import Workspace
+from .members import each
 from .operators import Body, Operators
 
 _COARSEST = 4096
@@ -24,52 +25,63 @@ _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 def solve_nested(
     height: AnyArray,
     body: Body,
-    mean_pressure: float,
+    mean_pressure: Sequence[float],
     *,
     exact: Transform,
     tolerance: float,
     max_steps: int,
     report: Callable[[float], None],
-) -> tuple[ContactState, Operators, float]:
-    """Return the contact of a scaled ``height`` (zero mean, unit rms) under ``mean_pressure``.
+) -> tuple[list[ContactState], Operators, list[float]]:
+    """Return the contacts of a scaled ``height`` (1, nx, ny), zero mean, unit rms, a member each.
 
-    With it, the operators of the fine grid and the cost in products with them.
+    Those under each of ``mean_pressure`` of its body of the batch. With them, the operators of the
+    fine grid and the cost in products with them.
 
-    ``exact`` is the double-precision transform.
+    ``exact`` is the double-precision transform of the heights.
     """
-    xp = body.xp
-    points = height.shape[0] * height.shape[1]
-    workspace = Workspace(_STEPS, xp, height, arrays=max(_ROOM, _SMALL / points))
-    fine = Operators(body, height.shape, exact=exact)
-    coarsenings = _coarsenings(height.shape)
+    xp, many = body.xp, len(mean_pressure)
+    shape = (height.shape[-2], height.shape[-1])
+    points = shape[0] * shape[1]
+    room = _ROOM if many == 1 else _STEPS
+    workspace = Workspace(_STEPS, xp, height, arrays=max(room, _SMALL / points))
+    fine = Operators(body, (many, *shape), exact=exact if many == 1 else None)
+    coarsenings = _coarsenings(shape)
     spectrum = exact.forward(height)
-    levels = [(factor, low_pass(spectrum, height.shape, factor, xp)) for factor in coarsenings[:-1]]
+    levels = [(factor, low_pass(spectrum, shape, factor, xp)) for factor in coarsenings[:-1]]
     levels.append(((1, 1), height))
     del spectrum
     pressure: AnyArray = None
     before = (1, 1)
-    cost = 0.0
+    cost = [0.0] * many
     search = Search(tolerance, max_steps, True, True, _REDUCTION, report)
     coarse = Search(max(_COARSE_TOLERANCE, tolerance), max_steps, False, False, _COARSE_REDUCTION)
-    state: ContactState | None = None
+    states: list[ContactState] = []
     operators = fine
     while levels:
         factor, heights = levels.pop(0)
         last = factor == (1, 1)
-        operators = fine if last else Operators(body, heights.shape, factor)
+        size = (many, *heights.shape[-2:])
+        operators = fine if last else Operators(body, size, factor)
+        began = operators.count
         if pressure is None:
-            guess = operators.pressure(xp.astype(heights, xp.float32)) + mean_pressure
+            guess = operators.pressure(xp.astype(xp.broadcast_to(heights, size), xp.float32))
+            guess = guess + each(mean_pressure, guess)
             pressure = xp.clip(guess, 0.0, None)
+            del guess
         else:
             pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
-        state = solved_contact(
+        guessed = operators.count - began
+        states = solved_contacts(
             operators, heights, pressure, mean_pressure, workspace, search if last else coarse
         )
-        pressure = xp.clip(state.pressure, 0.0, None)
+        if not last:
+            fields = [state.pressure for state in states]
+            pressure = xp.clip(fields[0] if many == 1 else xp.concat(fields), 0.0, None)
+            del fields
         before = factor
-        cost += operators.count * heights.shape[0] * heights.shape[1]
-    assert state is not None
-    return state, operators, cost / points
+        share = size[1] * size[2] / points
+        cost = [c + share * (guessed + s.products) for c, s in zip(cost, states, strict=True)]
+    return states, operators, cost
 
 
 def low_pass(
@@ -80,21 +92,19 @@ def low_pass(
     long_waves = spectrum
     if factor[0] > 1:
         half = small[0] // 2
-        middle = xp.zeros_like(spectrum[:1, :])
-        long_waves = xp.concat(
-            (long_waves[:half, :], middle, long_waves[shape[0] - half + 1 :, :]), axis=0
-        )
+        middle = xp.zeros_like(spectrum[..., :1, :])
+        rest = long_waves[..., shape[0] - half + 1 :, :]
+        long_waves = xp.concat((long_waves[..., :half, :], middle, rest), axis=-2)
     if factor[1] > 1:
-        long_waves = xp.concat(
-            (long_waves[:, : small[1] // 2], xp.zeros_like(long_waves[:, :1])), axis=1
-        )
-    field = xp.fft.irfftn(long_waves, s=small, axes=(0, 1))
+        short = long_waves[..., : small[1] // 2]
+        long_waves = xp.concat((short, xp.zeros_like(long_waves[..., :1])), axis=-1)
+    field = xp.fft.irfftn(long_waves, s=small, axes=(-2, -1))
     return field / (factor[0] * factor[1])
 
 
 def repeated(field: AnyArray, factor: tuple[int, int], xp: Any) -> AnyArray:
     """Return the field on the finer grid, constant over each coarse cell."""
-    for axis in (0, 1):
+    for axis in (-2, -1):
         if factor[axis] > 1:
             field = xp.repeat(field, factor[axis], axis=axis)
     return field

@@ -1,7 +1,8 @@
 """The compliance of a sliding body and its inverse on one periodic grid."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform, transform
 
+from .members import each, members
 from .periodic import wavenumbers
 
 
@@ -18,7 +20,8 @@ class Body:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
     ``moduli`` returns E*(qx v) for a column of qx of NumPy (real when elastic), ``unit`` the
-    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid.
+    compliance for E = 1 on |q| > 0 of any namespace. ``spacing`` is that of the fine grid. A batch
+    of bodies has moduli (members, nx, 1) and a scale (members, 1, 1) of NumPy.
     ``asarray`` brings a row or column of NumPy to the namespace ``xp`` and its device. ``library``
     names the FFT (see ``transform``).
     """
@@ -26,7 +29,7 @@ class Body:
     moduli: Callable[[AnyArray], AnyArray]
     unit: Callable[[AnyArray], AnyArray]
     spacing: tuple[float, float]
-    scale: float = 1.0
+    scale: Any = 1.0
     xp: Any = np
     asarray: Callable[..., AnyArray] = np.asarray
     threads: int = 1
@@ -36,14 +39,14 @@ class Body:
 class Operators:
     """Displacement of a pressure (A p) and pressure of a displacement (S u) on one grid.
 
-    Single precision; ``exact_displacement`` works in double. The mean of every result is zero.
-    ``count`` counts products.
+    ``shape`` is (members, nx, ny), a body a member. Single precision; ``exact_displacement`` works
+    in double. The mean of every result is zero. ``count`` counts products.
     """
 
     def __init__(
         self,
         body: Body,
-        shape: tuple[int, int],
+        shape: tuple[int, ...],
         coarsening: tuple[int, int] = (1, 1),
         exact: Transform | None = None,
     ) -> None:
@@ -52,22 +55,39 @@ class Operators:
         self.count = 0
         xp, self.asarray = body.xp, body.asarray
         spacing = (body.spacing[0] * coarsening[0], body.spacing[1] * coarsening[1])
-        qx, qy = wavenumbers(shape, spacing)
-        rows = body.moduli(qx)
+        qx, qy = wavenumbers((shape[-2], shape[-1]), spacing)
+        rows = np.reshape(body.moduli(qx), (-1, shape[-2], 1))
         self._body = body
-        self._waves = self.asarray(qx), self.asarray(qy)
+        waves = self.asarray(np.repeat(qx[None], shape[0], axis=0))
+        self._waves = waves, self.asarray(qy[None])
+        self._scale = each(np.reshape(body.scale, -1).tolist(), waves)
         self.rows, self._inverse_rows = self.asarray(rows), self.asarray(1.0 / rows)
         self._lossy = np.iscomplexobj(rows)
         single = xp.complex64 if self._lossy else xp.float32
         unit = self.unit()
-        unit[0, 0] = 1.0
+        unit[:, 0, 0] = 1.0
         self.stiffness = xp.astype(self.rows, single) / xp.astype(unit, xp.float32)
         del unit
         self.compliance = 1.0 / self.stiffness
-        self.stiffness[0, 0] = self.compliance[0, 0] = 0.0
+        self.stiffness[:, 0, 0] = self.compliance[:, 0, 0] = 0.0
         self.fast = self._transform(xp.float32)
         self._exact = exact
         self._spectrum: AnyArray = None
+
+    def of(self, index: Sequence[int]) -> "Operators":
+        """Return those of the members ``index``, which go on with the count."""
+        if list(index) == list(range(self.shape[0])):
+            return self
+        some = copy(self)
+        some.shape = (len(index), *self.shape[1:])
+        some._waves = members(self._waves[0], index), self._waves[1]
+        some._scale = members(self._scale, index)
+        some.rows, some._inverse_rows = (members(x, index) for x in (self.rows, self._inverse_rows))
+        some.stiffness, some.compliance = (
+            members(x, index) for x in (self.stiffness, self.compliance)
+        )
+        some.fast, some._exact, some._spectrum = some._transform(self.xp.float32), None, None
+        return some
 
     @contextmanager
     def softened(self, softness: float) -> Iterator[None]:
@@ -79,7 +99,7 @@ class Operators:
         """
         kept = self.compliance
         self.compliance = kept + softness
-        self.compliance[0, 0] = 0.0
+        self.compliance[:, 0, 0] = 0.0
         in_phase = self.xp.real(self.compliance) if self._lossy else self.compliance
         self.stiffness = _inverse(in_phase)
         try:
@@ -91,17 +111,17 @@ class Operators:
         """Return the least and the largest compliance of a wave."""
         size = self.xp.abs(self.compliance)
         largest = float(self.xp.max(size))
-        size[0, 0] = largest
+        size[:, 0, 0] = largest
         return float(self.xp.min(size)), largest
 
     def unit(self) -> AnyArray:
         """Return the compliance for E = 1 in double precision, made anew: it is rarely used."""
         qx, qy = self._waves
         q = self.xp.sqrt(qx**2 + qy**2)
-        q[0, 0] = 1.0
+        q[:, 0, 0] = 1.0
         unit = self._body.unit(q)
-        unit *= self._body.scale
-        unit[0, 0] = 0.0
+        unit *= self._scale
+        unit[:, 0, 0] = 0.0
         return unit
 
     def displacement(self, pressure: AnyArray, out: AnyArray = None) -> AnyArray:
@@ -128,9 +148,9 @@ class Operators:
         spectrum = self.exact.forward(displacement)
         spectrum *= self.rows
         unit = self.unit()
-        unit[0, 0] = 1.0
+        unit[:, 0, 0] = 1.0
         spectrum /= unit
-        spectrum[0, 0] = 0.0
+        spectrum[:, 0, 0] = 0.0
         return self.exact.backward(spectrum)
 
     @property
@@ -155,7 +175,7 @@ class Operators:
 
 def _inverse(symbol: AnyArray) -> AnyArray:
     """Return 1 / symbol, 0 for the mean as in ``symbol``."""
-    symbol[0, 0] = 1.0
+    symbol[:, 0, 0] = 1.0
     inverse = 1.0 / symbol
-    symbol[0, 0] = inverse[0, 0] = 0.0
+    symbol[:, 0, 0] = inverse[:, 0, 0] = 0.0
     return inverse

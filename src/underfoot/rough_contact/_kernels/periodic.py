@@ -17,9 +17,9 @@ def half_sum(terms: AnyArray, columns: int) -> float:
     ``columns`` is the length of axis 1 in real space: inner columns stand for two waves.
     """
     xp = namespace(terms)
-    total = 2.0 * float(xp.sum(terms)) - float(xp.sum(terms[:, 0]))
+    total = 2.0 * float(xp.sum(terms)) - float(xp.sum(terms[..., 0]))
     if columns % 2 == 0:
-        total -= float(xp.sum(terms[:, -1]))
+        total -= float(xp.sum(terms[..., -1]))
     return total
 
 

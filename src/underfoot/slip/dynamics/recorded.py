@@ -17,7 +17,7 @@ from underfoot.trials.walking.events import Stance
 from underfoot.trials.walking.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.walking.gait_context import FLAT, heel_speed
 from underfoot.trials.walking.slips import HeelMotion, heel_motion
-from underfoot.trials.walking.walkway import Walkway, body_mass, walkway_of
+from underfoot.trials.walking.walkway import Walkway, body_mass, of_walkway, walkway_of
 
 from .gait import LEAST_LOAD, GaitHistory
 
@@ -52,8 +52,9 @@ def recorded_histories(path: Path | str, *, mass: float | None = None) -> list[G
     return histories
 
 
+@of_walkway
 def step_history(
-    recording: Trial | Walkway, step: RequiredFriction, *, mass: float | None = None, name: str = ""
+    walk: Walkway, step: RequiredFriction, *, mass: float | None = None, name: str = ""
 ) -> GaitHistory:
     """Return one accepted step as a history: forces low-passed as for RCOF, 200 samples a second.
 
@@ -61,7 +62,7 @@ def step_history(
     same side), against its angle while the foot lies flat (30 to 50 % of stance). Heel velocity:
     ``heel_over_floor``.
     """
-    walk, stance = walkway_of(recording), step.stance
+    stance = step.stance
     assert stance.walking is not None  # an RCOF has one
     plate = walk.plate(stance.plate)
     force = low_passed(plate.force, plate.rate, RcofDefinition().filter)

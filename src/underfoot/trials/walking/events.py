@@ -13,7 +13,7 @@ from ..recording.measurement import Flag
 from ..recording.plates import plate_axes, plate_contacts, plate_named
 from ..recording.signals import CONTACT_FORCE, along
 from ..recording.trial import Edit, Plate, Trial
-from .walkway import Walkway, walkway_of
+from .walkway import Walkway, of_walkway
 
 _UNKNOWN = Direction()
 
@@ -178,7 +178,8 @@ _FOOT_LENGTH, _FOOT_WIDTH = 0.36, 0.14  # m, the most that the centre of pressur
 _OUTSIDE = 0.05  # m; the marker sits behind the shoe, so a heel at the edge is a little outside
 
 
-def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
+@of_walkway
+def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
     """Return every contact with every usable plate, each accepted or rejected with a reason.
 
     Rejected are contacts cut by the record, too short or too long, two that begin together (a
@@ -188,7 +189,6 @@ def stances(walk: Trial | Walkway, *, threshold: float = CONTACT_FORCE) -> list[
 
     EditError: an edit names no contact, changes nothing or contradicts another.
     """
-    walk = walkway_of(walk)
     trial, up = walk.trial, walk.up
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
     detected: list[Stance] = []
@@ -274,9 +274,9 @@ def _reason(
     return ""
 
 
-def no_contact_reason(walk: Trial | Walkway) -> str:
+@of_walkway
+def no_contact_reason(walk: Walkway) -> str:
     """Return why a trial has no contact with a force plate: which of four causes it is."""
-    walk = walkway_of(walk)
     trial = walk.trial
     usable = [plate for plate in trial.plates if plate.usable]
     if usable:

@@ -13,7 +13,7 @@ from ..recording.axes import Axes
 from ..recording.measurement import Flag, Measurement, remark
 from ..recording.plates import baseline_words, plate_up
 from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
-from ..recording.trial import Plate, Trial
+from ..recording.trial import Plate
 from .events import Stance, stances
 from .gait_context import push_off_flags
 from .likelihood import impossible, unseen_gain
@@ -26,7 +26,7 @@ from .plausibility import (
     walking_speed,
 )  # fmt: skip
 from .slips import Outcome, Slip, slip_of
-from .walkway import Walkway, walkway_of
+from .walkway import Walkway, of_walkway
 
 PEAKS = {
     "largest-local-maximum": "largest local maximum",
@@ -151,8 +151,9 @@ class RequiredFriction(Presentable):
         return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *own.rows])
 
 
+@of_walkway
 def required_friction(
-    walk: Trial | Walkway,
+    walk: Walkway,
     stance: Stance,
     definition: RcofDefinition | None = None,
     *,
@@ -173,7 +174,6 @@ def required_friction(
     default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.
     """
     definition = definition or DEFINITIONS["default"]
-    walk = walkway_of(walk)
     axes, weight, plate = walk.axes, walk.weight, walk.plate(stance.plate)
     choices = {
         **definition.conventions(),
@@ -244,19 +244,19 @@ def required_friction(
     return RequiredFriction(measurement, stance, time, ratio, normal, *instants, slip)
 
 
+@of_walkway
 def required_frictions(
-    walk: Trial | Walkway, definition: RcofDefinition | None = None
+    walk: Walkway, definition: RcofDefinition | None = None
 ) -> list[RequiredFriction]:
     """Return the required friction of every stance of a trial, rejected ones with the reason."""
-    walk = walkway_of(walk)
     return stance_frictions(walk, stances(walk), definition)
 
 
+@of_walkway
 def stance_frictions(
-    walk: Trial | Walkway, chosen: list[Stance], definition: RcofDefinition | None = None
+    walk: Walkway, chosen: list[Stance], definition: RcofDefinition | None = None
 ) -> list[RequiredFriction]:
     """Return the required friction of the stances given, each compared with the others."""
-    walk = walkway_of(walk)
     steps = [required_friction(walk, stance, definition) for stance in chosen]
     values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
     for i, step in enumerate(steps):

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..recording.measurement import Flag
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, low_passed_part
-from ..recording.trial import Marker, Trial
+from ..recording.trial import Marker
 from .events import Stance
 from .slips import OutcomeLimits, Slip, heel_motion
-from .walkway import Walkway, walkway_of
+from .walkway import Walkway, of_walkway
 
 FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
 PERCENT = np.arange(101)
@@ -39,9 +39,9 @@ class GaitContext:
     belt_speed: float | None = None
 
 
-def gait_context(walk: Trial | Walkway, stance: Stance, stances: Sequence[Stance]) -> GaitContext:
+@of_walkway
+def gait_context(walk: Walkway, stance: Stance, stances: Sequence[Stance]) -> GaitContext:
     """Return the walk around one of the ``stances`` of a trial, as seen from its surface."""
-    walk = walkway_of(walk)
     body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
     length, time = _step(walk, stance, stances)
     angle, belt = foot_angle(walk, stance), walk.belts.get(stance.plate)
@@ -56,9 +56,9 @@ def gait_context(walk: Trial | Walkway, stance: Stance, stances: Sequence[Stance
     )
 
 
-def heel_speed(walk: Trial | Walkway, stance: Stance) -> float | None:
+@of_walkway
+def heel_speed(walk: Walkway, stance: Stance) -> float | None:
     """Return the heel's speed at contact in the plane of the floor (m/s), None where unknown."""
-    walk = walkway_of(walk)
     heel = _marker(walk, stance.heel, stance)
     if heel is None or heel.times is not None:
         return None
@@ -103,13 +103,13 @@ def _standing_place(heel: Marker | None, stance: Stance) -> np.ndarray:
     return np.median(places, axis=0) if len(places) > 2 else np.full(3, np.nan)
 
 
-def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] | None:
+@of_walkway
+def foot_angle(walk: Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] | None:
     """Return times (n,) from contact to toe off and the angle of sole and floor (rad), or None.
 
     From the line heel marker to toe marker of the same side, low-passed at 10 Hz, against its
     angle while the foot lies flat (30 to 50 % of stance).
     """
-    walk = walkway_of(walk)
     heel, toe = _marker(walk, stance.heel, stance), _toe(walk, stance.side, stance)
     if heel is None or toe is None or stance.walking is None:
         return None
@@ -129,15 +129,15 @@ def foot_angle(walk: Trial | Walkway, stance: Stance) -> tuple[np.ndarray, np.nd
     return steps, np.interp(steps, time, tilt - np.median(tilt[flat]))
 
 
+@of_walkway
 def stance_curves(
-    walk: Trial | Walkway, stance: Stance, ratio: np.ndarray, low_pass: LowPass
+    walk: Walkway, stance: Stance, ratio: np.ndarray, low_pass: LowPass
 ) -> dict[str, np.ndarray]:
     """Return forces (N) and ratio at 0, 1 ... 100 % of a stance, (101,) each.
 
     ``vertical`` (on a ramp: normal to it), ``braking`` (positive when the floor pushes backward),
     ``to the left``, ``ratio``.
     """
-    walk = walkway_of(walk)
     plate, axes = walk.plate(stance.plate), walk.axes
     force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
     walking = stance.walking if stance.walking is not None else np.zeros(3)
@@ -181,11 +181,12 @@ class SlipCourse:
     flags: tuple[Flag, ...] = ()
 
 
+@of_walkway
 def slip_course(
-    walk: Trial | Walkway, stance: Stance, slip: Slip, limits: OutcomeLimits | None = None
+    walk: Walkway, stance: Stance, slip: Slip, limits: OutcomeLimits | None = None
 ) -> SlipCourse:
     """Return what happened around a slip (or a step without one)."""
-    walk, limits = walkway_of(walk), limits or OutcomeLimits()
+    limits = limits or OutcomeLimits()
     body, why = _body(walk, slip)
     toe = None if slip.slides else _toe_way(walk, stance)
     trailing = _trailing_way(walk, stance, slip)

@@ -11,9 +11,9 @@ from underfoot.core import InputError, unknown_name
 
 from ..recording.measurement import Choice, Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
-from ..recording.trial import Marker, Trial, once_a_record
+from ..recording.trial import Marker, once_a_record
 from .events import Stance
-from .walkway import Walkway, walkway_of
+from .walkway import Walkway, of_walkway
 
 PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}
 DERIVATIVES = {
@@ -457,8 +457,9 @@ def _slip_start(motion: HeelMotion, begin: int, cutoff: float) -> tuple[float, f
     return here - shift, math.hypot(frame, min(noise, width), shape), shift
 
 
+@of_walkway
 def slip_of(
-    walk: Trial | Walkway,
+    walk: Walkway,
     stance: Stance,
     *,
     definition: SlipDefinition | None = None,
@@ -469,7 +470,6 @@ def slip_of(
     On a belt the heel's speed is that over the belt. A contact rejected as a step may still be a
     slip (a foot that slides off a plate is no clean step): its reason is kept as a flag.
     """
-    walk = walkway_of(walk)
     walking, up = stance.walking, walk.up
     if walking is None:
         walking = walk.direction(walk.plate(stance.plate), stance.start, stance.stop).vector

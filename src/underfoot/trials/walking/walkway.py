@@ -1,8 +1,11 @@
 """A recording of walking with what is resolved once: axes, body weight, feet, belts."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import wraps
+from typing import Concatenate, ParamSpec, TypeVar
+from warnings import warn
 
 import numpy as np
 
@@ -176,31 +179,49 @@ class Walkway:
 
 
 def walkway_of(
-    walk: Trial | Walkway,
+    trial: Trial,
     *,
     vertical: str | None = None,
     walking: str | None = None,
     ramp: Ramp = LEVEL,
     landmarks: Mapping[str, str] | None = None,
 ) -> Walkway:
-    """Return a trial with its axes, body weight, feet and belts resolved; a walkway as it is.
+    """Return a trial with its axes, body weight, feet and belts resolved.
 
     ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; ``landmarks``
     are a laboratory's own names of markers with their places ("left heel"); ``ramp`` is the slope
     of the walkway. An axis that is none is an InputError, a place without marker a DataError.
     """
-    if isinstance(walk, Walkway):
-        return walk
-    axes = axes_of(walk, vertical=vertical, walking=walking, ramp=ramp)
+    axes = axes_of(trial, vertical=vertical, walking=walking, ramp=ramp)
     best = (
         {side: names[0] for side, names in found.items() if names}
         for found in (
-            heel_candidates(walk, landmarks, axes.up),
-            toe_candidates(walk, landmarks, axes.up),
+            heel_candidates(trial, landmarks, axes.up),
+            toe_candidates(trial, landmarks, axes.up),
         )
     )
     heel, toe = best
-    feet = [walk.marker(name) for name in (*heel.values(), *toe.values())]
-    belts = belts_of(walk, axes.up, [foot for foot in feet if foot.times is None])
-    pelvis = pelvis_markers(walk, landmarks)
-    return Walkway(walk, axes, body_weight(walk, axes), heel, toe, pelvis, belts, walking)
+    feet = [trial.marker(name) for name in (*heel.values(), *toe.values())]
+    belts = belts_of(trial, axes.up, [foot for foot in feet if foot.times is None])
+    pelvis = pelvis_markers(trial, landmarks)
+    return Walkway(trial, axes, body_weight(trial, axes), heel, toe, pelvis, belts, walking)
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def of_walkway(
+    function: Callable[Concatenate[Walkway, P], R],
+) -> Callable[Concatenate[Walkway, P], R]:
+    """Let a function of a walkway take a trial too, with a warning, until version 0.5."""
+
+    @wraps(function)
+    def answer(walk: Walkway, *arguments: P.args, **options: P.kwargs) -> R:
+        if isinstance(walk, Trial):
+            call = f"{function.__name__}(walkway_of(trial))"
+            warn(f"{call} resolves a trial once; a trial itself goes in 0.5", FutureWarning, 2)
+            walk = walkway_of(walk)
+        return function(walk, *arguments, **options)
+
+    return answer

@@ -1,0 +1,98 @@
+"""A study of slips whose full model is a sole of known constants and a known map of pressure."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from slip_floors import slippery_sole
+from underfoot.core import Status
+from underfoot.slip.dynamics import FloorSensors, Population
+from underfoot.slip.dynamics import study as module
+from underfoot.slip.dynamics.full_model import FullRun
+from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y, PressureShape, pressure_shape
+
+ANGLE = 0.15
+
+
+def known_shape():
+    """Return a hill of pressure that grows with load, film share and angle in its own places."""
+    bell = np.exp(-(((MAP_X[:, None] - 0.03) / 0.02) ** 2) - (MAP_Y / 0.015) ** 2)
+    parts = [800 * bell, 60 * bell**2, 200 * bell[::-1], 900 * bell[:, ::-1]]
+    return PressureShape(np.array(parts), ANGLE)
+
+
+def full_run(walker, status=Status.CONVERGED):
+    motion = replace(slippery_sole().motion(walker), status=status)
+    none = np.zeros(motion.time.size)
+    maps = known_shape().maps(motion)
+    return FullRun(motion, maps, none + 1e-3, none, maps[:, :, 0], MAP_X, np.array([2e5, 3e-6]))
+
+
+@pytest.fixture(scope="module")
+def made():
+    """Return a study, and what its fit was asked to follow; each fourth full slip had no answer."""
+    asked = {}
+
+    def runs(_, walkers, **__):
+        states = [Status.NOT_CONVERGED if i % 4 == 2 else Status.CONVERGED for i in range(100)]
+        return [full_run(each, state) for each, state in zip(walkers, states, strict=False)]
+
+    def fit(_, runs, held_out, rows, **__):
+        asked.update(runs=runs, held_out=held_out, rows=rows)
+        return SimpleNamespace(sole=slippery_sole())
+
+    law = SimpleNamespace(breaches=lambda **_: ["rough", "rough"])
+    setting = cast(Any, SimpleNamespace(viscosity=0.2, shoe_angle=ANGLE, friction=law))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "full_runs", runs)
+        patch.setattr(module, "fitted_reduced", fit)
+        patch.setattr(module.SlipStudy, "at_friction_draws", lambda _: None)
+        people = Population(subjects=5, seed=2)
+        yield module.slip_study(setting, people, fit_runs=6, held_out=2), people, asked
+
+
+def test_a_shape_of_pressure_is_found_again_from_slips_that_have_it():
+    runs = [full_run(each) for each in Population(subjects=5, seed=5).walkers()]
+    assert pressure_shape(runs, ANGLE).parts == pytest.approx(known_shape().parts, abs=0.05)
+
+
+def test_a_fit_and_its_test_share_no_slip_and_leave_out_what_had_no_answer(made):
+    study, _, asked = made
+    kept, apart = asked["runs"], asked["held_out"]
+    assert (len(kept), len(apart), study.failed) == (4, 2, 2)
+    assert not {id(one) for one in kept} & {id(one) for one in apart}
+    assert all(one.status is Status.CONVERGED for one in (*kept, *apart))
+    assert len(asked["rows"]) == sum(int((one.normal > 0).sum()) for one in kept)
+    assert study.breaches == ("rough",)
+
+
+def test_everybody_slips_by_the_fitted_sole_over_the_fitted_pressure(made):
+    study, people, _ = made
+    array = FloorSensors()
+    for walker, each in zip(people.walkers(), study.subjects, strict=True):
+        exact = slippery_sole().motion(walker)
+        assert each.walker == walker
+        assert each.motion.distance[-1] == pytest.approx(exact.distance[-1])
+        maps = known_shape().maps(each.motion)
+        expected = module.array_pressures(each.motion, maps, array)
+        assert each.pressures == pytest.approx(expected, abs=2e-4 * expected.max() + 1.0)
+    # the sole that was fitted is the one that made the runs
+    assert study.pressure_error < 1e-3
+    middle = study.subjects[module._middle(study.subjects)].walker
+    assert study.representative.motion.walker == middle
+    assert not study.full
+
+
+def test_people_hold_their_shoe_angle_unless_the_recorded_fall_is_asked_for():
+    times = np.linspace(0.0, 0.4, 9)
+    for asked, falls in (({}, False), ({"recorded_angle": True}, True)):
+        people = Population(subjects=30, **asked).walkers()
+        angles = [each.demands(times)[2] for each in people if each.history.foot_angle is not None]
+        assert angles
+        assert [bool(np.ptp(angle) > 0.01) for angle in angles] == [falls] * len(angles)
+        assert [angle[0] for angle in angles] == [
+            each.shoe_angle for each in people if each.history.foot_angle is not None
+        ]
