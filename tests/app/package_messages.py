@@ -216,7 +216,7 @@ def _told(piece):
         if isinstance(each, ast.Call):
             name = getattr(each.func, "id", getattr(each.func, "attr", ""))
             if name not in OF_PYTHON:
-                error = name.endswith(("Error", "_error"))
+                error = name.endswith("Error") and name != "MissingExtraError"
                 yield from ((part, error) for part in each.args if MAKER.search(name))
                 yield from ((key.value, False) for key in each.keywords if key.arg in PARTS)
         elif isinstance(each, ast.Return) and text and piece.file.startswith(REASONS):
