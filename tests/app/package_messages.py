@@ -41,6 +41,8 @@ OF_PYTHON = {
     "PydanticCustomError",
 }
 PHRASE = re.compile(r"[A-Za-z]{2}.* .*[A-Za-z]{2}|[a-z]{2,} \{\}|\{\} [a-z]{3,}")
+WORD = re.compile(r"[a-z]{4,}")
+"""Of an error one word is a message too: "empty"."""
 FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 MOST = 24
 """Forms of one sentence, and values of one name, that are followed."""
@@ -207,17 +209,18 @@ class Forms:
 
 
 def _told(piece):
-    """Yield the expressions of a piece that are told."""
+    """Yield the expressions of a piece that are told, and whether one word is told as well."""
     returns = getattr(piece.node, "returns", None)
     text = returns is not None and ast.unparse(returns) in ("str", "str | None", "tuple[str, ...]")
     for each in ast.walk(piece.node):
         if isinstance(each, ast.Call):
             name = getattr(each.func, "id", getattr(each.func, "attr", ""))
             if name not in OF_PYTHON:
-                yield from each.args if MAKER.search(name) else ()
-                yield from (key.value for key in each.keywords if key.arg in PARTS)
+                error = name.endswith("Error") and name != "MissingExtraError"
+                yield from ((part, error) for part in each.args if MAKER.search(name))
+                yield from ((key.value, False) for key in each.keywords if key.arg in PARTS)
         elif isinstance(each, ast.Return) and text and piece.file.startswith(REASONS):
-            yield from [each.value] if each.value and piece.name != "__repr__" else ()
+            yield from [(each.value, False)] if each.value and piece.name != "__repr__" else ()
 
 
 def messages():
@@ -226,11 +229,12 @@ def messages():
     for piece in reached():
         if piece.file.startswith(ROOMS):
             forms = Forms(piece)
-            for node in _told(piece):
+            for node, short in _told(piece):
                 parts = node.elts if isinstance(node, ast.Tuple | ast.List) else [node]
                 for form in (form for part in parts for form in forms.of(part)):
                     form = re.sub(r"(\{\})+", "{}", form).replace(" ()", "").strip(" ,;\n")
-                    if PHRASE.search(form) and form[:1] not in "<[":
+                    told = PHRASE.search(form) or (short and WORD.fullmatch(form))
+                    if told and form[:1] not in "<[":
                         found.setdefault(form, []).append(f"{piece.file}:{node.lineno}")
     return found
 

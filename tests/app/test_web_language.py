@@ -22,6 +22,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide"
 WORD = re.compile(r"(?<![\w./])[^\W\d_]{2,}(?![\w/]|\.\w)")
 BRACES = re.compile(r"\{\w*\}|\(\?P<\w+>|(?:/[\w .-]+){3,}")  # placeholders, paths of files
+CODE = re.compile(r'„[^“]*“|"[^"]*"|\[+[\w.{}]+\]+|[\w.]+(?= = )')
+"""What is never translated: in quotes, tables and keys of a file."""
 UNITS = {"deg", "cp", "pa", "mpa", "kpa", "um", "µm", "hz", "kg", "mm²", "cm²"}
 FORMATS = {"iges", "brep", "off", "gltf"}
 PLACE = """\
@@ -54,7 +56,7 @@ TEXTS = """() => {
 
 
 def words(text):
-    return {word.lower() for word in WORD.findall(BRACES.sub(" ", text))}
+    return {word.lower() for word in WORD.findall(BRACES.sub(" ", CODE.sub(" ", text)))}
 
 
 @pytest.fixture(scope="module")

@@ -60,9 +60,22 @@ function formed(core, depth) {
   const [, where, what] = /^([^:]+): (.+)$/s.exec(core) ?? []; // of an error
   if (exactWords.has(where)) return `${exactWords.get(where)}: ${inLanguage(what, depth + 1)}`;
   const sentences = core.split(BREAK);
-  if (sentences.length > 1) return sentences.map((each) => inLanguage(each, depth + 1)).join(" ");
+  if (sentences.length > 1) return runs(sentences).map((each) => inLanguage(each, depth + 1)).join(" ");
   if (dot) return inLanguage(bare, depth + 1) + dot;
   return asForm(core, small, depth, (joins) => joins) ?? withDecimals(core);
+}
+
+// Sentences of a text, those together that the catalogue has together.
+function runs(sentences) {
+  const told = [];
+  for (let start = 0, end; start < sentences.length; start = end) {
+    const upTo = (last) => sentences.slice(start, last).join(" ");
+    const isOne = (text) => exactWords.has(text) || exactWords.has(text.replace(/\.$/, ""));
+    end = sentences.length - (start === 0);
+    while (end > start + 1 && !isOne(upTo(end))) end -= 1;
+    told.push(upTo(end));
+  }
+  return told;
 }
 
 function asForm(core, small, depth, wanted) {
