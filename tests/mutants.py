@@ -267,6 +267,7 @@ def test_texts() -> tuple[tuple[str, str], ...]:
     )
 
 
+@cache
 def with_helpers(text: str) -> str:
     """Return a text of tests with those of the helpers in ``tests`` that it imports."""
     paths = (REPOSITORY / "tests" / f"{name}.py" for name in re.findall(IMPORTED, text))

@@ -65,6 +65,14 @@ def shown(build, look):
     return asyncio.run(run())
 
 
+async def until(holds):
+    """Wait until something holds, for 20 s at most."""
+    for _ in range(400):
+        if holds():
+            return
+        await asyncio.sleep(0.05)
+
+
 def words_of(elements):
     return [each.text for each in elements if isinstance(each, ui.label | ui.button)]
 
@@ -94,15 +102,15 @@ def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_pat
     page = next(each for each in PAGES if each.route == "/project")
 
     async def look(elements):
-        await asyncio.sleep(0.3)
         (bar,) = (each for each in elements if isinstance(each, ui.linear_progress))
         wanted = session.text("project.compute_some", count=1)
+        await until(lambda: wanted in words_of(elements))
         (button,) = (e for e in elements if isinstance(e, ui.button) and e.text == wanted)
         seen = bar.value, bar.parent_slot.parent.visible, words_of(elements)
         for each in list(button._event_listeners.values()):
             if each.type == "click":
                 each.handler(SimpleNamespace(sender=button, client=button.client, args={}))
-        await asyncio.sleep(0.1)
+        await until(lambda: len(session.jobs.tasks) == 3)
         return seen
 
     value, visible, lines = shown(lambda: page.build(session), look)
@@ -236,7 +244,7 @@ def test_a_job_ends_done_stopped_or_failed_and_what_follows_one_that_is_done_is_
         running = asyncio.create_task(jobs.run())
         for task in tasks:
             await jobs.finished(task)
-        await asyncio.sleep(0.05)
+        await until(lambda: not any(task.open for task in jobs.tasks.values()))
         running.cancel()
 
     asyncio.run(run())
