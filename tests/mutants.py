@@ -11,8 +11,8 @@ known yet. A fault meets the tests that run its line, in a copy of the repositor
 that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or, where its line
 runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
 its room (they import its module, themselves or by a helper, or are called ``test_<room>_``), then
-the others; each test once before one comes again with other parameters, the quickest first,
-``--seconds`` of each at most. A line that runs at import meets the tests that run anything of its
+the others; those that import the module first, each test once before one comes again with other
+parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets the tests that run anything of its
 file or are of its room; one that no test runs in this process meets those of its room if it is
 compiled, else those that start a process. What survives is printed with its place: mend the tests,
 or say why it may live. A test that fails without a fault kills nothing; a fault that its room's
@@ -239,9 +239,15 @@ def named_faults() -> Iterator[Mutant]:
             yield Mutant(file, start, start + len(old.encode()), new, f"{old!r} -> {new!r}", line)
 
 
-@cache
 def tests_of(file: str) -> tuple[str, ...]:
     """Return the files of tests of a file of the source: that import its module, or of its room."""
+    nearest, others = nearest_and_others(file)
+    return (*nearest, *others)
+
+
+@cache
+def nearest_and_others(file: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the files of tests that import the module of a file, and the others of its room."""
     parts = Path(file).with_suffix("").parts
     module, room = ".".join(("underfoot", *parts)), parts[0]
     names = (module, f"from {module.rpartition('.')[0]} import {parts[-1]}\n")
@@ -252,7 +258,7 @@ def tests_of(file: str) -> tuple[str, ...]:
             nearest.append(path)
         elif Path(path).name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
             others.append(path)
-    return (*nearest, *others)
+    return tuple(nearest), tuple(others)
 
 
 @cache
@@ -360,14 +366,21 @@ def statement_lines(file: str, line: int) -> tuple[int, int]:
     return around[-1] if around else (-1, -1)
 
 
-def in_turn(tests: Iterable[Test], seconds: float) -> list[Test]:
-    """Return tests, each once before one comes again with other parameters, quickest first."""
+def in_turn(tests: Iterable[Test], seconds: float, first: tuple[str, ...] = ()) -> list[Test]:
+    """Return tests, each once before one comes again with other parameters, quickest first.
+
+    Those in files of ``first`` come before all others.
+    """
     forms: dict[str, list[Test]] = defaultdict(list)
     for one in sorted(tests, key=lambda test: test.seconds):
         forms[one.name.partition("[")[0]].append(one)
-    ranked = [(rank, one.seconds, one) for form in forms.values() for rank, one in enumerate(form)]
+    ranked = [
+        (one.file not in first, rank, one.seconds, one)
+        for form in forms.values()
+        for rank, one in enumerate(form)
+    ]
     chosen, files, total = list[Test](), set[str](), 0.0
-    for _, _, one in sorted(ranked):
+    for *_, one in sorted(ranked):
         if one.file not in files and len(files) == MOST_FILES:
             continue
         files.add(one.file)
@@ -588,7 +601,8 @@ def met(
             answers.append(Answer(mutant, killer, True, 0))
             continue
         meeting, files = lines.meeting(mutant), tests_of(mutant.file)
-        near = in_turn((one for one in meeting if one.file in files), seconds)
+        nearest = nearest_and_others(mutant.file)[0]
+        near = in_turn((one for one in meeting if one.file in files), seconds, nearest)
         others = [] if own_only else [one for one in meeting if one.file not in files]
         plans[mutant] = near, in_turn(others, seconds)
         if not any(plans[mutant]):
