@@ -15,9 +15,9 @@ the others; those that import the module first, each test once before one comes 
 parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets the
 tests that run anything of its file or are of its room; one that no test runs in this process meets
 those of its room if it is compiled, else those that start a process. What survives is printed with
-its place: mend the tests, or say why it may live. A test that fails without a fault kills nothing;
-a fault that its room's test killed counts as dead while that test and the source stand. Not part of
-``make test``.
+its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that fails
+without a fault kills nothing; a fault that its room's test killed counts as dead while that test
+and the source stand. Not part of ``make test``.
 """
 
 import ast
@@ -51,6 +51,7 @@ from mutants_warm import NOT_PLANTED, Plan, deaths
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
+ALIVE = Path(__file__).with_name("mutants_alive.toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 CACHE = "__pycache__"
@@ -244,6 +245,15 @@ def tests_of(file: str) -> tuple[str, ...]:
     """Return the files of tests of a file of the source: that import its module, or of its room."""
     nearest, others = nearest_and_others(file)
     return (*nearest, *others)
+
+
+@cache
+def may_live() -> dict[tuple[str, str], str]:
+    """Return why faults of ``mutants_alive.toml`` may live, by file and fault."""
+    text = ALIVE.read_text(encoding="utf-8") if ALIVE.exists() else ""
+    return {
+        (file, fault): why for file, faults in tomllib.loads(text).items() for fault, why in faults
+    }
 
 
 @cache
@@ -577,9 +587,15 @@ class Answer(NamedTuple):
     own: bool
     met: int
 
+    @property
+    def why(self) -> str:
+        """Why the fault may live; empty where nobody said."""
+        return may_live().get((self.mutant.file, self.mutant.shown.partition(": ")[2]), "")
+
     def __str__(self) -> str:
         word = "ALIVE " if self.killer is None else "own   " if self.own else "other "
-        end = f"{self.met} tests" if self.killer is None else self.killer or "at import"
+        alive = f"may live: {self.why}" if self.why else f"{self.met} tests"
+        end = alive if self.killer is None else self.killer or "at import"
         return f"{word} {self.mutant}   <- {end}"
 
 
@@ -691,14 +707,15 @@ def main() -> None:
     if lines.false:
         names = sorted(lines.false)
         print("These tests fail in a copy without a fault, and kill none:", *names, sep="\n  ")
-    print(f"{'room':14} faults  own  quick   (seed {given.seed})")
+    print(f"{'room':14} faults  own  quick  may live   (seed {given.seed})")
     for room in (*(given.rooms or rooms), ""):
         of_room = [one for one in answers if one.mutant.file.startswith(f"{room}/" if room else "")]
         dead = [one for one in of_room if one.killer is not None]
         if of_room:
             own = sum(one.own for one in dead)
             quick = "-" if given.own else len(dead)
-            print(f"{room or 'all':14} {len(of_room):6} {own:4} {quick:>6}")
+            allowed = sum(bool(one.why) for one in of_room if one.killer is None)
+            print(f"{room or 'all':14} {len(of_room):6} {own:4} {quick:>6} {allowed:9}")
 
 
 if __name__ == "__main__":

@@ -207,3 +207,16 @@ def test_each_figure_has_the_change_that_is_printed_for_it(quantity, along, own,
     printed = Catalogue.load().entry("published", "micro_fe_g1").numbers(key, "1")
     found = g1._printed_change(quantity, along, "rubber", own_roughness=own)
     assert found == pytest.approx(tuple(printed))
+
+
+def test_friction_that_elements_without_loss_leave_is_not_drawn():
+    """Those leave up to 9e-4; a material of which that is all is named in the title instead."""
+    rows = [
+        {"series": "report", "material": material, "speed": speed, "shoe_rz": g1.SHOE_RZ[0],
+         "floor_rz": floor, "area_per_force": 1e-6, "cof_hysteresis": cof}
+        for material, cof in zip(g1.MATERIALS, (9e-4, 1.1e-3), strict=True)
+        for speed in g1.SPEEDS for floor in g1.FLOOR_RZ
+    ]  # fmt: skip
+    drawn = g1._figure(pd.DataFrame(rows), "hysteresis", "5", "floor_rz")
+    assert [panel.title.partition(": ")[2] for panel in drawn.panels] == [g1.MATERIALS[1]]
+    assert f"{g1.MATERIALS[0]} 9e-04" in drawn.title
