@@ -4,10 +4,14 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
+import numpy as np
+import pytest
+
 from underfoot.case import Case
 from underfoot.fluid import glycerol_water_viscosity
 from underfoot.questions.risk import RiskAssessment
 from underfoot.questions.sensitivity import OPEN_INPUTS, OpenInput, open_inputs
+from underfoot.questions.separation import ANGLES, _conditions
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 
@@ -45,3 +49,12 @@ def test_of_changes_with_one_chance_to_slip_the_one_with_more_friction_comes_fir
     )
     best = cast(Any, RiskAssessment.best).fget(risk)
     assert [one.name for one in best] == ["c", "b", "a"]
+
+
+@pytest.mark.parametrize("angle", [7.0, 7.9, 11.5])
+def test_two_cases_are_told_apart_at_shoe_angles_other_than_their_own(angle):
+    case = Case.load(EXAMPLE).replace("motion.shoe_angle", f"{angle} deg")
+    asked = list(_conditions(case, case.replace("shoe.material.shore_a", 55)))
+    angles = [float(np.degrees(value)) for kind, value, _ in asked if kind == "angle"]
+    assert angles == pytest.approx([one for one in ANGLES if abs(one - angle) > 1])
+    assert len(angles) == len(ANGLES) - any(abs(one - angle) <= 1 for one in ANGLES)
