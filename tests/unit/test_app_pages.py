@@ -32,6 +32,7 @@ from underfoot.app.session import Exchange, Session
 from underfoot.app.text import LANGUAGES, Text
 from underfoot.app.trials_study import STANDARD, Study
 from underfoot.app.variant_bar import new_variant
+from underfoot.core import silent
 from underfoot.core.errors import Cancelled, InputError
 from underfoot.trials.study.record_signals import Envelope
 
@@ -59,7 +60,7 @@ def shown(build, look):
         async with user_simulation(root=build) as user:
             await user.open("/")
             await asyncio.sleep(0.05)  # timers that begin at once
-            found = look(user.client.elements.values())
+            found = look(cast(Any, user.client).elements.values())
             return await found if asyncio.iscoroutine(found) else found
 
     return asyncio.run(run())
@@ -106,10 +107,12 @@ def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_pat
         wanted = session.text("project.compute_some", count=1)
         await until(lambda: wanted in words_of(elements))
         (button,) = (e for e in elements if isinstance(e, ui.button) and e.text == wanted)
-        seen = bar.value, bar.parent_slot.parent.visible, words_of(elements)
+        seen = bar.value, cast(Any, bar.parent_slot).parent.visible, words_of(elements)
         for each in list(button._event_listeners.values()):
             if each.type == "click":
-                each.handler(SimpleNamespace(sender=button, client=button.client, args={}))
+                cast(Any, each.handler)(
+                    SimpleNamespace(sender=button, client=button.client, args={})
+                )
         await until(lambda: len(session.jobs.tasks) == 3)
         return seen
 
@@ -161,7 +164,7 @@ def test_a_measured_file_comes_into_its_folder_and_into_the_case(tmp_path, monke
             if "drop" in each.classes
         ],
     )
-    assert [re.search(r'"folder": ?"(\w+)"', each)[1] for each in sent] == ["measured"] * 2
+    assert [re.findall(r'"folder": ?"(\w+)"', each)[0] for each in sent] == ["measured"] * 2
     asyncio.run(handler(SimpleNamespace(args={"detail": {"paths": ["measured/scan.csv"]}})))
     text = session.project.path(name).read_text("utf-8")
     assert "../measured/scan.csv" in text
@@ -225,8 +228,8 @@ def queue(folder, answers):
                 raise answer
             return answer
 
-    jobs = Jobs(folder)
-    jobs._lane = lambda _: cast(Any, Lane())
+    jobs: Any = Jobs(folder)
+    jobs._lane = lambda _: Lane()
     return jobs
 
 
@@ -281,12 +284,12 @@ def test_two_soles_are_made_of_equal_land_by_the_width_of_channels_where_one_doe
     monkeypatch.setattr(work_sole, "_land_share", share)
     if rows:
         with pytest.raises(InputError, match="no channel width near"):
-            work_sole.equal_land(*paths, progress=lambda *_: None)
+            work_sole.equal_land(*paths, progress=silent)
         return
-    changes, words = work_sole.equal_land(*paths, progress=lambda *_: None)
+    changes, words = work_sole.equal_land(*paths, progress=silent)
     assert float(changes["shoe.tread.channel_width"].split()[0]) == pytest.approx(3.0, rel=0.02)
     assert words["land"] != words["had"]
-    again, _ = work_sole.equal_land(paths[0], paths[0], progress=lambda *_: None)
+    again, _ = work_sole.equal_land(paths[0], paths[0], progress=silent)
     assert again == {}
 
 
@@ -385,7 +388,7 @@ def test_a_number_of_a_study_is_read_when_its_field_is_left(tmp_path, typed, rea
         field.value = typed
         (left,) = (each for each in field._event_listeners.values() if each.type == "blur")
         with field:
-            await left.handler()
+            await cast(Any, left.handler)()
         return field.error
 
     error = shown(lambda: studies._Study._method(page, "budget", (), {"budget": 5}), look)

@@ -22,7 +22,7 @@ def test_panels_of_a_sensitivity_stand_two_in_a_row(count, rows):
     )
     figure = sensitivity_figure(cast(Any, shown), {name: name for name in names})
     assert len(figure.axes) == count
-    grids = [axes.get_subplotspec().get_gridspec() for axes in figure.axes]
+    grids = [cast(Any, axes.get_subplotspec()).get_gridspec() for axes in figure.axes]
     assert {(grid.nrows, grid.ncols) for grid in grids} == {(rows, 2)}
 
 

@@ -103,7 +103,7 @@ def test_each_sole_has_its_window_its_band_and_its_own_coarse_run(monkeypatch, q
     monkeypatch.setattr(g6, "outcomes", outcomes)
     monkeypatch.setattr(g6, "_friction", lambda *given: SimpleNamespace(law=given[1], given=given))
     monkeypatch.setattr(g6, "_with_draws", lambda one: one)
-    found = g6.sole_frictions(quick=quick, progress=silent)
+    found: Any = g6.sole_frictions(quick=quick, progress=silent)
     assert [(one.given[0], one.law) for one in found] == [
         (sole, law) for law in g6.LAWS for sole in g6.SOLES
     ]
@@ -134,9 +134,8 @@ def test_a_contrast_stands_at_the_places_of_both_of_its_treads(monkeypatch):
     monkeypatch.setattr(tread_pairs, "_published", lambda one, under: (0.1, under))
     monkeypatch.setattr(tread_pairs, "_place", lambda case: np.full(6, case))
     monkeypatch.setattr(tread_pairs, "_pair", lambda *given: given)
-    ((source, effect, case, ends, ratio, second, extremes),) = tread_pairs.computed_pairs(
-        lambda place: 10 * place
-    )
+    computed: Any = tread_pairs.computed_pairs(cast(Any, lambda place: 10 * place))
+    ((source, effect, case, ends, ratio, second, extremes),) = computed
     assert (source, effect, case, extremes) == ("somebody", "tread", 1.0, 0)
     assert ends == (0.1, 20.0)
     assert ratio == pytest.approx(0.5)
@@ -188,7 +187,7 @@ def test_own_shoes_are_drawn_alone_and_beside_their_printed_change():
         curve, printed = panel.layers
         shoe = 1e6 * g1.OWN_SHOE_RZ[material]
         assert np.asarray(curve.y) == pytest.approx(shoe + np.array(g1.SPEEDS))
-        low, high = g1._printed_change("area", "speed", material, own_roughness=True)
+        low, high = cast(Any, g1._printed_change("area", "speed", material, own_roughness=True))
         ends = [float(np.ravel(end)[0]) for end in (printed.low, printed.high)]
         assert ends == pytest.approx([(shoe + 0.1) * (1 + low), (shoe + 0.1) * (1 + high)])
 
