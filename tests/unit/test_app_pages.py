@@ -1,6 +1,7 @@
 """Pages of the app in this process, without browser or server, and the queue behind them."""
 
 import asyncio
+import json
 import re
 from contextlib import nullcontext
 from functools import partial
@@ -10,10 +11,11 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+import xarray as xr
 from nicegui import ui
 from nicegui.testing.user_simulation import user_simulation
 
-from underfoot.app import trials_plots, work_sole
+from underfoot.app import trials_plots, work, work_sole
 from underfoot.app.jobs import (
     DONE,
     FAILED,
@@ -32,7 +34,7 @@ from underfoot.app.session import Exchange, Session
 from underfoot.app.text import LANGUAGES, Text
 from underfoot.app.trials_study import STANDARD, Study
 from underfoot.app.variant_bar import new_variant
-from underfoot.core import silent
+from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
 from underfoot.trials.study.record_signals import Envelope
 
@@ -394,3 +396,41 @@ def test_a_number_of_a_study_is_read_when_its_field_is_left(tmp_path, typed, rea
     error = shown(lambda: studies._Study._method(page, "budget", (), {"budget": 5}), look)
     assert kept == ([] if read is ... else [("method", {"budget": read}, True)])
     assert bool(error) is (read is ...)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_preview_shows_pressures_of_contact_and_film_on_the_sole_as_it_is_turned(
+    tmp_path, monkeypatch, turned
+):
+    session = session_of(tmp_path)
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    stored = {"cof": {"value": 0.2}, "fluid_load": {"value": 90.0}}
+    (tmp_path / "result.json").write_text(json.dumps(stored), encoding="utf-8")
+    total, film = np.full((2, 3), 5.0), np.arange(6.0).reshape(2, 3) / 2
+    seen = SimpleNamespace(
+        sole=SimpleNamespace(joint=None), total_pressure=total, fluid_pressure=film,
+        film_thickness=film, cof=SourcedValue(0.25, "1"), cof_draws=None,
+        errors={"cof": 0.01, "fluid_load": 2.0}, values={"fluid_load": 80.0},
+    )  # fmt: skip
+    asked, degrees = [], {"motion.shoe_angle": "17 deg"} if turned else {}
+
+    def rolled(what, turn, *_):
+        asked.append(np.degrees(turn))
+        return what
+
+    monkeypatch.setattr(work, "preview_of_run", lambda *_, **__: seen)
+    monkeypatch.setattr(work, "rolled_sole", rolled)
+    monkeypatch.setattr(work, "map_fields", lambda _: xr.Dataset())
+    monkeypatch.setattr(work, "designed_surface", lambda *_: "surface")
+    monkeypatch.setattr(work, "rolled_surface", rolled)
+    monkeypatch.setattr(work, "sole_html", lambda drawn, surface: (drawn, surface))
+    path = str(session.project.path(name))
+    shown = work.previewed(path, str(tmp_path), degrees, progress=silent)
+    (drawn, surface), data = shown["html"], shown["html"][0].data
+    assert surface == "surface"
+    assert drawn.name == "a"
+    assert data["contact_pressure"].values == pytest.approx(total - film)
+    assert data["fluid_pressure"].values == pytest.approx(film)
+    own = np.degrees(session.project.case(name).value("motion.shoe_angle"))
+    assert asked == pytest.approx([17 - own if turned else 0.0] * 2)
+    assert (shown["cof"], shown["error"]) == (0.25, 0.01)
