@@ -11,12 +11,13 @@ known yet. A fault meets the tests that run its line, in a copy of the repositor
 that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or, where its line
 runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
 its room (they import its module, themselves or by a helper, or are called ``test_<room>_``), then
-the others; each test once before one comes again with other parameters, the quickest first,
-``--seconds`` of each at most. A line that runs at import meets the tests that run anything of its
-file or are of its room; one that no test runs in this process meets those of its room if it is
-compiled, else those that start a process. What survives is printed with its place: mend the tests,
-or say why it may live. A test that fails without a fault kills nothing; a fault that its room's
-test killed counts as dead while that test and the source stand. Not part of ``make test``.
+the others; those that import the module first, each test once before one comes again with other
+parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets the
+tests that run anything of its file or are of its room; one that no test runs in this process meets
+those of its room if it is compiled, else those that start a process. What survives is printed with
+its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that fails
+without a fault kills nothing; a fault that its room's test killed counts as dead while that test
+and the source stand. Not part of ``make test``.
 """
 
 import ast
@@ -50,6 +51,7 @@ from mutants_warm import NOT_PLANTED, Plan, deaths
 REPOSITORY = Path(__file__).resolve().parents[1]
 SOURCE = Path("src", "underfoot")
 NAMED = Path(__file__).with_suffix(".toml")
+ALIVE = Path(__file__).with_name("mutants_alive.toml")
 NO_TESTS_OF_CODE = ("docs", "install")
 QUICK = "not slow and not study and not browser"
 CACHE = "__pycache__"
@@ -239,9 +241,24 @@ def named_faults() -> Iterator[Mutant]:
             yield Mutant(file, start, start + len(old.encode()), new, f"{old!r} -> {new!r}", line)
 
 
-@cache
 def tests_of(file: str) -> tuple[str, ...]:
     """Return the files of tests of a file of the source: that import its module, or of its room."""
+    nearest, others = nearest_and_others(file)
+    return (*nearest, *others)
+
+
+@cache
+def may_live() -> dict[tuple[str, str], str]:
+    """Return why faults of ``mutants_alive.toml`` may live, by file and fault."""
+    text = ALIVE.read_text(encoding="utf-8") if ALIVE.exists() else ""
+    return {
+        (file, fault): why for file, faults in tomllib.loads(text).items() for fault, why in faults
+    }
+
+
+@cache
+def nearest_and_others(file: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the files of tests that import the module of a file, and the others of its room."""
     parts = Path(file).with_suffix("").parts
     module, room = ".".join(("underfoot", *parts)), parts[0]
     names = (module, f"from {module.rpartition('.')[0]} import {parts[-1]}\n")
@@ -252,7 +269,7 @@ def tests_of(file: str) -> tuple[str, ...]:
             nearest.append(path)
         elif Path(path).name.startswith(f"test_{room}_") or f"underfoot.{room}" in text:
             others.append(path)
-    return (*nearest, *others)
+    return tuple(nearest), tuple(others)
 
 
 @cache
@@ -267,6 +284,7 @@ def test_texts() -> tuple[tuple[str, str], ...]:
     )
 
 
+@cache
 def with_helpers(text: str) -> str:
     """Return a text of tests with those of the helpers in ``tests`` that it imports."""
     paths = (REPOSITORY / "tests" / f"{name}.py" for name in re.findall(IMPORTED, text))
@@ -359,14 +377,21 @@ def statement_lines(file: str, line: int) -> tuple[int, int]:
     return around[-1] if around else (-1, -1)
 
 
-def in_turn(tests: Iterable[Test], seconds: float) -> list[Test]:
-    """Return tests, each once before one comes again with other parameters, quickest first."""
+def in_turn(tests: Iterable[Test], seconds: float, first: tuple[str, ...] = ()) -> list[Test]:
+    """Return tests, each once before one comes again with other parameters, quickest first.
+
+    Those in files of ``first`` come before all others.
+    """
     forms: dict[str, list[Test]] = defaultdict(list)
     for one in sorted(tests, key=lambda test: test.seconds):
         forms[one.name.partition("[")[0]].append(one)
-    ranked = [(rank, one.seconds, one) for form in forms.values() for rank, one in enumerate(form)]
+    ranked = [
+        (one.file not in first, rank, one.seconds, one)
+        for form in forms.values()
+        for rank, one in enumerate(form)
+    ]
     chosen, files, total = list[Test](), set[str](), 0.0
-    for _, _, one in sorted(ranked):
+    for *_, one in sorted(ranked):
         if one.file not in files and len(files) == MOST_FILES:
             continue
         files.add(one.file)
@@ -562,9 +587,15 @@ class Answer(NamedTuple):
     own: bool
     met: int
 
+    @property
+    def why(self) -> str:
+        """Why the fault may live; empty where nobody said."""
+        return may_live().get((self.mutant.file, self.mutant.shown.partition(": ")[2]), "")
+
     def __str__(self) -> str:
         word = "ALIVE " if self.killer is None else "own   " if self.own else "other "
-        end = f"{self.met} tests" if self.killer is None else self.killer or "at import"
+        alive = f"may live: {self.why}" if self.why else f"{self.met} tests"
+        end = alive if self.killer is None else self.killer or "at import"
         return f"{word} {self.mutant}   <- {end}"
 
 
@@ -587,7 +618,8 @@ def met(
             answers.append(Answer(mutant, killer, True, 0))
             continue
         meeting, files = lines.meeting(mutant), tests_of(mutant.file)
-        near = in_turn((one for one in meeting if one.file in files), seconds)
+        nearest = nearest_and_others(mutant.file)[0]
+        near = in_turn((one for one in meeting if one.file in files), seconds, nearest)
         others = [] if own_only else [one for one in meeting if one.file not in files]
         plans[mutant] = near, in_turn(others, seconds)
         if not any(plans[mutant]):
@@ -675,14 +707,15 @@ def main() -> None:
     if lines.false:
         names = sorted(lines.false)
         print("These tests fail in a copy without a fault, and kill none:", *names, sep="\n  ")
-    print(f"{'room':14} faults  own  quick   (seed {given.seed})")
+    print(f"{'room':14} faults  own  quick  may live   (seed {given.seed})")
     for room in (*(given.rooms or rooms), ""):
         of_room = [one for one in answers if one.mutant.file.startswith(f"{room}/" if room else "")]
         dead = [one for one in of_room if one.killer is not None]
         if of_room:
             own = sum(one.own for one in dead)
             quick = "-" if given.own else len(dead)
-            print(f"{room or 'all':14} {len(of_room):6} {own:4} {quick:>6}")
+            allowed = sum(bool(one.why) for one in of_room if one.killer is None)
+            print(f"{room or 'all':14} {len(of_room):6} {own:4} {quick:>6} {allowed:9}")
 
 
 if __name__ == "__main__":

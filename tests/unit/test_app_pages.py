@@ -1,6 +1,7 @@
 """Pages of the app in this process, without browser or server, and the queue behind them."""
 
 import asyncio
+import json
 import re
 from contextlib import nullcontext
 from functools import partial
@@ -10,10 +11,11 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+import xarray as xr
 from nicegui import ui
 from nicegui.testing.user_simulation import user_simulation
 
-from underfoot.app import trials_plots, work_sole
+from underfoot.app import trials_plots, work, work_sole
 from underfoot.app.jobs import (
     DONE,
     FAILED,
@@ -32,6 +34,7 @@ from underfoot.app.session import Exchange, Session
 from underfoot.app.text import LANGUAGES, Text
 from underfoot.app.trials_study import STANDARD, Study
 from underfoot.app.variant_bar import new_variant
+from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
 from underfoot.trials.study.record_signals import Envelope
 
@@ -59,10 +62,18 @@ def shown(build, look):
         async with user_simulation(root=build) as user:
             await user.open("/")
             await asyncio.sleep(0.05)  # timers that begin at once
-            found = look(user.client.elements.values())
+            found = look(cast(Any, user.client).elements.values())
             return await found if asyncio.iscoroutine(found) else found
 
     return asyncio.run(run())
+
+
+async def until(holds):
+    """Wait until something holds, for 20 s at most."""
+    for _ in range(400):
+        if holds():
+            return
+        await asyncio.sleep(0.05)
 
 
 def words_of(elements):
@@ -94,15 +105,17 @@ def test_a_project_shows_how_far_its_runs_are_and_queues_those_that_lack(tmp_pat
     page = next(each for each in PAGES if each.route == "/project")
 
     async def look(elements):
-        await asyncio.sleep(0.3)
         (bar,) = (each for each in elements if isinstance(each, ui.linear_progress))
         wanted = session.text("project.compute_some", count=1)
+        await until(lambda: wanted in words_of(elements))
         (button,) = (e for e in elements if isinstance(e, ui.button) and e.text == wanted)
-        seen = bar.value, bar.parent_slot.parent.visible, words_of(elements)
+        seen = bar.value, cast(Any, bar.parent_slot).parent.visible, words_of(elements)
         for each in list(button._event_listeners.values()):
             if each.type == "click":
-                each.handler(SimpleNamespace(sender=button, client=button.client, args={}))
-        await asyncio.sleep(0.1)
+                cast(Any, each.handler)(
+                    SimpleNamespace(sender=button, client=button.client, args={})
+                )
+        await until(lambda: len(session.jobs.tasks) == 3)
         return seen
 
     value, visible, lines = shown(lambda: page.build(session), look)
@@ -153,7 +166,7 @@ def test_a_measured_file_comes_into_its_folder_and_into_the_case(tmp_path, monke
             if "drop" in each.classes
         ],
     )
-    assert [re.search(r'"folder": ?"(\w+)"', each)[1] for each in sent] == ["measured"] * 2
+    assert [re.findall(r'"folder": ?"(\w+)"', each)[0] for each in sent] == ["measured"] * 2
     asyncio.run(handler(SimpleNamespace(args={"detail": {"paths": ["measured/scan.csv"]}})))
     text = session.project.path(name).read_text("utf-8")
     assert "../measured/scan.csv" in text
@@ -217,8 +230,8 @@ def queue(folder, answers):
                 raise answer
             return answer
 
-    jobs = Jobs(folder)
-    jobs._lane = lambda _: cast(Any, Lane())
+    jobs: Any = Jobs(folder)
+    jobs._lane = lambda _: Lane()
     return jobs
 
 
@@ -236,7 +249,7 @@ def test_a_job_ends_done_stopped_or_failed_and_what_follows_one_that_is_done_is_
         running = asyncio.create_task(jobs.run())
         for task in tasks:
             await jobs.finished(task)
-        await asyncio.sleep(0.05)
+        await until(lambda: not any(task.open for task in jobs.tasks.values()))
         running.cancel()
 
     asyncio.run(run())
@@ -273,12 +286,12 @@ def test_two_soles_are_made_of_equal_land_by_the_width_of_channels_where_one_doe
     monkeypatch.setattr(work_sole, "_land_share", share)
     if rows:
         with pytest.raises(InputError, match="no channel width near"):
-            work_sole.equal_land(*paths, progress=lambda *_: None)
+            work_sole.equal_land(*paths, progress=silent)
         return
-    changes, words = work_sole.equal_land(*paths, progress=lambda *_: None)
+    changes, words = work_sole.equal_land(*paths, progress=silent)
     assert float(changes["shoe.tread.channel_width"].split()[0]) == pytest.approx(3.0, rel=0.02)
     assert words["land"] != words["had"]
-    again, _ = work_sole.equal_land(paths[0], paths[0], progress=lambda *_: None)
+    again, _ = work_sole.equal_land(paths[0], paths[0], progress=silent)
     assert again == {}
 
 
@@ -377,9 +390,47 @@ def test_a_number_of_a_study_is_read_when_its_field_is_left(tmp_path, typed, rea
         field.value = typed
         (left,) = (each for each in field._event_listeners.values() if each.type == "blur")
         with field:
-            await left.handler()
+            await cast(Any, left.handler)()
         return field.error
 
     error = shown(lambda: studies._Study._method(page, "budget", (), {"budget": 5}), look)
     assert kept == ([] if read is ... else [("method", {"budget": read}, True)])
     assert bool(error) is (read is ...)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_preview_shows_pressures_of_contact_and_film_on_the_sole_as_it_is_turned(
+    tmp_path, monkeypatch, turned
+):
+    session = session_of(tmp_path)
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    stored = {"cof": {"value": 0.2}, "fluid_load": {"value": 90.0}}
+    (tmp_path / "result.json").write_text(json.dumps(stored), encoding="utf-8")
+    total, film = np.full((2, 3), 5.0), np.arange(6.0).reshape(2, 3) / 2
+    seen = SimpleNamespace(
+        sole=SimpleNamespace(joint=None), total_pressure=total, fluid_pressure=film,
+        film_thickness=film, cof=SourcedValue(0.25, "1"), cof_draws=None,
+        errors={"cof": 0.01, "fluid_load": 2.0}, values={"fluid_load": 80.0},
+    )  # fmt: skip
+    asked, degrees = [], {"motion.shoe_angle": "17 deg"} if turned else {}
+
+    def rolled(what, turn, *_):
+        asked.append(np.degrees(turn))
+        return what
+
+    monkeypatch.setattr(work, "preview_of_run", lambda *_, **__: seen)
+    monkeypatch.setattr(work, "rolled_sole", rolled)
+    monkeypatch.setattr(work, "map_fields", lambda _: xr.Dataset())
+    monkeypatch.setattr(work, "designed_surface", lambda *_: "surface")
+    monkeypatch.setattr(work, "rolled_surface", rolled)
+    monkeypatch.setattr(work, "sole_html", lambda drawn, surface: (drawn, surface))
+    path = str(session.project.path(name))
+    shown = work.previewed(path, str(tmp_path), degrees, progress=silent)
+    (drawn, surface), data = shown["html"], shown["html"][0].data
+    assert surface == "surface"
+    assert drawn.name == "a"
+    assert data["contact_pressure"].values == pytest.approx(total - film)
+    assert data["fluid_pressure"].values == pytest.approx(film)
+    own = np.degrees(session.project.case(name).value("motion.shoe_angle"))
+    assert asked == pytest.approx([17 - own if turned else 0.0] * 2)
+    assert (shown["cof"], shown["error"]) == (0.25, 0.01)

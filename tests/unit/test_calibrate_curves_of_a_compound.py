@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.calibrate.compound import _beside, _relaxed, relaxation_of
+from underfoot.calibrate.compound import Compound, _beside, _relaxed, relaxation_of
 from underfoot.material.curves import RelaxationCurve
 
 
@@ -52,3 +52,22 @@ def test_a_sweep_and_a_relaxation_test_that_share_no_time_are_not_compared():
 
     assert "share no time" in _beside(fitted(1.0, 100.0), fitted(1e-3, 1 / 1.5))
     assert "1.00 times" in _beside(fitted(1.0, 100.0), fitted(1e-3, 1 / 0.8))
+
+
+@pytest.mark.parametrize(
+    ("tested", "first", "last"),
+    [(None, 1e-2, 1e6), ((0.2, 20.0), 1e-2, 1e6), ((7e3, 7e7), 1e2, 1e8)],
+)
+def test_losses_are_shown_at_whole_decades_of_what_was_tested_and_of_sliding(tested, first, last):
+    """Waves of 0.8 mm to 2.5 um at 0.3 m/s pass 375 to 120,000 times a second."""
+    shown = []
+    made: Any = SimpleNamespace(
+        spectrum=object(),
+        tested=tested,
+        fit=None,
+        _loss=lambda n, w, band: shown.append(w) or ("",),
+    )
+    Compound._losses(made)
+    hertz = np.array(shown) / (2 * np.pi)
+    assert hertz[[0, -1]] == pytest.approx([first, last])
+    assert np.diff(np.log10(hertz)) == pytest.approx(1.0)

@@ -48,7 +48,7 @@ def test_a_theory_takes_the_modulus_at_the_rate_of_the_longest_wave_and_the_whol
         rubber=lambda: SimpleNamespace(complex_modulus=modulus),
     )  # fmt: skip
     option: Any = SimpleNamespace(_law=lambda *given: given)
-    q, density, magnitude, _ = PerssonContact.build(option, cast(Any, context))
+    q, density, magnitude, _ = cast(Any, PerssonContact.build(option, cast(Any, context)))
     assert told["rate"] == pytest.approx(2 * math.pi * abs(speed) / wave)
     assert magnitude == pytest.approx(5e6)
     assert 2 * math.pi * np.trapezoid(q * density, q) == pytest.approx(rq**2)

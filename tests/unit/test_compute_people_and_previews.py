@@ -5,10 +5,14 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from underfoot.case import Case
 from underfoot.compute import continuation
+from underfoot.compute.micro_contact import MicroContact
+from underfoot.compute.position_draws import UncertainBevel
+from underfoot.compute.read import _last_instant
 from underfoot.compute.slips import slip_population
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
@@ -46,3 +50,42 @@ def test_a_preview_keeps_the_sole_where_nothing_makes_another(case, monkeypatch,
     parts: Any = SimpleNamespace(case=case, spacing=1e-3, sole="sole", compliance="compliance")
     continuation._changed(parts, case.replace(changes))
     assert asked["at"] == (("sole", "compliance") if kept else None)
+
+
+@pytest.mark.parametrize(("angle", "uncertain"), [("8 deg", True), ("0 deg", False)])
+def test_a_bevel_is_uncertain_where_there_is_one(case, angle, uncertain):
+    path = "shoe.heel.profile.angle"
+    assumed = case.replace(path, {"value": angle, "assumed": True})
+    assert (UncertainBevel.of(assumed) is not None) is uncertain
+    own = case.replace(path, {"value": angle, "uncertainty": "1 deg"})
+    bevel = UncertainBevel.of(own)
+    if uncertain:
+        assert bevel is not None
+        assert math.degrees(bevel.deviation) == pytest.approx(1.0)
+        assert not bevel.assumed
+    else:
+        assert bevel is None
+
+
+def test_shares_of_a_rough_contact_end_at_one_and_its_gap_does_not():
+    table: Any = SimpleNamespace(
+        description="made", real_contact_fraction=lambda *_: 0.9, cof_hysteresis=lambda *_: 0.05,
+        mean_gap=lambda *_: 3.0, flow_factor=lambda *_, outside: 0.8,
+    )  # fmt: skip
+    found = MicroContact(table, 2e5, 0.3, 0.4, 0.4, 0.4).scalars()
+    factor = math.exp(1.96 * 0.4)
+    ends = {name: one.interval for name, one in found.items()}
+    assert ends["micro_contact"] == pytest.approx((0.9 / factor, 1.0))
+    assert ends["micro_flow"] == pytest.approx((0.8 / factor, 1.0))
+    assert ends["micro_hysteresis"] == pytest.approx((0.05 / factor, 0.05 * factor))
+    assert ends["micro_gap"] == pytest.approx((3.0 / factor, 3.0 * factor))
+
+
+def test_a_motion_that_turns_tells_the_angle_at_its_end():
+    history = SimpleNamespace(
+        shoe_angle=np.radians([20.0, 9.0, 4.0]), speed=np.array([1.0, 0.6, 0.5])
+    )
+    made: Any = SimpleNamespace(
+        motion=SimpleNamespace(build=lambda: history, end_time=0.2), contaminant=None
+    )
+    assert _last_instant(made) == "at the end of the motion (200 ms, shoe angle 4 deg)"

@@ -26,6 +26,9 @@ FILES = {
         "    return value\n\n\n"
         "def half(value, two):\n    return value / two\n"
     ),
+    "tests/mutants_alive.toml": (
+        '"bare/alone.py" = [["return value [+ -> -] value", "nobody asks"]]\n'
+    ),
     "tests/unit/test_loop_count.py": (
         "from underfoot.loop.count import down, half\n\n\n"
         "def test_down():\n    assert down(3, 1) == 0\n\n\n"
@@ -64,12 +67,14 @@ def test_what_has_no_test_lives_what_never_ends_dies_and_a_red_test_kills_none(h
     assert re.search(r"fail without a fault, and kill none:\s+tests/\S+::test_red\n", printed)
     answers = re.findall(r"(?m)^(\w+) +(\S+): line \d+: .*(\[.*\]).* <- (.*)$", printed)
     assert sorted(answers) == [
-        ("ALIVE", "bare/alone.py", "[+ -> -]", "0 tests"),
+        ("ALIVE", "bare/alone.py", "[+ -> -]", "may live: nobody asks"),
         ("ALIVE", "loop/count.py", "[/ -> *]", "0 tests"),  # only the red test would see it
         ("own", "loop/count.py", "[- -> +]", "tests/unit/test_loop_count.py::test_down"),
     ]
-    rooms = re.findall(r"(?m)^(bare|loop|all) +(\d+) +(\d+) +(\d+)$", printed)
-    assert rooms == [("bare", "1", "0", "0"), ("loop", "2", "1", "1"), ("all", "3", "1", "1")]
+    rooms = re.findall(r"(?m)^(bare|loop|all) +(\d+) +(\d+) +(\d+) +(\d+)$", printed)
+    assert rooms == [
+        ("bare", "1", "0", "0", "1"), ("loop", "2", "1", "1", "0"), ("all", "3", "1", "1", "1")
+    ]  # fmt: skip
 
 
 def test_a_room_that_is_not_there_is_refused_with_those_that_are(house):

@@ -27,7 +27,7 @@ def known_shape():
 def full_run(walker, status=Status.CONVERGED):
     motion = replace(slippery_sole().motion(walker), status=status)
     none = np.zeros(motion.time.size)
-    maps = known_shape().maps(motion)
+    maps: Any = known_shape().maps(motion)
     return FullRun(motion, maps, none + 1e-3, none, maps[:, :, 0], MAP_X, np.array([2e5, 3e-6]))
 
 
@@ -88,8 +88,9 @@ def test_everybody_slips_by_the_fitted_sole_over_the_fitted_pressure(made):
 
 def test_people_hold_their_shoe_angle_unless_the_recorded_fall_is_asked_for():
     times = np.linspace(0.0, 0.4, 9)
-    for asked, falls in (({}, False), ({"recorded_angle": True}, True)):
-        people = Population(subjects=30, **asked).walkers()
+    asked = Population(subjects=30), Population(subjects=30, recorded_angle=True)
+    for population, falls in zip(asked, (False, True), strict=True):
+        people = population.walkers()
         angles = [each.demands(times)[2] for each in people if each.history.foot_angle is not None]
         assert angles
         assert [bool(np.ptp(angle) > 0.01) for angle in angles] == [falls] * len(angles)

@@ -112,8 +112,9 @@ class MicroResult:
         nominal_area: m^2.
         averages: None when no whole wavelength was slid.
         energy: None where the solver keeps no energies.
-        status, notes, breaches: How it ended.
+        status: How it ended.
         steps, time_step, process_seconds: Count, s, s.
+        notes, breaches: What is to be said of it.
     """
 
     time: np.ndarray
@@ -128,11 +129,11 @@ class MicroResult:
     averages: MicroAverages | None
     energy: EnergyLedger | None
     status: Status
+    steps: int
+    time_step: float
+    process_seconds: float
     notes: tuple[str, ...] = ()
     breaches: tuple[Breach, ...] = ()
-    steps: int = 0
-    time_step: float = 0.0
-    process_seconds: float = 0.0
 
 
 LEAST_RESOLVED = 0.5

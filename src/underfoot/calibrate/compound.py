@@ -47,6 +47,8 @@ SLIDING_WAVES = (0.8e-3, 2.5e-6)
 """Longest and shortest wave (m) of a floor that works the rubber at sliding speed."""
 SLIDING_SPEED = 0.3
 READINGS = 200
+SLOWEST_SHOWN = -2
+"""Decade of the lowest frequency (Hz) of a spectrum of which nobody says where it was tested."""
 STEP_TIMES = (1e-9, 1e6)
 """s: a case keeps the terms between these; faster ones are never stretched, slower ones rest."""
 MOST_TERMS = 32
@@ -156,10 +158,11 @@ class Compound(Presentable):
     def _losses(self) -> Table:
         """Return storage modulus and loss tangent at whole decades, with the 95 % band of a fit."""
         assert self.spectrum is not None
-        low, high = self.tested or (2 * math.pi * 1e-2, 2 * math.pi * 1e4)
-        slow, fast = (2 * math.pi * SLIDING_SPEED / wave for wave in SLIDING_WAVES)
-        ends = np.log10(np.array([min(low, slow), max(high, fast)]) / (2 * math.pi))
-        hertz = 10.0 ** np.arange(math.floor(ends[0]), math.ceil(ends[1]) + 1)
+        slow, fast = (math.log10(SLIDING_SPEED / wave) for wave in SLIDING_WAVES)
+        low, high = SLOWEST_SHOWN, fast
+        if self.tested:
+            low, high = (math.log10(w / (2 * math.pi)) for w in self.tested)
+        hertz = 10.0 ** np.arange(math.floor(min(low, slow)), math.ceil(max(high, fast)) + 1)
         hertz = hertz[:: max(1, hertz.size // 12)]
         frequency = 2 * math.pi * hertz
         band = None if self.fit is None else self.fit.band(frequency)

@@ -21,9 +21,7 @@ study_app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-StudyPath = Annotated[
-    Path, typer.Argument(metavar="STUDY", help="Study file or folder.", show_default=False)
-]
+StudyPath = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file or folder.")]
 Folder = Annotated[
     Path | None, optional("Folder of the study; by default out/NAME of the file.", "--out")
 ]

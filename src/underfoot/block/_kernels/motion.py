@@ -66,11 +66,10 @@ def contact(nodes, mesh, floor, state, control):
     fx = fy = fz = closed = energy = lost = 0.0
     for n in range(size):
         gap = out[0, n]
-        a = area[n]
-        if gap >= 0.0 or a == 0.0:
+        if gap >= 0.0:
             continue
         hx, hy = out[1, n], out[2, n]
-        k = stiffness[n]
+        k = stiffness[n]  # 0, as the area, of nodes that stand for others
         elastic = -k * gap
         push = elastic
         if zeta > 0.0:
@@ -80,7 +79,7 @@ def contact(nodes, mesh, floor, state, control):
                 push = 0.0
             lost += (elastic - push) * rate * dt
         energy += 0.5 * k * gap * gap
-        closed += a
+        closed += area[n]
         f[n] += push * hx
         f[stride + n] += push * hy
         f[2 * stride + n] -= push
