@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from underfoot.core.arrays import AnyArray
+from underfoot.core.threads import on_host
 
 from .krylov import Restriction, Workspace, residual_correction
-from .members import counted, each, flat, members, numbers
+from .members import counted, each, flat, members
 from .operators import Operators
 
 _SWITCH = 1e-5
@@ -131,10 +132,6 @@ class _Batch:
         parts = (None if one is None else members(one, index) for one in fields)
         return _Batch(self.operators.of(index), courses, *parts)
 
-    def each(self, name: str) -> np.ndarray:
-        """Return a number of the course of each member."""
-        return np.array([getattr(course, name) for course in self.courses])
-
     def clipped(self, n: int, height: AnyArray, double: bool) -> tuple[AnyArray, AnyArray, float]:
         """Return (pressure, gap, error) of a member with its negative pressures taken out."""
         course = self.courses[n]
@@ -225,6 +222,7 @@ def _on_grid(
         _Course(n, mean, mean * points, search.reduction) for n, mean in enumerate(mean_pressure)
     ]
     states: dict[int, ContactState] = {}
+    xp = operators.xp
     batch = _Batch(operators, courses, pressure, pressure > 0.0)
     del pressure
     for double in (False, True) if search.exact else (False,):
@@ -252,7 +250,7 @@ def _on_grid(
             batch = _joined(operators, waiting)
             del waiting
             workspace.release()
-            batch.pressure = operators.xp.astype(batch.pressure, operators.xp.float64)
+            batch.pressure = xp.astype(batch.pressure, xp.float64)
     return [states[n] for n in range(len(courses))]
 
 
@@ -263,7 +261,8 @@ def _joined(operators: Operators, batches: list[_Batch]) -> _Batch:
     courses = [course for batch in batches for course in batch.courses]
     fields = zip(*((batch.pressure, batch.contact) for batch in batches), strict=True)
     joined = (operators.xp.concat(one) for one in fields)
-    return _Batch(operators.of([course.number for course in courses]), courses, *joined)
+    members_of = operators.of([course.number for course in courses])
+    return _Batch(members_of, courses, *joined)
 
 
 def _step(
@@ -281,23 +280,24 @@ def _step(
         return [_End.FAILED if over else _End.ON for over in spent]
     xp, began = operators.xp, operators.count
     part = Restriction(batch.contact, xp)
-    if (part.nodes == part.points).any():
-        return _closed(batch, height, search, double, part.nodes == part.points, states)
-    if (part.nodes == 0).any():
-        empty = operators.asarray((part.nodes == 0)[:, None, None])
+    if part.points in part.nodes:
+        return _closed(batch, height, search, [n == part.points for n in part.nodes], states)
+    if 0 in part.nodes:
+        empty = operators.asarray(np.array([[[n == 0]] for n in part.nodes]))
         batch.contact = xp.where(empty, height == xp.max(height), batch.contact)
         part = Restriction(batch.contact, xp)
-    if (batch.each("lowest") < 0.0).any():
-        p = batch.pressure
-        batch.pressure = xp.where(batch.contact, p, xp.zeros_like(p))
     p = batch.pressure
-    load = batch.each("load")
-    missing = load - numbers(xp.sum(flat(p, xp), axis=1))[0]
+    if any(course.lowest < 0.0 for course in courses):
+        p = batch.pressure = xp.where(batch.contact, p, 0.0)
     negligible = 0.3 * search.tolerance if double else max(0.3 * search.tolerance, 1e-7)
-    short = np.abs(missing) > negligible * load
-    if short.any():
-        more = each(np.where(short, missing / part.nodes, 0.0), p)
-        p = batch.pressure = xp.where(batch.contact, p + more, p)
+    loads = on_host(xp.sum(flat(p, xp), axis=1)).tolist()
+    missing = [course.load - load for course, load in zip(courses, loads, strict=True)]
+    short = [
+        lack / nodes if abs(lack) > negligible * course.load else 0.0
+        for lack, nodes, course in zip(missing, part.nodes, courses, strict=True)
+    ]
+    if any(short):
+        p = batch.pressure = xp.where(batch.contact, p + each(short, p), p)
         batch.gap = None
     if batch.gap is None:
         batch.gap = _gap(operators, p, height, double)
@@ -306,7 +306,7 @@ def _step(
     part.centre(residual)
     residual = xp.astype(residual, xp.float32)
     residual *= -1.0
-    reduction = batch.each("reduction")
+    reduction = [course.reduction for course in courses]
     p += part.spread(residual_correction(operators, part, residual, reduction, workspace))
     residual = None
     if double:
@@ -318,11 +318,11 @@ def _step(
     residual -= mean
     residual *= part.take(p)  # the pressure is zero beside the contact
     part = None
-    load_taken = xp.sum(xp.abs(residual), axis=1), xp.sum(flat(p, xp), axis=1)
+    loads_carried = xp.sum(xp.abs(residual), axis=1), xp.sum(flat(p, xp), axis=1)
     residual = None
     least = xp.min(flat(gap, xp), axis=1), xp.min(flat(p, xp), axis=1)
-    for course, told in zip(courses, numbers(*load_taken, *least).T.tolist(), strict=True):
-        carried, total, deepest, lowest = told
+    measured = zip(courses, *on_host(xp.stack((*loads_carried, *least))).tolist(), strict=True)
+    for course, carried, total, deepest, lowest in measured:
         error = max(-deepest, carried / course.load, abs(total / course.load - 1.0))
         course.hear(error, lowest)
         course.products += operators.count - began
@@ -336,7 +336,7 @@ def _step(
     kept = p > 0.0
     batch.contact = kept | ((gap < 0.0) & ~batch.contact)
     del kept
-    if (batch.each("lowest") < 0.0).any():
+    if any(course.lowest < 0.0 for course in courses):
         batch.gap = gap = None
     for n, course in enumerate(courses):
         if double and ends[n] is _End.ON and course.error <= search.tolerance:
@@ -352,8 +352,7 @@ def _closed(
     batch: _Batch,
     height: AnyArray,
     search: Search,
-    double: bool,
-    closed: np.ndarray,
+    closed: list[bool],
     states: dict[int, ContactState],
 ) -> list[_End]:
     """Take the ``closed`` members to full contact, done where no pressure of it is negative."""
@@ -366,20 +365,21 @@ def _closed(
         if search.exact
         else operators.pressure(xp.astype(height, xp.float32))
     )
-    full += each(batch.each("mean_pressure"), full)
+    full += each([course.mean_pressure for course in batch.courses], full)
     touching = full > 0.0
-    everywhere = closed & (counted(flat(touching, xp), xp) == height.shape[-2] * height.shape[-1])
-    ends = [_End.DONE if done else _End.ON for done in everywhere]
+    points, nodes = height.shape[-2] * height.shape[-1], counted(flat(touching, xp), xp)
+    ends = [_End.ON] * len(nodes)
     for n, course in enumerate(batch.courses):
         course.products += int(closed[n])
-        if everywhere[n]:
+        if closed[n] and nodes[n] == points:
+            ends[n] = _End.DONE
             course.history.append(0.0)
             course.error = 0.0
             p = members(full, [n])
             states[course.number] = course.state(p, xp.zeros_like(p))
             states[course.number].full = True
     if _End.ON in ends:
-        taken = operators.asarray(closed[:, None, None])
+        taken = operators.asarray(np.array(closed)[:, None, None])
         batch.pressure = xp.where(taken, xp.astype(full, before.dtype), before)
         batch.contact = xp.where(taken, touching, batch.contact)
     return ends

@@ -1,15 +1,18 @@
 """Minimum-residual correction of the pressure on a given contact, a part of the grid."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
+from operator import gt
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
 
-from .members import counted, each, flat, numbers, products, sums
+from .members import counted, each, flat, products, sums
 from .operators import Operators
 
 _DEPENDENT = 1e-5
@@ -17,6 +20,14 @@ _DEPENDENT = 1e-5
 _GATHER_BELOW = 0.7
 """Share of the grid below which gathering costs less than masked fields (measured, NumPy)."""
 _LARGEST_INT32 = 2**31 - 1
+_NEAR_BELOW = 0.15
+"""Share of the grid below which neighbours alone precondition a contact (measured, NumPy)."""
+_NEAR_FROM = 2**16
+"""Points from which they do: below, a product costs no more than to find them."""
+
+
+_NEAR_STEPS = 2
+"""Times as many steps then: each makes one product for two."""
 
 
 class Restriction:
@@ -40,7 +51,7 @@ class Restriction:
             self._mask = xp.astype(rows, xp.float32)
             self.size = self.points
             return
-        self.size = int(self.nodes[0])
+        self.size = self.nodes[0]
         only = rows[0, :]
         self._index = xp.nonzero(only)[0]
         if xp is np:
@@ -79,14 +90,49 @@ class Restriction:
 
     def centre(self, vector: AnyArray) -> None:
         """Take the mean over the nodes off a vector, in place."""
-        if self.gathered:
-            vector -= self.xp.mean(vector)
-        else:
-            vector -= self._mask * self.mean(vector)
+        mean = self.mean(vector)
+        vector -= mean if self.gathered else self._mask * mean
 
     def mean(self, vector: AnyArray) -> AnyArray:
         """Return the mean over the nodes (members, 1) of a vector."""
         return self.xp.sum(vector, axis=1, keepdims=True) / each(self.nodes, vector)
+
+    def near(self, kernel: np.ndarray) -> Callable[[AnyArray], AnyArray]:
+        """Return the convolution with ``kernel`` (3, 3) on the nodes of a gathered contact.
+
+        Vectors have a zero behind them, that of neighbours out of contact.
+        """
+        xp, (_, rows, columns) = self.xp, self._shape
+        if xp is np:
+            number = np.full(self.points, self.size, np.int32)
+            number[self._index] = np.arange(self.size, dtype=np.int32)
+            zero = np.zeros(1, np.float32)
+        else:
+            number, zero = self._number, self._zero
+        # with a rim of the other side, neighbours lie at fixed distances
+        number = xp.reshape(number, (rows, columns))
+        number = xp.concat((number[-1:, :], number, number[:1, :]), axis=0)
+        number = xp.concat((number[:, -1:], number, number[:, :1]), axis=1)
+        number = xp.reshape(number, (-1,))
+        first = self._index + 2 * (self._index // columns)
+        weights = kernel[::-1, ::-1].ravel()
+        shifts = [a * (columns + 2) + b for a in range(3) for b in range(3)]
+        if xp is np:
+            neighbours = np.empty((self.size, 9), np.int32)
+            for n, shift in enumerate(shifts):
+                neighbours[:, n] = number[shift:][first]
+            ends = np.arange(0, neighbours.size + 1, 9, dtype=np.int32)
+            parts = np.tile(weights, self.size), neighbours.ravel(), ends
+            matrix = csr_array(parts, shape=(self.size, self.size + 1))
+            return lambda vector: (matrix @ np.concat((vector[0], zero)))[None]
+        table = xp.concat([number[shift:][first] for shift in shifts])
+        factors = xp.asarray(np.ascontiguousarray(weights), device=zero.device)
+
+        def convolved(vector: AnyArray) -> AnyArray:
+            around = xp.concat((vector[0, :], zero))[table]
+            return (factors @ xp.reshape(around, (9, -1)))[None, :]
+
+        return convolved
 
 
 class Workspace:
@@ -108,13 +154,13 @@ class Workspace:
         self._directions: AnyArray = None
         self._length = 0
 
-    def rows(self, members: int, size: int, points: int) -> tuple[AnyArray, AnyArray]:
+    def rows(self, members: int, size: int, points: int, times: int) -> tuple[AnyArray, AnyArray]:
         """Return (members, steps, size) of undefined content for images, and for directions or
-        None. ``points`` are those of the grid.
+        None. ``points`` are those of the grid; ``times`` as many steps as usual.
         """
-        room = self._arrays * points
-        both = self.steps * size <= room
-        steps = min(self.steps, max(3, int(min(2.0 * room / size, 1e6))))
+        room, most = self._arrays * points, times * self.steps
+        both = most * size <= room
+        steps = min(most, max(3, int(min(2.0 * room / size, 1e6))))
         shape, end = (members, steps, size), members * steps * size
         if end > self._length or (both and self._directions is None):
             self.release()
@@ -138,27 +184,32 @@ def residual_correction(
     operators: Operators,
     part: Restriction,
     residual: AnyArray,
-    reduction: AnyArray,
+    reduction: Sequence[float],
     workspace: Workspace,
 ) -> AnyArray:
     """Return the correction c with sum c = 0 and A c = residual up to a constant, a row a member.
 
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero
-    sum, images A z orthonormal. A member stops when its residual's norm has fallen by its
-    ``reduction``, all after the workspace's steps. ``residual`` has zero mean and is overwritten.
-    The host waits for the device once a step.
+    sum, images A z orthonormal. Of S the part between neighbours suffices where contact is a small
+    share of the grid: spots are small, and it costs no transform. A member stops when its
+    residual's norm has fallen by its ``reduction``, all after the workspace's steps. ``residual``
+    has zero mean and is overwritten. The host waits for the device once a step.
     """
     xp = operators.xp
     r = residual
-    images, directions = workspace.rows(r.shape[0], part.size, part.points)
+    few = part.gathered and part.size < _NEAR_BELOW * part.points
+    near = few and part.points >= _NEAR_FROM and not operators.soft
+    stiff = part.near(operators.near()) if near else partial(part.through, operators.pressure)
+    times = _NEAR_STEPS if near else 1
+    images, directions = workspace.rows(r.shape[0], part.size, part.points, times)
     steps = images.shape[1]
     triangle = np.zeros((r.shape[0], steps, steps))
     weights = np.zeros((r.shape[0], steps))
-    left = numbers(xp.vecdot(r, r))[0] ** 0.5
-    goal = reduction * left
+    left = [square**0.5 for square in on_host(xp.vecdot(r, r)).tolist()]
+    goal = [share * size for share, size in zip(reduction, left, strict=True)]
     step = 0
-    while step < steps and (going := left > goal).any():
-        z = part.through(operators.pressure, r)
+    while step < steps and any(map(gt, left, goal)):
+        z = stiff(r)
         part.centre(z)
         w = part.through(operators.displacement, z)
         part.centre(w)
@@ -166,26 +217,29 @@ def residual_correction(
         overlap = products(images[:, :step, :], w)
         if step:
             w -= sums(overlap, images[:, :step, :])
-        found = xp.concat((overlap.T, xp.stack((raw, xp.vecdot(w, w), xp.vecdot(w, r)))))
-        *before, raw, square, along = on_host(found).astype(float)
-        going &= square > _DEPENDENT**2 * raw
-        left[~going] = 0.0
-        if not going.any():
+        sizes = (size[:, None] for size in (raw, xp.vecdot(w, w), xp.vecdot(w, r)))
+        scale = []
+        for n, row in enumerate(on_host(xp.concat((overlap, *sizes), axis=1)).tolist()):
+            *before, raw, square, along = row
+            if not (left[n] > goal[n] and square > _DEPENDENT**2 * raw):
+                # no image and a direction of no weight for a member that has stopped
+                left[n], triangle[n, step, step] = 0.0, 1.0
+                scale.append(0.0)
+                continue
+            length = square**0.5
+            triangle[n, :step, step], triangle[n, step, step] = before, length
+            weights[n, step] = weight = along / length
+            # the images are orthonormal
+            left[n] = max(left[n] ** 2 - weight**2, 0.0) ** 0.5
+            scale.append(1.0 / length)
+        if not any(scale):
             break
-        # a member that has stopped gets an empty image, and a direction of no weight
-        length = np.where(going, square, 1.0) ** 0.5
-        if step:
-            triangle[:, :step, step] = np.where(going, before, 0.0).T
-        triangle[:, step, step] = length
-        weights[:, step] = np.where(going, along / length, 0.0)
-        w *= each(going / length, w)
+        w *= each(scale, w)
         images[:, step, :] = w
         if directions is not None:
             directions[:, step, :] = z
-        w *= each(weights[:, step], w)
+        w *= each(weights[:, step].tolist(), w)
         r -= w
-        # the images are orthonormal
-        left = np.maximum(left**2 - weights[:, step] ** 2, 0.0) ** 0.5
         step += 1
     if step == 0:
         return xp.zeros_like(r)
@@ -193,9 +247,9 @@ def residual_correction(
     if directions is not None:
         return sums(operators.asarray(y.astype(np.float32)), directions[:, :step, :])
     # the sum of y times the residuals of each step, by their images; S of it is that of y times z
-    r *= each(y.sum(axis=1), r)
+    r *= each(y.sum(axis=1).tolist(), r)
     factors = (weights[:, :step] * np.cumsum(y, axis=1)).astype(np.float32)
     r += sums(operators.asarray(factors), images[:, :step, :])
-    z = part.through(operators.pressure, r)
+    z = stiff(r)
     part.centre(z)
     return z

@@ -9,10 +9,10 @@ from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import namespace, on_host
 
 
-def each(values: AnyArray, like: AnyArray) -> Any:
+def each(values: Sequence[float], like: AnyArray) -> Any:
     """Return one number a member, as it meets the fields ``like``: a float where there is one."""
-    if values.shape[0] == 1:
-        return float(values[0])
+    if len(values) == 1:
+        return values[0]
     xp = namespace(like)
     column = xp.asarray(values, dtype=like.dtype, device=like.device)
     return xp.reshape(column, (-1, *[1] * (like.ndim - 1)))
@@ -31,17 +31,11 @@ def flat(field: AnyArray, xp: Any) -> AnyArray:
     return xp.reshape(field, (field.shape[0], -1))
 
 
-def numbers(*values: AnyArray) -> np.ndarray:
-    """Return (values, members) of numbers of each member on the host: one wait for the device."""
-    xp = namespace(values[0])
-    return on_host(xp.stack(values)).astype(float)
-
-
-def counted(inside: AnyArray, xp: Any) -> np.ndarray:
+def counted(inside: AnyArray, xp: Any) -> list[int]:
     """Return how many values of each row are true."""
     if inside.shape[0] == 1:
-        return np.array([int(xp.count_nonzero(inside))])
-    return on_host(xp.count_nonzero(inside, axis=1))
+        return [int(xp.count_nonzero(inside))]
+    return on_host(xp.count_nonzero(inside, axis=1)).tolist()
 
 
 def products(rows: AnyArray, vector: AnyArray) -> AnyArray:

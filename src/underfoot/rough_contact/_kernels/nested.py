@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
-
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform
 
@@ -67,7 +65,7 @@ def solve_nested(
         began = operators.count
         if pressure is None:
             guess = operators.pressure(xp.astype(xp.broadcast_to(heights, size), xp.float32))
-            guess = guess + each(np.array(mean_pressure), guess)
+            guess = guess + each(mean_pressure, guess)
             pressure = xp.clip(guess, 0.0, None)
             del guess
         else:
