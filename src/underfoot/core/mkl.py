@@ -215,7 +215,7 @@ class MklTransform:
             raise MklError(self._library.DftiErrorMessage(ctypes.c_long(status)).decode())
 
 
-def _pointer(array: NDArray[Any]) -> Any:
+def _pointer(array: Any) -> Any:
     """Return a pointer to a contiguous array, in a quarter of ``_address``'s time.
 
     An array that is not to be written to has no buffer to give: its address then.
