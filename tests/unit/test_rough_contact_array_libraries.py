@@ -11,7 +11,7 @@ import pytest
 
 from underfoot.core import Cache, InputError, MissingExtraError
 from underfoot.core import device as devices
-from underfoot.core.fourier import ArrayTransform
+from underfoot.core.fourier import ArrayTransform, transform
 from underfoot.core.mkl import mkl_library
 from underfoot.core.threads import namespace
 from underfoot.material import RelaxationSpectrum
@@ -34,6 +34,9 @@ MATERIAL = RelaxationSpectrum(1e6, [6e5, 6e5], [1e-3, 1e-4])
 CASES = [(0.02, 0.1), (0.1, 1.0), (0.3, 0.0), (0.1, 0.01)]
 GIVEN = {"spacing": 1e-5, "modulus": MATERIAL, "speed": 0.1, "pressure": 2e4}
 ANOTHER_DEVICE = array_api_strict.Device("device1")
+
+
+TRANSFORMS = ("scipy",) if mkl_library() is None else ("scipy", "mkl")
 
 
 def waves(nodes: int = 32) -> np.ndarray:
@@ -71,6 +74,17 @@ def on_host(array: Any) -> np.ndarray:
 
 
 DEVICES = ["strict", "strict device1", "torch cpu", "torch cuda", "cupy"]
+
+
+@pytest.mark.parametrize("library", TRANSFORMS)
+def test_a_field_that_is_not_to_be_written_to_has_its_transform(library):
+    field = rough(64)
+    field.flags.writeable = False
+    there_and_back = transform((1, 64, 64), np.float64, library=library)
+    spectrum = there_and_back.forward(np.broadcast_to(field, (1, 64, 64)))
+    np.testing.assert_allclose(spectrum[0], np.fft.rfft2(field), atol=1e-18)
+    spectrum.flags.writeable = library != "mkl"
+    np.testing.assert_allclose(there_and_back.backward(spectrum)[0], field, atol=1e-18)
 
 
 @pytest.mark.parametrize("device", DEVICES)
@@ -125,7 +139,6 @@ def same_transform(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
-TRANSFORMS = ("scipy",) if mkl_library() is None else ("scipy", "mkl")
 SIZES = [256, pytest.param(512, marks=pytest.mark.slow), pytest.param(1024, marks=pytest.mark.slow)]
 
 
@@ -174,6 +187,35 @@ def test_vectors_on_the_contact_hold_its_nodes_alone_on_every_library(device, sh
     np.testing.assert_allclose(
         on_host(part.spread(vector)), np.where(inside, field - mean, 0), atol=1e-6
     )
+
+
+@pytest.mark.parametrize("device", ["numpy", *DEVICES])
+@pytest.mark.parametrize("shape", [(12, 9), (9, 12), (8, 4)])
+def test_neighbours_are_those_of_the_periodic_grid(device, shape):
+    generator = np.random.default_rng(4)
+    inside = generator.random((1, *shape)) < 0.4
+    field = np.where(inside, generator.standard_normal(inside.shape), 0.0).astype(np.float32)
+    kernel = generator.standard_normal((3, 3)).astype(np.float32)
+    there = [array if device == "numpy" else on_device(array, device) for array in (inside, field)]
+    part = Restriction(there[0], namespace(there[1]))
+    assert part.gathered
+    whole = sum(
+        kernel[a + 1, b + 1] * np.roll(field, (a, b), (1, 2))
+        for a in (-1, 0, 1)
+        for b in (-1, 0, 1)
+    )
+    convolved = part.spread(part.near(kernel)(part.take(there[1])))
+    np.testing.assert_allclose(on_host(convolved), np.where(inside, whole, 0.0), atol=1e-5)
+
+
+def test_neighbours_hold_what_a_pressure_and_its_displacement_share():
+    """S between neighbours: the answer of a whole product to a displacement of one node."""
+    body = operators.Body(lambda qx: 1.0 + 0.3j * np.sign(qx), lambda q: 1.0 / q, (1e-5, 2e-5), 1.0)
+    one = operators.Operators(body, (1, 16, 12))
+    bump = np.zeros((1, 16, 12), np.float32)
+    bump[0, 3, 5] = 1.0
+    answer = one.pressure(bump)
+    np.testing.assert_allclose(one.near(), answer[0, 2:5, 4:7], rtol=1e-4, atol=1e-2)
 
 
 LOADS = [(p, v) for v in (0.01, 1.0) for p in (3e3, 2e4, 1e5, 3e6)]  # the last in full contact
@@ -258,6 +300,36 @@ def test_an_array_of_another_device_in_place_of_a_number_is_refused(device, name
     assert refused_input(lambda: steady_sliding(waves(), **{**GIVEN, name: two})) == name
 
 
+@pytest.mark.parametrize("device", ["numpy", *DEVICES])
+def test_loads_side_by_side_are_refused_like_one(device):
+    height: Any = waves() if device == "numpy" else on_device(waves(), device)
+    there = np.array([0.1, 0.2]) if device == "numpy" else on_device(np.array([0.1, 0.2]), device)
+    wrong: dict[str, list[Any]] = {"pressure": [0.0, np.nan, there], "speed": [np.inf, there]}
+    for name, values in wrong.items():
+        for value in values:
+            one = {"pressure": 2e4, "speed": 0.1, name: value}
+            loads = [(2e4, 0.1), (one["pressure"], one["speed"])]
+            with pytest.raises(InputError) as alone:
+                steady_sliding(height, **{**GIVEN, **one})
+            with pytest.raises(InputError) as batch:
+                contacts_of(height, 1e-5, MATERIAL, loads)
+            assert alone.value.where == batch.value.where == name
+            assert str(alone.value) == str(batch.value)
+    assert contacts_of(height, 1e-5, MATERIAL, []) == []
+
+
+def test_a_batch_is_as_large_as_the_memory_and_refused_beyond(monkeypatch):
+    points = 32 * 32
+    free = 8 * sliding_input.BATCH_ARRAYS * points * 3
+    assert sliding_input.batch_size(points, free) == 3
+    assert sliding_input.batch_size(points, None) == sliding_input._BATCH // points
+    assert sliding_input.batch_size(8192**2, 0) == 1  # refused by the contact itself
+    monkeypatch.setattr(sliding_input, "free_memory", lambda _: free)
+    loads = [(p, 0.1) for p in (1e4, 2e4, 3e4, 4e4)]
+    assert len(contacts_of(waves(), 1e-5, MATERIAL, loads[:3])) == 3
+    assert refused_input(lambda: contacts_of(waves(), 1e-5, MATERIAL, loads)) == "height"
+
+
 def test_what_lies_on_another_device_is_refused_where_numpy_computes():
     there = on_device(waves(), "strict device1")
     calls = {
@@ -325,6 +397,17 @@ def test_a_contact_that_does_not_fit_is_refused_before_it_starts(monkeypatch):
     assert refused_input(lambda: steady_sliding(waves(), **GIVEN)) == "height"
     monkeypatch.setattr(sliding_input, "free_memory", lambda _: 8 * sliding_input.ARRAYS * 32 * 32)
     assert steady_sliding(waves(), **GIVEN).status.usable
+
+
+def test_a_batch_takes_the_memory_that_its_size_counts_on():
+    height = rough(128)
+    loads = [(p, 0.1) for p in (3e3, 2e4, 1e5, 3e6)]
+    tracemalloc.start()
+    contacts_of(height, 1e-5, MATERIAL, loads)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    whole = len(loads) * height.nbytes
+    assert 0.5 * sliding_input.BATCH_ARRAYS * whole < peak < sliding_input.BATCH_ARRAYS * whole
 
 
 @pytest.mark.slow

@@ -50,7 +50,7 @@ def host_array(values: Any, where: str, allowed: str, remedy: str = "") -> Any:
         return np.asarray(values)
     except (TypeError, ValueError, RuntimeError) as error:
         raise InputError(
-            f"{where} is a {type(values).__name__} that NumPy can't read ({error})",
+            f"{where} ({type(values).__name__}) can't be read by NumPy: {error}",
             where=where,
             allowed=allowed,
             remedy=remedy or "Bring it to the processor first, for example numpy.asarray(x.cpu())",

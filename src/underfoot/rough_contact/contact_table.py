@@ -40,7 +40,7 @@ Direction = Literal["along", "across", "mean"]
 _FORMAT = 1
 _ARRAYS = ("pressure", "speed", "realizations")
 _TEXTS = ("description", "key", "notes", "out_of_range")
-ROOM = "contact_table-3"
+ROOM = "contact_table-4"
 """Of the cache; raised when the numbers or the form of a part change."""
 _REFINEMENT = 8
 BELONG = ": contact fraction and hysteresis belong to this shortest wave"

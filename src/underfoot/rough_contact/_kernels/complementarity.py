@@ -222,6 +222,7 @@ def _on_grid(
         _Course(n, mean, mean * points, search.reduction) for n, mean in enumerate(mean_pressure)
     ]
     states: dict[int, ContactState] = {}
+    xp = operators.xp
     batch = _Batch(operators, courses, pressure, pressure > 0.0)
     del pressure
     for double in (False, True) if search.exact else (False,):
@@ -249,7 +250,7 @@ def _on_grid(
             batch = _joined(operators, waiting)
             del waiting
             workspace.release()
-            batch.pressure = operators.xp.astype(batch.pressure, operators.xp.float64)
+            batch.pressure = xp.astype(batch.pressure, xp.float64)
     return [states[n] for n in range(len(courses))]
 
 
@@ -260,7 +261,8 @@ def _joined(operators: Operators, batches: list[_Batch]) -> _Batch:
     courses = [course for batch in batches for course in batch.courses]
     fields = zip(*((batch.pressure, batch.contact) for batch in batches), strict=True)
     joined = (operators.xp.concat(one) for one in fields)
-    return _Batch(operators.of([course.number for course in courses]), courses, *joined)
+    members_of = operators.of([course.number for course in courses])
+    return _Batch(members_of, courses, *joined)
 
 
 def _step(
@@ -286,7 +288,7 @@ def _step(
         part = Restriction(batch.contact, xp)
     p = batch.pressure
     if any(course.lowest < 0.0 for course in courses):
-        p = batch.pressure = xp.where(batch.contact, p, xp.zeros_like(p))
+        p = batch.pressure = xp.where(batch.contact, p, 0.0)
     negligible = 0.3 * search.tolerance if double else max(0.3 * search.tolerance, 1e-7)
     loads = on_host(xp.sum(flat(p, xp), axis=1)).tolist()
     missing = [course.load - load for course, load in zip(courses, loads, strict=True)]

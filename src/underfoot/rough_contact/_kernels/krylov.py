@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from operator import gt
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
@@ -18,6 +20,14 @@ _DEPENDENT = 1e-5
 _GATHER_BELOW = 0.7
 """Share of the grid below which gathering costs less than masked fields (measured, NumPy)."""
 _LARGEST_INT32 = 2**31 - 1
+_NEAR_BELOW = 0.15
+"""Share of the grid below which neighbours alone precondition a contact (measured, NumPy)."""
+_NEAR_FROM = 2**16
+"""Points from which they do: below, a product costs no more than to find them."""
+
+
+_NEAR_STEPS = 2
+"""Times as many steps then: each makes one product for two."""
 
 
 class Restriction:
@@ -87,6 +97,43 @@ class Restriction:
         """Return the mean over the nodes (members, 1) of a vector."""
         return self.xp.sum(vector, axis=1, keepdims=True) / each(self.nodes, vector)
 
+    def near(self, kernel: np.ndarray) -> Callable[[AnyArray], AnyArray]:
+        """Return the convolution with ``kernel`` (3, 3) on the nodes of a gathered contact.
+
+        Vectors have a zero behind them, that of neighbours out of contact.
+        """
+        xp, (_, rows, columns) = self.xp, self._shape
+        if xp is np:
+            number = np.full(self.points, self.size, np.int32)
+            number[self._index] = np.arange(self.size, dtype=np.int32)
+            zero = np.zeros(1, np.float32)
+        else:
+            number, zero = self._number, self._zero
+        # with a rim of the other side, neighbours lie at fixed distances
+        number = xp.reshape(number, (rows, columns))
+        number = xp.concat((number[-1:, :], number, number[:1, :]), axis=0)
+        number = xp.concat((number[:, -1:], number, number[:, :1]), axis=1)
+        number = xp.reshape(number, (-1,))
+        first = self._index + 2 * (self._index // columns)
+        weights = kernel[::-1, ::-1].ravel()
+        shifts = [a * (columns + 2) + b for a in range(3) for b in range(3)]
+        if xp is np:
+            neighbours = np.empty((self.size, 9), np.int32)
+            for n, shift in enumerate(shifts):
+                neighbours[:, n] = number[shift:][first]
+            ends = np.arange(0, neighbours.size + 1, 9, dtype=np.int32)
+            parts = np.tile(weights, self.size), neighbours.ravel(), ends
+            matrix = csr_array(parts, shape=(self.size, self.size + 1))
+            return lambda vector: (matrix @ np.concat((vector[0], zero)))[None]
+        table = xp.concat([number[shift:][first] for shift in shifts])
+        factors = xp.asarray(np.ascontiguousarray(weights), device=zero.device)
+
+        def convolved(vector: AnyArray) -> AnyArray:
+            around = xp.concat((vector[0, :], zero))[table]
+            return (factors @ xp.reshape(around, (9, -1)))[None, :]
+
+        return convolved
+
 
 class Workspace:
     """Room for the search directions, allocated once and grown when a contact needs more.
@@ -107,13 +154,13 @@ class Workspace:
         self._directions: AnyArray = None
         self._length = 0
 
-    def rows(self, members: int, size: int, points: int) -> tuple[AnyArray, AnyArray]:
+    def rows(self, members: int, size: int, points: int, times: int) -> tuple[AnyArray, AnyArray]:
         """Return (members, steps, size) of undefined content for images, and for directions or
-        None. ``points`` are those of the grid.
+        None. ``points`` are those of the grid; ``times`` as many steps as usual.
         """
-        room = self._arrays * points
-        both = self.steps * size <= room
-        steps = min(self.steps, max(3, int(min(2.0 * room / size, 1e6))))
+        room, most = self._arrays * points, times * self.steps
+        both = most * size <= room
+        steps = min(most, max(3, int(min(2.0 * room / size, 1e6))))
         shape, end = (members, steps, size), members * steps * size
         if end > self._length or (both and self._directions is None):
             self.release()
@@ -143,13 +190,18 @@ def residual_correction(
     """Return the correction c with sum c = 0 and A c = residual up to a constant, a row a member.
 
     Generalised conjugate residuals in single precision: directions z = S r, brought to zero
-    sum, images A z orthonormal. A member stops when its residual's norm has fallen by its
-    ``reduction``, all after the workspace's steps. ``residual`` has zero mean and is overwritten.
-    The host waits for the device once a step.
+    sum, images A z orthonormal. Of S the part between neighbours suffices where contact is a small
+    share of the grid: spots are small, and it costs no transform. A member stops when its
+    residual's norm has fallen by its ``reduction``, all after the workspace's steps. ``residual``
+    has zero mean and is overwritten. The host waits for the device once a step.
     """
     xp = operators.xp
     r = residual
-    images, directions = workspace.rows(r.shape[0], part.size, part.points)
+    few = part.gathered and part.size < _NEAR_BELOW * part.points
+    near = few and part.points >= _NEAR_FROM and not operators.soft
+    stiff = part.near(operators.near()) if near else partial(part.through, operators.pressure)
+    times = _NEAR_STEPS if near else 1
+    images, directions = workspace.rows(r.shape[0], part.size, part.points, times)
     steps = images.shape[1]
     triangle = np.zeros((r.shape[0], steps, steps))
     weights = np.zeros((r.shape[0], steps))
@@ -157,7 +209,7 @@ def residual_correction(
     goal = [share * size for share, size in zip(reduction, left, strict=True)]
     step = 0
     while step < steps and any(map(gt, left, goal)):
-        z = part.through(operators.pressure, r)
+        z = stiff(r)
         part.centre(z)
         w = part.through(operators.displacement, z)
         part.centre(w)
@@ -198,6 +250,6 @@ def residual_correction(
     r *= each(y.sum(axis=1).tolist(), r)
     factors = (weights[:, :step] * np.cumsum(y, axis=1)).astype(np.float32)
     r += sums(operators.asarray(factors), images[:, :step, :])
-    z = part.through(operators.pressure, r)
+    z = stiff(r)
     part.centre(z)
     return z

@@ -10,6 +10,7 @@ import numpy as np
 
 from underfoot.core.arrays import AnyArray
 from underfoot.core.fourier import Transform, transform
+from underfoot.core.threads import on_host
 
 from .members import each, members
 from .periodic import wavenumbers
@@ -73,6 +74,8 @@ class Operators:
         self.fast = self._transform(xp.float32)
         self._exact = exact
         self._spectrum: AnyArray = None
+        self._near: AnyArray = None
+        self.soft = False
 
     def of(self, index: Sequence[int]) -> "Operators":
         """Return those of the members ``index``, which go on with the count."""
@@ -102,10 +105,20 @@ class Operators:
         self.compliance[:, 0, 0] = 0.0
         in_phase = self.xp.real(self.compliance) if self._lossy else self.compliance
         self.stiffness = _inverse(in_phase)
+        self.soft = True
         try:
             yield
         finally:
             self.compliance, self.stiffness = kept, _inverse(kept)
+            self.soft = False
+
+    def near(self) -> AnyArray:
+        """Return S of one member between a node and its neighbours, (3, 3) of NumPy."""
+        if self._near is None:
+            kernel = self.fast.backward(self.xp.astype(self.stiffness, self.stiffness.dtype))
+            rows = [kernel[0, a, b] for a in (-1, 0, 1) for b in (-1, 0, 1)]
+            self._near = on_host(self.xp.stack(rows)).reshape(3, 3)
+        return self._near
 
     def softness_range(self) -> tuple[float, float]:
         """Return the least and the largest compliance of a wave."""
