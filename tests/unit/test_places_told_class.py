@@ -2,6 +2,7 @@
 
 import pytest
 
+from underfoot.places.choice import _ratio
 from underfoot.places.machines import MachinePrediction, machine
 
 
@@ -15,3 +16,10 @@ def test_the_class_of_a_floor_is_told_from_three_quarters_on(chance, told):
     (line,) = shown.headline()
     assert ("no class can be told" not in line) is told
     assert "high slip potential with a probability of" in line
+
+
+@pytest.mark.parametrize(
+    ("value", "told"), [(0.001, "below 0.01"), (0.05, "0.05"), (1.0, "1"), (1000.0, "above 100")]
+)
+def test_a_ratio_of_slips_is_told_within_a_hundred_either_way(value, told):
+    assert _ratio(value) == told

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from slip_floors import slippery_sole
-from underfoot.core import Status
-from underfoot.slip.dynamics import FloorSensors, Population
+from underfoot.core import InputError, Status
+from underfoot.slip.dynamics import FloorSensors, Population, Spread
 from underfoot.slip.dynamics import study as module
 from underfoot.slip.dynamics.full_model import FullRun
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y, PressureShape, pressure_shape
@@ -97,3 +97,11 @@ def test_people_hold_their_shoe_angle_unless_the_recorded_fall_is_asked_for():
         assert [angle[0] for angle in angles] == [
             each.shoe_angle for each in people if each.history.foot_angle is not None
         ]
+
+
+@pytest.mark.parametrize(
+    "numbers", [(np.nan, 0.1), (np.inf, 0.1), (0.2, np.nan), (0.2, np.inf), (0.2, -0.1)]
+)
+def test_a_spread_without_a_finite_mean_and_width_is_refused(numbers):
+    with pytest.raises(InputError):
+        Spread(*numbers)

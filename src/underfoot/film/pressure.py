@@ -277,7 +277,7 @@ class _FilmSolver:
         by_flow = by_fraction / pattern.neighbours_of(carry, outside=1.0)
 
         is_full = pattern.gather(full) | always_full
-        fewest, patience, partly = pattern.size + 1, PATIENCE, False
+        fewest, patience, partly = math.inf, PATIENCE, False
         draw = np.random.default_rng(0)
         iterations = 0
         while True:
