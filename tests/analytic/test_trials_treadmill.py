@@ -127,7 +127,7 @@ def test_the_methods_name_the_belts_and_their_speed(tmp_path):
     simulated_folder("treadmill", tmp_path / "in", count=1)
     analysis = analyse_folder(tmp_path / "in", protocol("level_walking"), processes=1)
     text = " ".join(analysis.methods)
-    assert "treadmill belts at " in text
+    assert "Treadmill belts carried " in text
     assert "level" in text
 
 
