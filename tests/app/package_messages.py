@@ -253,15 +253,22 @@ class Words:
     def __init__(self, words):
         self.exact = {each for each in words if "{}" not in each}
         self.forms, self.known = [], {}
-        for each in words.keys() - self.exact:
+        for each in (one for one in words if "{}" in one):
             pieces = each.split("{}")
             text = "".join(pieces)
             few = re.fullmatch(r"\W*(\w+|\w{1,5} \w{1,5})\W*", text, re.ASCII)
             between = few and not re.search(r"\w", pieces[0] + pieces[-1], re.ASCII)
-            joins = len(text) < 6 or between or not re.search("[A-Za-z]{4}", text)
+            beside = "{} {}" in each and len(text) < 9
+            long = re.search("[A-Za-z]{4}|[A-Z]{2}", text)
+            short = between or beside or len(text) < 6
+            joins, length = short or not long, float(len(text))
+            if short and not re.search(r"[^\w\s]", text):
+                length = len(text) / 1e3 - 1
+            if short and not re.search(r"\w", text):
+                length = 0.0
             form = re.compile("(.+?)".join(map(re.escape, pieces)), re.S)
             whole = joins and re.search("[a-z]", text) is not None
-            self.forms.append((0 if len(text) < 6 else len(text), joins, whole, form))
+            self.forms.append((length, joins, whole, form))
         self.forms.sort(key=lambda each: -each[0])
 
     def has(self, text):

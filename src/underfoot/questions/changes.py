@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from underfoot.core.presentation import quantity_text
+
 if TYPE_CHECKING:
     from underfoot.case import Case
 
@@ -51,7 +53,7 @@ def _possible_changes(case: Case) -> Iterator[Change]:
     channel = case.value("shoe.tread.channel_width")
     if channel and not worn_out:
         wider = 1.5 * channel
-        action = f"channels 50 % wider ({wider * 1e3:.1f} mm)"
+        action = f"channels 50 % wider ({_length(wider)})"
         yield Change("wider_channels", action, "shoe", {"shoe.tread.channel_width": wider})
     hardness = shoe.material.shore_a
     if hardness is not None and shoe.material.modulus is None and hardness - 15 >= SOFTEST:
@@ -59,12 +61,12 @@ def _possible_changes(case: Case) -> Iterator[Change]:
         yield Change("softer_compound", action, "shoe", {"shoe.material.shore_a": hardness - 15})
     rq = shoe.roughness.rq_or_estimate
     if rq is not None and rq <= 15e-6:
-        action = f"abrade the sole to twice its roughness (Rq {2e6 * rq:.0f} µm)"
+        action = f"abrade the sole to twice its roughness (Rq {_length(2 * rq)})"
         values = {"shoe.roughness.rq": 2 * rq, "shoe.roughness.ra": None}
         yield Change("abraded_sole", action, "shoe", values)
     rq = case.floor.roughness.rq_or_estimate
     if rq is not None and rq <= ROUGH_FLOOR_RQ / 2:
-        action = f"a floor of Rq {ROUGH_FLOOR_RQ * 1e6:.0f} µm (as a rough ceramic tile)"
+        action = f"a floor of Rq {_length(ROUGH_FLOOR_RQ)} (as a rough ceramic tile)"
         yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
     viscosity = case.value("contaminant.viscosity") or 0.0
     if viscosity >= THIN:
@@ -82,3 +84,7 @@ def _possible_changes(case: Case) -> Iterator[Change]:
     if mean >= 0.12:
         action = f"shorter, slower steps (required friction {mean - 0.03:.2f} for {mean:.2f})"
         yield Change("shorter_steps", action, "walking", {"risk.rcof_mean": mean - 0.03})
+
+
+def _length(metres: float) -> str:
+    return quantity_text(float(f"{metres:.2g}"), "m")

@@ -11,8 +11,11 @@ for (const [english, other] of Object.entries(spoken.words)) {
   if (!english.includes("{}")) { exactWords.set(english, other); continue; }
   const pieces = english.split("{}"), text = pieces.join("");
   const between = !/\w/.test(pieces[0] + pieces.at(-1)) && /^\W*(\w+|\w{1,5} \w{1,5})\W*$/.test(text);
-  const joins = text.length < 6 || between || !/[A-Za-z]{4}/.test(text);
-  const withWords = joins && /[a-z]/.test(text), fixed = text.length < 6 ? 0 : text.length;
+  const beside = english.includes("{} {}") && text.length < 9; // "over {} {}" takes any three words
+  const short = between || beside || text.length < 6, words = /\w/.test(text), marks = /[^\w\s]/.test(text);
+  const joins = short || !/[A-Za-z]{4}|[A-Z]{2}/.test(text), withWords = joins && /[a-z]/.test(text);
+  // marks part a text before words do: "a; b of the c"
+  const fixed = short && !words ? 0 : short && !marks ? text.length / 1e3 - 1 : text.length;
   sentenceForms.push({ english, pieces, form: null, other, joins, withWords, fixed });
 }
 sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
