@@ -266,9 +266,10 @@ class Words:
                 length = len(text) / 1e3 - 1
             if short and not re.search(r"\w", text):
                 length = 0.0
+            within = short and re.search(r"\w", text) and ";" not in text
             form = re.compile("(.+?)".join(map(re.escape, pieces)), re.S)
             whole = joins and re.search("[a-z]", text) is not None
-            self.forms.append((length, joins, whole, form))
+            self.forms.append((length, joins, whole, within, form))
         self.forms.sort(key=lambda each: -each[0])
 
     def has(self, text):
@@ -298,13 +299,15 @@ class Words:
         return bool(self._by_form(text, small, joins=True))
 
     def _by_form(self, text, small, *, joins):
-        for _, joining, whole, form in self.forms:
+        for _, joining, whole, within, form in self.forms:
             if joining is not joins:
                 continue
             for each in dict.fromkeys(
                 (text, small, text.removesuffix("."), small.removesuffix("."))
             ):
                 parts = form.fullmatch(each)
+                if parts and within and any("; " in part for part in parts.groups()):
+                    continue
                 if parts and (joins or not any(map(BREAK.search, parts.groups()))):
                     known = all(map(self.has, parts.groups()))
                     if known or not whole:

@@ -16,7 +16,8 @@ for (const [english, other] of Object.entries(spoken.words)) {
   const joins = short || !/[A-Za-z]{4}|[A-Z]{2}/.test(text), withWords = joins && /[a-z]/.test(text);
   // marks part a text before words do: "a; b of the c"
   const fixed = short && !words ? 0 : short && !marks ? text.length / 1e3 - 1 : text.length;
-  sentenceForms.push({ english, pieces, form: null, other, joins, withWords, fixed });
+  const within = short && words && !text.includes(";"); // what words join ends at a semicolon
+  sentenceForms.push({ english, pieces, form: null, other, joins, withWords, within, fixed });
 }
 sentenceForms.sort((a, b) => b.fixed - a.fixed); // what joins any two parts comes last, as the file has it
 
@@ -85,12 +86,13 @@ function asForm(core, small, depth, wanted) {
   const spellings = [core, small, ...(core.endsWith(".") ? [core.slice(0, -1), small.slice(0, -1)] : [])];
   const places = [...new Set(core.toLowerCase().match(/[a-z']+/g))].flatMap((word) => byWord.get(word) ?? []);
   for (const place of [...anywhere, ...places].sort((a, b) => a - b)) {
-    const { pieces, other, joins, withWords } = sentenceForms[place];
+    const { pieces, other, joins, withWords, within } = sentenceForms[place];
     if (!wanted(joins)) continue;
     const form = (sentenceForms[place].form ??= formOf(pieces)), as = spellings.find((each) => form.test(each));
     if (as === undefined) continue;
     const parts = form.exec(as).slice(1);
     if (!joins && parts.some((part) => BREAK.test(part))) continue; // each sentence for itself
+    if (within && parts.some((part) => part.includes("; "))) continue;
     if (withWords && parts.some((part) => !isKnown(part, depth))) continue;
     const quoted = (k) => /["„]$/.test(pieces[k]) && /^["“]/.test(pieces[k + 1]);
     const put = (k) => (quoted(k) || isOwn(parts[k]) ? parts[k] : inLanguage(parts[k], depth + 1));
