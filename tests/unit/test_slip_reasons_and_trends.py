@@ -63,12 +63,15 @@ def test_a_walker_is_one_within_the_limits_that_are_told(name, low, high):
                 replace(usual, **{name: value})
 
 
-def test_changes_of_a_sole_are_as_large_as_they_say():
+def test_changes_of_a_sole_are_as_large_as_they_say(monkeypatch):
     case = load(EXAMPLES / "work_shoe_full_tread_glycerol.toml")
     case = case.replace({"shoe.tread.channel_width": "4 mm", "shoe.material.shore_a": 68})
     changes = {one.name: one for one in possible_changes(case)}
     assert changes["wider_channels"].values == {"shoe.tread.channel_width": pytest.approx(6e-3)}
-    assert "6.0 mm" in changes["wider_channels"].action
+    assert changes["wider_channels"].action == "channels 50 % wider (6 mm)"
+    monkeypatch.setenv("UNDERFOOT_UNITS", "us")
+    in_inches = {one.name: one.action for one in possible_changes(case)}
+    assert in_inches["wider_channels"] == "channels 50 % wider (0.236 in)"
     hardness = case.shoe.material.shore_a
     assert changes["softer_compound"].values == {"shoe.material.shore_a": hardness - 15}
     rq = case.shoe.roughness.rq_or_estimate
