@@ -40,6 +40,7 @@ OF_PYTHON = {
     *("NotImplementedError", "RuntimeError", "ImportError", "ValidationError"),
     "PydanticCustomError",
 }
+"""Errors of Python and pydantic: what a caller of a function reads, none on a page."""
 PHRASE = re.compile(r"[A-Za-z]{2}.* .*[A-Za-z]{2}|[a-z]{2,} \{\}|\{\} [a-z]{3,}")
 WORD = re.compile(r"[a-z]{4,}")
 """Of an error one word is a message too: "empty"."""
