@@ -54,8 +54,7 @@ class Text:
     @property
     def script_name(self) -> str:
         """Name of the script as a file, another one for other words: a browser may keep it."""
-        mark = hashlib.sha256(self.script().encode()).hexdigest()[:12]
-        return f"{self.language}-{mark}.js"
+        return _script_name(self.language)
 
     @property
     def comma(self) -> bool:
@@ -96,6 +95,12 @@ def _script(language: str) -> str:
     text = Text(language)
     spoken = as_json({"words": text.of_package(), "decimal": text("frame.decimal")})
     return f'document.documentElement.lang = "{language}"; const spoken = {spoken};'
+
+
+@cache
+def _script_name(language: str) -> str:
+    mark = hashlib.sha256(_script(language).encode()).hexdigest()[:12]
+    return f"{language}-{mark}.js"
 
 
 @cache
