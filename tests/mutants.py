@@ -413,7 +413,7 @@ def copied(folder: Path) -> Path:
     # bytecode and kernels hold while the time of their file does
     for part in ("src", "tests"):
         for made in (REPOSITORY / part).rglob(CACHE):
-            shutil.copytree(made, folder / made.relative_to(REPOSITORY))
+            shutil.copytree(made, folder / made.relative_to(REPOSITORY), dirs_exist_ok=True)
     return folder
 
 
