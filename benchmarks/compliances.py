@@ -7,6 +7,7 @@ angle; half an hour of CPU for all.
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from typing import Any
 
 from underfoot import Case, run
@@ -85,12 +86,11 @@ def numbers(sole: str, grid: str, model: str) -> tuple[float, float]:
     return result.value("cof"), result.value("fluid_load")
 
 
-def main() -> None:
-    """Print one line for each sole and grid."""
-    chosen = [name for name in SOLES if not sys.argv[1:] or name in sys.argv[1:]]
+def main(chosen: Sequence[str] = ()) -> None:
+    """Print one line for each sole and grid; ``chosen``: names of soles, all where empty."""
     print("| sole | grid | COF by layers, elements | film, N | agree |")
     print("|---|---|---|---|---|")
-    for sole in chosen:
+    for sole in chosen or SOLES:
         for grid in GRIDS:
             try:
                 rows = [numbers(sole, grid, model) for model in MODELS]
@@ -108,4 +108,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
