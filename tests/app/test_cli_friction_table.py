@@ -12,7 +12,7 @@ from underfoot.calibrate import law_file_text, law_table, trial_readings
 from underfoot.case import Case
 from underfoot.cli.app import app
 from underfoot.compute.resolve import resolved
-from underfoot.core import DataError
+from underfoot.core import DataError, InputError
 from underfoot.friction import stribeck_cof
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_half_tread_detergent.toml"
@@ -85,6 +85,18 @@ def test_bad_tables_are_refused_with_the_row(folder, text, word):
     )  # fmt: skip
     assert found.exit_code == 2
     assert word in found.stderr
+
+
+@pytest.mark.parametrize("name", ["viscosity", "sd"])
+def test_what_some_readings_lack_is_asked(folder, name):
+    """Viscosities of three readings counted for nothing where the fourth had none."""
+    value = {"viscosity": "50 cP", "sd": 0.02}[name]
+    readings = [{"speed": f"{v} m/s", "cof": 0.2, name: value} for v in (0.1, 0.3, 1)]
+    case = Case.load(folder / "case.toml")
+    lacking = [*readings[:2], {key: readings[2][key] for key in ("speed", "cof")}]
+    with pytest.raises(InputError, match=rf"friction.readings 3.{name}: is missing, other"):
+        case.replace({"friction": {"model": "table", "readings": lacking}})
+    case.replace({"friction": {"model": "table", "readings": readings}})
 
 
 def test_a_missing_table_names_the_nearest(folder):

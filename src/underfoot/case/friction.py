@@ -510,6 +510,14 @@ class TableOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        for name in ("sd", "viscosity"):
+            lacking = [n for n, each in enumerate(self.readings, 1) if getattr(each, name) is None]
+            if 0 < len(lacking) < len(self.readings):
+                yield InputError(
+                    "is missing, other readings have it",
+                    where=f"{where}.readings {lacking[0]}.{name}",
+                    allowed=f"{name} of all readings, or of none",
+                )
         if len({reading.speed for reading in self.readings}) < 2:
             yield InputError(
                 "of one speed only" if self.readings else "are missing",
