@@ -161,6 +161,7 @@ def test_from_trials_to_the_friction_of_a_case(analysed, folder):
         (("--where", "fluid=thn"), 'Did you mean "thin"?'),
         (("--where", "flud=thin"), 'Did you mean "fluid"?'),
         (("--where", "thin"), "CONDITION=VALUE"),
+        (("--where", "fluid=thin", "--where", "fluid=thick"), "fluid is chosen twice"),
         (("--where", "fluid=thick"), "--form readings"),
         (("--where", "fluid=thin", "--form", "fitt"), 'Did you mean "fit"?'),
         (("--where", "fluid=thin", "--pressure", "0 kPa"), "above 0"),

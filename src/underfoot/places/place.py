@@ -17,7 +17,7 @@ from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
 from .joint import Reading
-from .machines import RZ_OVER_RQ, RZ_SPREAD, machine
+from .machines import machine
 
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
 """``ANY_FLOOR_RQ`` as a case writes it."""
@@ -332,10 +332,7 @@ def _floor(
         if "roughness" in entry:
             remedy = "Give the one that was measured"
             raise InputError("stands beside roughness", where=f"{where}.rz", remedy=remedy)
-        rz = to_si(entry["rz"], "m", where=f"{where}.rz")
-        rq, spread = rz / RZ_OVER_RQ, rz * (1 / RZ_SPREAD[0] - 1 / RZ_SPREAD[1]) / 4
-        rq_text = {"value": f"{1e6 * rq:.4g} um", "uncertainty": f"{1e6 * spread:.4g} um"}
-        section["roughness"] = {"rq": rq_text}
+        section["roughness"] = {"rz": entry["rz"]}
         assumed.append(f"{where}.roughness: Rq is Rz over 4 to 8")
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
