@@ -37,7 +37,7 @@ def assumptions(case: Case) -> list[Remark]:
                 rq = display(roughness.rq_or_estimate or 0.0, "m")
                 told = f"rq = {rq} (1.25 Ra, Gaussian heights)"
                 if roughness.ra is None:
-                    told = f"rq = {rq} (Rz over 6; it is over 4 to 8)"
+                    told = f"rq = {rq} (Rz over 5.7; it is over 4 to 8)"
                 lines.append(Remark(f"{path}.roughness", told))
         rq = case.effective_rq
         value = display(rq.value or 0.0, rq.unit)
