@@ -72,6 +72,7 @@ def test_a_dry_case_takes_a_table(folder):
     [
         ("speed,friction\n1,2\n3,4\n", 'no column "cof"'),
         ("speed (kg),cof\n1,0.2\n3,0.4\n", "kg"),
+        ("speed,cof,sd (%)\n1,0.2,5\n3,0.4,5\n", '"%" is no unit of sd'),
         ("speed,cof\n0.1,0.5\n0.2,-0.4\n", "row 2"),
         ("speed,cof\n0.1,0.5\n0.2,\n", "missing"),
         ("speed,cof\n0.1,0.5\n0.1,0.4\n", "two or more speeds"),
