@@ -285,10 +285,10 @@ def test_methods_are_true_for_each_file(tmp_path):
     # Made unlike by hand: both ways are told, with their counts, and no majority speaks for all.
     one = analysis.files[0]
     other = [
-        {**m, "conventions": {**m["conventions"], "baseline": "not subtracted"}}
+        replace(m, conventions={**m.conventions, "baseline": "not subtracted"})
         for m in one.measurements
     ]
-    files = [replace(one, measurements=tuple(other)), *analysis.files[1:]]
+    files = [replace(one, numbers=tuple(other)), *analysis.files[1:]]
     paragraphs = methods_paragraphs(files, analysis.protocol, analysis.study, "1")
     assert "subtracted (3 of 5: walk1.trc); not subtracted (2 of 5: HC030A05.c3d)" in " ".join(
         paragraphs

@@ -1,7 +1,7 @@
 """Tables of a page of trials: what has no room is joined by its columns, not by their headings."""
 
 from underfoot.trials.pages.report import _compact, page_table
-from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.file_result import FileResult, Number
 from underfoot.trials.study.tables import Table, file_table, finding, number_columns
 
 
@@ -19,7 +19,7 @@ def test_mean_sd_and_interval_of_several_quantities_share_a_cell():
 def test_a_condition_called_as_a_column_of_ours_stays_what_it_is():
     """ "p" was printed as a chance, "slip" as yes or no."""
     noted = {"p": 2.5, "p 1": 0.00001, "heel crossed the array": 0.25}
-    files = [FileResult("a.c3d", main={"slip": 1.0}, conditions=noted)]
+    files = [FileResult("a.c3d", numbers=(Number("slip", 1.0, main="slip"),), conditions=noted)]
     shown = page_table(file_table(files))
     (row,) = shown["rows"]
     cells = dict(zip(shown["columns"], row, strict=True))

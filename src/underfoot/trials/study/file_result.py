@@ -2,15 +2,15 @@
 
 import math
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 
 from underfoot.core.remark import remarks, subjects
 
-from ..recording.measurement import UNNAMED, Choice, Measurement
+from ..recording.measurement import UNNAMED, Choice, Flag, Measurement
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FAILED, TesterCalibration
 from ..recording.trial import Trial
@@ -19,19 +19,46 @@ ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
 _POINTS = 400
 
 
+@dataclass(frozen=True, slots=True, repr=False)
+class Number(Measurement):
+    """One number of a file: a measurement, what it was measured on and what it counts as.
+
+    ``item``: trial, step or sensor; "" for a number of the whole file, which stands in no table of
+    measurements. ``main``: name under which it stands for the file in tables. ``fact``: name under
+    which the rules of a protocol judge it. Both are "" where it does neither.
+    """
+
+    item: str = ""
+    main: str = ""
+    fact: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON; conventions keep what other recordings share of them."""
+        data = Measurement.as_dict(self)
+        return {**data, "conventions": {k: _parts(v) for k, v in self.conventions.items()}}
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Return the number written by ``as_dict``."""
+        flags = tuple(Flag(**flag) for flag in data["flags"])
+        conventions = {key: _whole(choice) for key, choice in data["conventions"].items()}
+        return cls(**{**data, "flags": flags, "conventions": conventions})
+
+
 @dataclass(frozen=True, slots=True)
 class FileResult:
     """Outcome of one file.
 
     ``file`` and ``checksum``: name and SHA-256. ``verdict``: "accepted", "caution" (read the
     reasons before using the numbers) or "refused". ``reasons``: why, in words; ``kinds``: the same
-    without the numbers and places of this file, each once. ``measurements``:
-    one entry per number: item (trial, step, sensor), then as ``Measurement.as_dict``. ``main``: the
-    numbers that stand for the file in tables: name to SI value. ``facts``: what the rules were
-    checked against. ``curves``: series for figures, thinned. ``conditions``: what the laboratory
-    noted about the file. ``edits``: the edit log: step, what, before, after, rcof before and after,
-    why. ``steps``: one entry per contact with a plate: number, plate, side, contact, toe off, RCOF
-    or the reason of its rejection, verdict, flags, and the gait around it.
+    without the numbers and places of this file, each once. ``numbers``: all numbers of the file, a
+    row each. ``curves``: series for figures, thinned. ``conditions``: what the laboratory noted
+    about the file. ``edits``: the edit log: step, what, before, after, rcof before and after, why.
+    ``steps``: one entry per contact with a plate: number, plate, side, contact, toe off, RCOF or
+    the reason of its rejection, verdict, flags, and the gait around it.
+
+    Taken from the numbers: ``main`` holds those that stand for the file in tables, ``facts`` what
+    the rules were checked against, both as SI value by name.
     """
 
     file: str
@@ -39,23 +66,32 @@ class FileResult:
     verdict: str = ACCEPTED
     reasons: tuple[str, ...] = ()
     kinds: tuple[str, ...] = ()
-    measurements: tuple[Mapping[str, Any], ...] = ()
-    main: Mapping[str, float] = field(default_factory=dict)
-    facts: Mapping[str, float] = field(default_factory=dict)
+    numbers: tuple[Number, ...] = ()
     curves: Mapping[str, Any] = field(default_factory=dict)
     conditions: Mapping[str, Any] = field(default_factory=dict)
     edits: tuple[Mapping[str, Any], ...] = ()
     steps: tuple[Mapping[str, Any], ...] = ()
+    main: Mapping[str, float] = field(init=False, repr=False, compare=False)
+    facts: Mapping[str, float] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "main", _values(self.numbers, "main"))
+        object.__setattr__(self, "facts", _values(self.numbers, "fact"))
 
     @property
     def usable(self) -> bool:
         """True when the numbers may enter the tables of the study."""
         return self.verdict != REFUSED
 
+    @property
+    def measurements(self) -> tuple[Number, ...]:
+        """Numbers measured on an item of the file."""
+        return tuple(number for number in self.numbers if number.item)
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain data; curves are arrays of numbers, NaN where there is a gap."""
-        data = {one.name: getattr(self, one.name) for one in fields(self)}
-        return {**data, "measurements": [_with_choices(m, _parts) for m in self.measurements]}
+        data = {part.name: getattr(self, part.name) for part in fields(self) if part.init}
+        return {**data, "numbers": [number.as_dict() for number in self.numbers]}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -63,9 +99,14 @@ class FileResult:
         plain: dict[str, Any] = {
             key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
         }
-        numbers = tuple(_with_choices(m, _whole) for m in plain.get("measurements", ()))
-        curves = _packed(plain.get("curves", {}))
-        return cls(**{**plain, "measurements": numbers, "curves": curves})
+        numbers = tuple(map(Number.from_dict, data["numbers"]))
+        return cls(**{**plain, "numbers": numbers, "curves": _packed(data["curves"])})
+
+
+def _values(numbers: Iterable[Number], role: Literal["main", "fact"]) -> dict[str, float]:
+    """Return the SI values of the numbers that have a name in a ``role``, by this name."""
+    names = ((getattr(number, role), number.value) for number in numbers)
+    return {name: value for name, value in names if name and value is not None}
 
 
 class Draft:
@@ -74,20 +115,27 @@ class Draft:
     def __init__(self, file: str, conditions: Mapping[str, Any], checksum: str = "") -> None:
         self.file, self.checksum = file, checksum
         self.conditions = dict(conditions)
-        self.main: dict[str, float] = {}
-        self.facts: dict[str, float] = {}
+        self.numbers: list[Number] = []
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
-        self.measurements: list[dict[str, Any]] = []
         self.edits: list[dict[str, Any]] = []
         self.steps: list[dict[str, Any]] = []
 
     def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
         """Keep a number; ``main`` names it as the file's own number of that kind."""
-        self.measurements.append({"item": item, **measurement.as_dict()})
-        if main and measurement.value is not None:
-            self.main[main] = measurement.value
+        parts = {part.name: getattr(measurement, part.name) for part in fields(measurement)}
+        self.numbers.append(Number(**parts, item=item, main=main))
+
+    def note(self, value: float, unit: str, *, main: str = "", fact: str = "") -> None:
+        """Keep a number of the whole file under its name among the main ones, the facts or both."""
+        if math.isfinite(value):
+            self.numbers.append(Number(main or fact, float(value), unit, main=main, fact=fact))
+
+    @property
+    def main(self) -> dict[str, float]:
+        """The numbers that stand for the file so far."""
+        return _values(self.numbers, "main")
 
     def curve(self, name: str, **series: Any) -> None:
         """Keep curves for a figure, all thinned to at most 400 points in the same way."""
@@ -105,45 +153,44 @@ class Draft:
     def finished(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
         kinds = list(subjects(remarks([*self.refusals, *self.cautions])))
+        facts = _values(self.numbers, "fact")
         for rule in protocol.rules:
-            broken = rule.quantity in self.facts and rule.broken_by(self.facts[rule.quantity])
+            broken = rule.quantity in facts and rule.broken_by(facts[rule.quantity])
             if broken:
                 kinds.append(rule.statement())
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
-        for entry in self.measurements:
-            flags = [flag for flag in entry["flags"] if flag["matters"]]
-            self.cautions += [f"{entry['item']}: {flag['message']}" for flag in flags]
-            kinds += [
-                flag["message"] if flag["name"] == UNNAMED else flag["name"] for flag in flags
-            ]
+        for number in self.numbers:
+            flags = number.caution_flags
+            self.cautions += [f"{number.item}: {flag.message}" for flag in flags]
+            kinds += [flag.message if flag.name == UNNAMED else flag.name for flag in flags]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
-        reasons = dict.fromkeys([*self.refusals, *self.cautions])
-        own = {k: v for k, v in vars(self).items() if k not in ("cautions", "refusals")}
-        whole = {**own, "reasons": list(reasons), "kinds": list(dict.fromkeys(kinds))}
-        return FileResult.from_dict({**whole, "verdict": verdict})
+        return FileResult(
+            self.file,
+            self.checksum,
+            verdict,
+            reasons=tuple(dict.fromkeys([*self.refusals, *self.cautions])),
+            kinds=tuple(dict.fromkeys(kinds)),
+            numbers=tuple(self.numbers),
+            curves=_packed(self.curves),
+            conditions=self.conditions,
+            edits=tuple(self.edits),
+            steps=tuple(self.steps),
+        )
 
 
 def rates(trial: Trial, draft: Draft) -> None:
     """Note the sampling rates of forces and markers, which rules are about."""
     found = [plate.rate for plate in trial.plates if plate.usable]
     if found:
-        draft.facts["force_rate"] = float(min(found))
+        draft.note(min(found), "Hz", fact="force_rate")
     if trial.markers:
-        draft.facts["marker_rate"] = float(next(iter(trial.markers.values())).rate)
+        draft.note(next(iter(trial.markers.values())).rate, "Hz", fact="marker_rate")
 
 
 def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
     """Note what the calibration record says of the day a file was made; a failed check refuses."""
     for flag in () if record is None else record.flags(draft.conditions.get("date")):
         (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)
-
-
-def _with_choices(
-    measurement: Mapping[str, Any], change: Callable[[Any], Any]
-) -> Mapping[str, Any]:
-    """Return a stored number with each of its conventions changed."""
-    conventions = measurement.get("conventions", {})
-    return {**measurement, "conventions": {key: change(one) for key, one in conventions.items()}}
 
 
 def _parts(convention: str) -> str | list[Any]:

@@ -175,9 +175,9 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}  # file and conventions, by name
     for one in files:
         for m in one.measurements:
-            known = m["value"] is not None and m["name"] in _TOLD and m["item"] != MEAN_OF_STEPS
-            if known and m["conventions"]:
-                numbers.setdefault(m["name"], []).append((one.file, m["conventions"]))
+            known = m.value is not None and m.name in _TOLD and m.item != MEAN_OF_STEPS
+            if known and m.conventions:
+                numbers.setdefault(m.name, []).append((one.file, m.conventions))
     sentences: list[str] = []
     for name, made in numbers.items():
         if _TOLD_BY.get(name) in numbers:

@@ -296,7 +296,7 @@ def _one_sample(
     drop = 0 if first.any() else int(protocol.number("conditioning", "1", 0.0))
     # A report prints the readings that count; a record sheet has those of conditioning too.
     readings = counted[-last:] if last and len(counted) > last else counted
-    draft.facts["repeats"] = float(len(readings))
+    draft.note(len(readings), "1", fact="repeats")
     if not len(readings):
         draft.refusals.append("no reading is left after zero and conditioning runs")
         return

@@ -20,7 +20,7 @@ from ..machines.tester_checks import log_kind, scan_flags, slide_flags
 from ..readers import Profile
 from ..recording.axes import Ramp, axes_of
 from ..recording.measurement import MEAN_OF_STEPS, Measurement, mean_of
-from ..recording.protocols import KINDS, Protocol
+from ..recording.protocols import KINDS, QUANTITIES, Protocol
 from ..recording.signals import LowPass
 from ..recording.trial import Trial
 from ..walking.events import Stance, no_contact_reason, stances
@@ -80,7 +80,8 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         draft.refusals.append(Remark("no COF", cof.reason))
     draft.add("slide", cof, main="cof")
     refer_to(record, draft)
-    draft.facts.update(slide.facts)
+    for fact, value in slide.facts.items():
+        draft.note(value, QUANTITIES[fact], fact=fact)
     series = {key: getattr(slide, key) for key in ("time", "normal", "shear", "ratio")}
     draft.curve("slide", **series, begin=slide.window[0], end=slide.window[1])
     if not profile.sensors or not trial.markers:
@@ -112,13 +113,13 @@ def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     speed = draft.conditions.get("speed")
     point = friction_point(trial, speed=speed if isinstance(speed, float) else None)
     draft.add(trial.name, point.cof, main="cof")
-    draft.facts["duration"] = float(point.time[-1] - point.time[0])
+    draft.note(point.time[-1] - point.time[0], "s", fact="duration")
     if point.normal is not None:
-        draft.facts["normal_force"] = point.normal
+        draft.note(point.normal, "N", fact="normal_force")
     if point.shear is not None:
-        draft.main["friction_force"] = point.shear
+        draft.note(point.shear, "N", main="friction_force")
     if point.speed is not None:
-        draft.facts["sliding_speed"] = draft.main["speed"] = point.speed
+        draft.note(point.speed, "m/s", main="speed", fact="sliding_speed")
     begin, end = point.window
     cof = point.cof.value or np.nan
     draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
@@ -137,8 +138,8 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
         draft.add("test", getattr(found, name), main=name)
     for measurement in _moduli(found, thickness, draft.conditions.get("area"), trial.name):
         draft.add("test", measurement, main=measurement.name)
-    draft.facts["hold_time"] = found.hold_time
-    draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
+    draft.note(found.hold_time, "s", fact="hold_time")
+    draft.note(found.peak_displacement / (2.0 * thickness), "1", fact="compression")
     time, force = found.hold
     log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
     draft.curve("hold", time=time[log], force=force[log], final=found.final_force.value or 0.0)
@@ -338,8 +339,8 @@ def _human_slip(walk: _Walk) -> None:
         _sensors(walk, slip, stance.walking)
     acof = draft.conditions.get("acof")
     if isinstance(acof, float) and "rcof" in draft.main:
-        draft.main["acof"] = acof
-        draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
+        draft.note(acof, "1", main="acof")
+        draft.note(acof - draft.main["rcof"], "1", main="acof_minus_rcof")
 
 
 def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits) -> None:
@@ -354,7 +355,7 @@ def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits
     if slip.slipped is None:
         draft.refusals.append(slip.peak_speed.reason)
     else:
-        draft.main["slip"] = float(slip.slipped)
+        draft.note(slip.slipped, "1", main="slip")
     draft.steps.append(
         {
             **_step_entry(walk, stance),
@@ -381,7 +382,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
         draft.cautions.append(Remark("pressures", error.what))
         return
     draft.add("sensor array", reading.peak, main="peak_pressure")
-    draft.main["crossed_array"] = float(reading.crossed)
+    draft.note(float(reading.crossed), "1", main="crossed_array")
     across = np.cross(up, walking)
     places = {n: (float(np.dot(p, walking)), float(np.dot(p, across))) for n, p in sensors.items()}
     middle = np.mean([[min(c), max(c)] for c in zip(*places.values(), strict=True)], axis=1)
@@ -408,7 +409,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
                 draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
-        draft.facts["baseline_samples"] = float(np.sum(quiet.time < slip.contact - 0.05))
+        draft.note(np.sum(quiet.time < slip.contact - 0.05), "1", fact="baseline_samples")
         track = reading.track if len(reading.track) else np.full((1, 2), np.nan)
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
@@ -439,8 +440,9 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
         draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
         curves = stance_curves(walk.way, stance, step.ratio, definition.filter)
         draft.curve("normalised", step=stance.label, **curves)
-    draft.facts["steps"] = float(len(values))
-    draft.facts["steps_with_caution"] = float(sum(bool(own.caution_flags) for own in values))
+    draft.note(len(values), "1", fact="steps")
+    cautious = sum(bool(rcof.caution_flags) for rcof in values)
+    draft.note(cautious, "1", fact="steps_with_caution")
     if values:
         draft.add(MEAN_OF_STEPS, mean_of(values), main="rcof")
     return values

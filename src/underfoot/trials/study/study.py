@@ -392,16 +392,16 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     for f in files:
         m = f.measurements[0]
         low = high = None
-        if m["spread"] is not None:
+        if m.spread is not None:
             _, _, low, high = tables.mean_and_interval(f.curves["readings"], quantity)
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
-        cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
+        cells += [m.n, m.value, m.spread, low, high, m.uncertainty]
         if quantity == "ptv":
-            cof, error = cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cof, error = cof_of_pendulum(f.main["ptv"], m.uncertainty or 0.0)
             cells += cof, error or None
         if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
             scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
-            cells += _classes(scheme, m)
+            cells += _classes(scheme, f.main[quantity], m.uncertainty)
         rows.append(tuple(cells))
     numbers = [*tables.number_columns(quantity), "u"]
     columns = ["file", *keys, "readings", *numbers]
@@ -410,7 +410,8 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
         "uncertainty, with the calibration where it is known."
     ]
-    untold = [f.measurements[0]["n"] for f in files if f.measurements[0]["spread"] is None]
+    samples = [f.measurements[0] for f in files]
+    untold = [m.n for m in samples if m.spread is None]
     if any(n < 2 for n in untold):
         notes.append("Of a single reading SD, interval and u are not estimated: it has no scatter.")
     if any(n > 1 for n in untold):
@@ -420,8 +421,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         )
     columns += ["class", "2 u reaches"] if schemes else []
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
-    spreads = [f.measurements[0]["uncertainty"] for f in files]
-    places = max((tables.decimals_of(u) for u in spreads if u), default=2)
+    places = max((tables.decimals_of(m.uncertainty) for m in samples if m.uncertainty), default=2)
     decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3, "u of COF": 3}
     title = f"Samples, {quantity_name(quantity)}"
     made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
@@ -448,9 +448,9 @@ def _readings_by(
     return groups
 
 
-def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None]:
-    """Return the class of a number and the others that twice its uncertainty reaches."""
-    value, wide = float(m["value"]), 2.0 * float(m["uncertainty"] or 0.0)
+def _classes(scheme: ClassScheme, value: float, u: float | None) -> tuple[str, str | None]:
+    """Return the class of a value and the others that twice its uncertainty ``u`` reaches."""
+    wide = 2.0 * (u or 0.0)
     own = scheme.class_of(value)
     others = {scheme.class_of(end) for end in (value - wide, value + wide)} - {own}
     return own, ", ".join(sorted(others)) or None
@@ -474,7 +474,7 @@ def _walkers(
         added = [change if everybody else 0.0 for change, _ in changes]
         angles = [f.main["angle"] + change for f, change in zip(members, added, strict=True)]
         mean = float(np.mean(angles))
-        inside = [f.measurements[0]["uncertainty"] or 0.0 for f in members]
+        inside = [f.measurements[0].uncertainty or 0.0 for f in members]
         inside += [error for _, error in changes if everybody]
         apart = float(np.std(angles, ddof=1)) if len(angles) > 1 else 0.0
         u = max(float(np.hypot.reduce(inside)) / len(members), apart / np.sqrt(len(angles)))
@@ -484,8 +484,7 @@ def _walkers(
             for f, change in zip(members, added, strict=True)
         )
         scheme = members[0].curves.get("scheme")
-        number = {"value": mean, "uncertainty": u}
-        classes = _classes(class_scheme(scheme), number) if scheme else (None, None)
+        classes = _classes(class_scheme(scheme), mean, u) if scheme else (None, None)
         few = "1 of 2" if len(members) < 2 else ""
         rows.append((*level, told, mean, u, *classes, few))
     if not rows:
@@ -517,11 +516,11 @@ def _lowest(
     for level, members in tables.grouped(files, others).items() if heading else ():
         values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
         low = min(members, key=lambda f: f.main[quantity])
-        m, scheme = low.measurements[0], low.curves.get("scheme")
+        scheme, u = low.curves.get("scheme"), low.measurements[0].uncertainty
         told = "; ".join(f"{name} {value:.{places}f}" for name, value in values.items())
         lacking = f"{len(values)} of {directions}" if len(values) < directions else ""
-        numbers = (m["value"], m["uncertainty"])
-        classes = _classes(class_scheme(scheme), m) if scheme else (None, None)
+        numbers = low.main[quantity], u
+        classes = _classes(class_scheme(scheme), *numbers) if scheme else (None, None)
         rows.append((*level, told, low.conditions.get(heading), *numbers, *classes, lacking))
     if not rows:
         return []

@@ -83,7 +83,7 @@ def guarded_files(
         if results and results[0].checksum:
             bytes_of[results[0].checksum].append(i)
         values = [v for one in results for v in one.facts.values()]
-        values += [m["value"] for one in results for m in one.measurements]
+        values += [m.value for one in results for m in one.measurements]
         values += [step[key] for one in results for step in one.steps for key in _STEP]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
@@ -643,7 +643,7 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Yield the checks that need a person, each once."""
-    said = [m["conventions"] for one in files for m in one.measurements]
+    said = [m.conventions for one in files for m in one.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"
         yield Doubt(words, ("all",))

@@ -201,22 +201,19 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         (
             one.file,
             str(one.conditions.get(person, "")),
-            *(m[key] for key in _NUMBER_COLUMNS.values()),
-            "yes" if any(flag["matters"] for flag in m["flags"]) else "",
-            "; ".join(flag["message"] for flag in m["flags"]),
-            "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
+            *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
+            "yes" if m.caution_flags else "",
+            "; ".join(flag.message for flag in m.flags),
+            "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
         for one in files
         for m in one.measurements
     )
-    columns = ("file", "person", *_NUMBER_COLUMNS, "caution", "flags", "conventions")
+    columns = (
+        "file", "person", "item", "quantity", "value", "unit", "standard uncertainty",
+        "not estimated because", "n", "caution", "flags", "conventions",
+    )  # fmt: skip
     return Table("measurements", "Every number with its conventions", columns, rows)
-
-
-_NUMBER_COLUMNS = {
-    "item": "item", "quantity": "name", "value": "value", "unit": "unit",
-    "standard uncertainty": "uncertainty", "not estimated because": "reason", "n": "n",
-}  # fmt: skip
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
@@ -364,7 +361,7 @@ def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[
 def counted_steps(result: FileResult) -> int:
     """Return the number of steps of a file that gave a required friction."""
     return sum(
-        m["name"] == "rcof" and m["value"] is not None and m["item"] != MEAN_OF_STEPS
+        m.name == "rcof" and m.value is not None and m.item != MEAN_OF_STEPS
         for m in result.measurements
     )
 
