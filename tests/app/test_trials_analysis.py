@@ -277,7 +277,7 @@ def test_methods_are_true_for_each_file(tmp_path):
     analysis = analyse_folder(tmp_path, protocol("level_walking"), processes=1)
     text = " ".join(analysis.methods)
     assert "more than 20 N of normal force" in text
-    used = sum(step["verdict"] != "rejected" for one in analysis.files for step in one.steps)
+    used = sum(step.verdict != "rejected" for one in analysis.files for step in one.steps)
     every = sum(len(one.steps) for one in analysis.files)
     assert f"Of {every} contacts {used} were used" in text
     assert "ends after the record (1)" in text

@@ -20,9 +20,9 @@ in the session from which a condition goes with it; assumed."""
 def walking_speed(result: FileResult) -> float | None:
     """Return the mean speed (m/s) of the steps of a file that count, or None."""
     speeds = [
-        float(step["walking_speed"])
+        step.walking_speed
         for step in result.steps
-        if step.get("rcof") is not None and step.get("walking_speed") is not None
+        if step.rcof is not None and step.walking_speed is not None
     ]
     return float(np.mean(speeds)) if speeds else None
 

@@ -14,6 +14,7 @@ from ..recording.measurement import UNNAMED, Choice, Flag, Measurement
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FAILED, TesterCalibration
 from ..recording.trial import Trial
+from ..walking.gait_context import GaitContext
 
 ACCEPTED, CAUTION, REFUSED = "accepted", "caution", "refused"
 _POINTS = 400
@@ -45,6 +46,65 @@ class Number(Measurement):
         return cls(**{**data, "flags": flags, "conventions": conventions})
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step(GaitContext):
+    """One contact with a plate: its numbers (SI), verdict and the walk around it.
+
+    ``number``, ``plate``, ``side``, ``contact``, ``toe_off``, ``by_hand``: as of its ``Stance``;
+    ``item``: its name in tables. ``rcof``: None where ``reason`` says why it is rejected;
+    ``kind_of_reason``: the reason without the numbers of this step. ``judged_for_slip``: True for
+    the contact of a trial whose slip was measured. What follows is of this contact alone:
+    ``slipped``, None where it could not be judged, ``outcome`` in words, ``slip_direction``, and
+    what ``SlipCourse`` tells.
+    """
+
+    number: int = 0
+    item: str = ""
+    plate: str = ""
+    side: str = "unknown"
+    contact: float = 0.0
+    toe_off: float = 0.0
+    stance_time: float = 0.0
+    peak_force: float = 0.0
+    rcof: float | None = None
+    rcof_uncertainty: float | None = None
+    verdict: str = "rejected"
+    reason: str = ""
+    kind_of_reason: str = ""
+    cautions: tuple[str, ...] = ()
+    by_hand: tuple[str, ...] = ()
+    judged_for_slip: bool = False
+    slipped: bool | None = None
+    peak_slipping_speed: float | None = None
+    slip_start: float | None = None
+    slip_distance: float | None = None
+    outcome: str | None = None
+    slip_direction: str = ""
+    recovery_or_fall: str = ""
+    recovery_or_fall_reason: str = ""
+    toe_slip: float | None = None
+    trailing_slip: float | None = None
+    misstep: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LoggedEdit:
+    """An edit by hand and what it did: event and number, before and after, and why.
+
+    ``step``: its name, of a file without steps the file's. ``quantity``: what the numbers (SI, None
+    where there is none) are of; "" where no number was followed.
+    """
+
+    step: str
+    what: str
+    before: str
+    after: str
+    why: str
+    quantity: str = ""
+    number_before: float | None = None
+    number_after: float | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class FileResult:
     """Outcome of one file.
@@ -53,9 +113,7 @@ class FileResult:
     reasons before using the numbers) or "refused". ``reasons``: why, in words; ``kinds``: the same
     without the numbers and places of this file, each once. ``numbers``: all numbers of the file, a
     row each. ``curves``: series for figures, thinned. ``conditions``: what the laboratory noted
-    about the file. ``edits``: the edit log: step, what, before, after, rcof before and after, why.
-    ``steps``: one entry per contact with a plate: number, plate, side, contact, toe off, RCOF or
-    the reason of its rejection, verdict, flags, and the gait around it.
+    about the file. ``edits``: the edit log. ``steps``: the contacts with plates, rejected ones too.
 
     Taken from the numbers: ``main`` holds those that stand for the file in tables, ``facts`` what
     the rules were checked against, both as SI value by name.
@@ -69,8 +127,8 @@ class FileResult:
     numbers: tuple[Number, ...] = ()
     curves: Mapping[str, Any] = field(default_factory=dict)
     conditions: Mapping[str, Any] = field(default_factory=dict)
-    edits: tuple[Mapping[str, Any], ...] = ()
-    steps: tuple[Mapping[str, Any], ...] = ()
+    edits: tuple[LoggedEdit, ...] = ()
+    steps: tuple[Step, ...] = ()
     main: Mapping[str, float] = field(init=False, repr=False, compare=False)
     facts: Mapping[str, float] = field(init=False, repr=False, compare=False)
 
@@ -90,17 +148,26 @@ class FileResult:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data; curves are arrays of numbers, NaN where there is a gap."""
-        data = {part.name: getattr(self, part.name) for part in fields(self) if part.init}
-        return {**data, "numbers": [number.as_dict() for number in self.numbers]}
+        rows = {kind: [*map(parts, getattr(self, kind))] for kind in ("edits", "steps")}
+        return {**parts(self), **rows, "numbers": [number.as_dict() for number in self.numbers]}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the result written by ``as_dict``."""
-        plain: dict[str, Any] = {
-            key: tuple(v) if isinstance(v, list) else v for key, v in data.items()
-        }
         numbers = tuple(map(Number.from_dict, data["numbers"]))
-        return cls(**{**plain, "numbers": numbers, "curves": _packed(data["curves"])})
+        steps = tuple(Step(**_with_tuples(step)) for step in data["steps"])
+        edits = tuple(LoggedEdit(**edit) for edit in data["edits"])
+        rows = {"numbers": numbers, "edits": edits, "steps": steps}
+        return cls(**{**_with_tuples(data), **rows, "curves": _packed(data["curves"])})
+
+
+def parts(row: FileResult | LoggedEdit | Measurement | Step) -> dict[str, Any]:
+    """Return what a row was made of, by name."""
+    return {part.name: getattr(row, part.name) for part in fields(row) if part.init}
+
+
+def _with_tuples(data: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: tuple(v) if isinstance(v, list) else v for key, v in data.items()}
 
 
 def _values(numbers: Iterable[Number], role: Literal["main", "fact"]) -> dict[str, float]:
@@ -119,13 +186,12 @@ class Draft:
         self.curves: dict[str, Any] = {}
         self.cautions: list[str] = []
         self.refusals: list[str] = []
-        self.edits: list[dict[str, Any]] = []
-        self.steps: list[dict[str, Any]] = []
+        self.edits: list[LoggedEdit] = []
+        self.steps: list[Step] = []
 
     def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
         """Keep a number; ``main`` names it as the file's own number of that kind."""
-        parts = {part.name: getattr(measurement, part.name) for part in fields(measurement)}
-        self.numbers.append(Number(**parts, item=item, main=main))
+        self.numbers.append(Number(**parts(measurement), item=item, main=main))
 
     def note(self, value: float, unit: str, *, main: str = "", fact: str = "") -> None:
         """Keep a number of the whole file under its name among the main ones, the facts or both."""

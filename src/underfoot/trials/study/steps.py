@@ -29,8 +29,8 @@ from ..walking.gait_context import gait_context, slip_course, stance_curves
 from ..walking.plausibility import unseen
 from ..walking.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..walking.walkway import Walkway, walkway_of
-from .edit_table import EDIT_COLUMNS, edit_log
-from .file_result import Draft, rates, refer_to
+from .edit_table import edit_log
+from .file_result import Draft, LoggedEdit, Step, rates, refer_to
 from .person_measures import person_measures
 
 
@@ -46,8 +46,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         return
     for edit in trial.edits:
         draft.refusals.append(Remark("excluded by hand", edit.why))
-        excluded = (draft.file, edit.what, "used", "excluded", "", None, None, edit.why)
-        draft.edits.append(dict(zip(EDIT_COLUMNS, excluded, strict=True)))
+        draft.edits.append(LoggedEdit(draft.file, edit.what, "used", "excluded", edit.why))
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
@@ -291,7 +290,7 @@ class _Walk:
 
 def _gait(walk: _Walk) -> None:
     if not _required(walk, walk.stances):
-        reasons = dict.fromkeys(step["reason"] for step in walk.draft.steps if step["reason"])
+        reasons = dict.fromkeys(step.reason for step in walk.draft.steps if step.reason)
         why = "; ".join(reasons or ["no peak found"])
         walk.draft.refusals.append(Remark("no clean step", why))
 
@@ -314,7 +313,7 @@ def _human_slip(walk: _Walk) -> None:
     for stance in on_plate:
         if stance not in usable[:1]:
             reason = stance.reason or "a later contact with the slippery plate"
-            draft.steps.append(_step_entry(walk, stance, reason=reason))
+            draft.steps.append(_step(walk, stance, reason=reason))
     if not usable:
         draft.refusals.append(on_plate[0].reason)
         return
@@ -356,22 +355,22 @@ def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits
         draft.refusals.append(slip.peak_speed.reason)
     else:
         draft.note(slip.slipped, "1", main="slip")
-    draft.steps.append(
-        {
-            **_step_entry(walk, stance),
-            "item": item,
-            "verdict": "not estimated" if slip.slipped is None else "accepted",
-            "peak_slipping_speed": slip.peak_speed.value,
-            "slip_start": slip.start.value,
-            "slip_distance": slip.distance.value,
-            "slipped": slip.slipped,
-            "outcome": None if slip.outcome is None else str(slip.outcome),
-            "slip_direction": slip.way,
-            "recovery_or_fall": course.body,
-            "recovery_or_fall_reason": course.body_reason,
-            **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
-        }
+    step = replace(
+        _step(walk, stance),
+        item=item,
+        verdict="not estimated" if slip.slipped is None else "accepted",
+        judged_for_slip=True,
+        peak_slipping_speed=slip.peak_speed.value,
+        slip_start=slip.start.value,
+        slip_distance=slip.distance.value,
+        slipped=slip.slipped,
+        outcome=None if slip.outcome is None else str(slip.outcome),
+        slip_direction=slip.way,
+        recovery_or_fall=course.body,
+        recovery_or_fall_reason=course.body_reason,
+        **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
     )
+    draft.steps.append(step)
 
 
 def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
@@ -409,7 +408,8 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
                 draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
-        draft.note(np.sum(quiet.time < slip.contact - 0.05), "1", fact="baseline_samples")
+        before = float(np.sum(quiet.time < slip.contact - 0.05))
+        draft.note(before, "1", fact="baseline_samples")
         track = reading.track if len(reading.track) else np.full((1, 2), np.nan)
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
@@ -423,7 +423,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     for step in steps:
         stance, rcof = step.stance, step.measurement
         draft.add(stance.label, rcof)
-        draft.steps.append(_step_entry(walk, stance, step))
+        draft.steps.append(_step(walk, stance, step))
         if rcof.value is None:
             _ratio_curve(walk, stance, "rejected")
             continue
@@ -437,7 +437,8 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
             "gate": step.gate_time - stance.contact,
             "peak_time": step.peak_time - stance.contact, "peak": rcof.value,
         }  # fmt: skip
-        draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
+        named = {"step": stance.label, "number": stance.number}
+        draft.curve("steps", **named, **series, verdict=step.verdict)
         curves = stance_curves(walk.way, stance, step.ratio, definition.filter)
         draft.curve("normalised", step=stance.label, **curves)
     draft.note(len(values), "1", fact="steps")
@@ -456,26 +457,26 @@ def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
-    words = {"step": stance.label, "reason": stance.reason}
-    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **words)
+    named = {"step": stance.label, "number": stance.number, "reason": stance.reason}
+    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **named)
 
 
-def _step_entry(
-    walk: _Walk, stance: Stance, step: RequiredFriction | None = None, *, reason: str = ""
-) -> dict[str, Any]:
-    rcof = None if step is None else step.measurement
+def _step(
+    walk: _Walk, stance: Stance, friction: RequiredFriction | None = None, *, reason: str = ""
+) -> Step:
+    rcof = None if friction is None else friction.measurement
     why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else "")
-    return {
-        **{key: getattr(stance, key) for key in ("number", "plate", "side", "contact", "toe_off")},
-        "item": stance.label,
-        "stance_time": stance.duration,
-        "peak_force": stance.peak,
-        "rcof": None if rcof is None else rcof.value,
-        "rcof_uncertainty": None if rcof is None else rcof.uncertainty,
-        "verdict": "rejected" if step is None else step.verdict,
-        "reason": why,
-        "kind_of_reason": "; ".join(subjects(remarks([why]))),
-        "cautions": [] if rcof is None else [flag.message for flag in rcof.caution_flags],
-        "by_hand": list(stance.by_hand),
+    shared = ("number", "plate", "side", "contact", "toe_off", "by_hand")
+    return Step(
+        **{key: getattr(stance, key) for key in shared},
+        item=stance.label,
+        stance_time=stance.duration,
+        peak_force=stance.peak,
+        rcof=None if rcof is None else rcof.value,
+        rcof_uncertainty=None if rcof is None else rcof.uncertainty,
+        verdict="rejected" if friction is None else friction.verdict,
+        reason=why,
+        kind_of_reason="; ".join(subjects(remarks([why]))),
+        cautions=() if rcof is None else rcof.cautions(),
         **asdict(gait_context(walk.way, stance, walk.stances)),
-    }
+    )

@@ -84,7 +84,7 @@ def guarded_files(
             bytes_of[results[0].checksum].append(i)
         values = [v for one in results for v in one.facts.values()]
         values += [m.value for one in results for m in one.measurements]
-        values += [step[key] for one in results for step in one.steps for key in _STEP]
+        values += [getattr(step, key) for one in results for step in one.steps for key in _STEP]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
             numbers_of[numbers].append(i)
@@ -594,8 +594,8 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
         for one in files:
             values: dict[str, list[float]] = defaultdict(list)
             for step in one.steps:
-                if (step.get("rcof") or 0.0) > 0.0 and step.get(key):
-                    values[step.get("plate", "")].append(float(np.log(step[key])))
+                if (step.rcof or 0.0) > 0.0 and getattr(step, key):
+                    values[step.plate].append(float(np.log(getattr(step, key))))
             for pair in combinations(sorted(values), 2):
                 ratios[pair].append(float(np.mean(values[pair[0]]) - np.mean(values[pair[1]])))
         for (first, second), logs in ratios.items():

@@ -221,8 +221,25 @@ def edit_table(files: Iterable[FileResult]) -> Table | None:
     edits = [(one.file, edit) for one in files for edit in one.edits]
     if not edits:
         return None
-    rows = tuple((file, *edit.values()) for file, edit in edits)
-    return Table("edits", "Edits by hand", ("file", *edits[0][1]), rows)
+    rows = tuple(
+        (
+            file,
+            e.step,
+            e.what,
+            e.before,
+            e.after,
+            e.quantity,
+            e.number_before,
+            e.number_after,
+            e.why,
+        )
+        for file, e in edits
+    )  # fmt: skip
+    columns = (
+        "file", "step", "what", "before", "after", "quantity", "number before", "number after",
+        "why",
+    )  # fmt: skip
+    return Table("edits", "Edits by hand", columns, rows)
 
 
 # Column, entry of the step and decimals that a reader sees.
@@ -240,8 +257,8 @@ def steps_table(files: Iterable[FileResult]) -> Table:
     rows = []
     for one in files:
         for step in one.steps:
-            values = [step.get(key) for _, key, _ in _STEP_COLUMNS]
-            texts = ["; ".join(map(str, v)) if isinstance(v, list | tuple) else v for v in values]
+            values = [getattr(step, key) for _, key, _ in _STEP_COLUMNS]
+            texts = ["; ".join(map(str, v)) if isinstance(v, tuple) else v for v in values]
             rows.append((one.file, *texts))
     table = Table(
         "steps",
@@ -399,14 +416,14 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
     for one in files:
         own = [one.conditions.get(name) for name in noted]
         for step in one.steps:
-            head = (one.file, one.verdict, *own, step["number"])
-            texts = [step.get(name) or "" for name in _TEXTS]
-            cautions = "; ".join(step["cautions"])
-            wide.append((*head, *texts, cautions, *(step.get(name) for name in STEP_NUMBERS)))
+            head = (one.file, one.verdict, *own, step.number)
+            texts = [getattr(step, name) or "" for name in _TEXTS]
+            cautions = "; ".join(step.cautions)
+            wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
             long += [
-                (*head, step["side"], step["verdict"], name, step[name], unit)
+                (*head, step.side, step.verdict, name, getattr(step, name), unit)
                 for name, unit in STEP_NUMBERS.items()
-                if step.get(name) is not None
+                if getattr(step, name) is not None
             ]
     first = ("file", "file verdict", *noted, "step")
     units = [f"{n} ({u})" if u != "1" else n for n, u in STEP_NUMBERS.items()]
