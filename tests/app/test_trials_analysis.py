@@ -63,7 +63,7 @@ def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
     from underfoot.trials.study import Table
 
     rows = (("=1+1", 1.5, None, ""), ("plain", float("nan"), 3, "-x"))
-    table = Table("odd: name/1", "A title", ("text", "number", "count", "more"), rows, ("note",))
+    table = Table.of("odd: name/1", "A title", ("text", "number", "count", "more"), rows, "note")
     write_spreadsheet([table, table], ["How it was done."], tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
     assert len(book.sheetnames) == 3

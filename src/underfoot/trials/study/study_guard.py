@@ -194,8 +194,8 @@ def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
     rows = tuple(
         (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
     )
-    columns = ("doubt", "left out of means and tests", "number", "files")
-    return Table("doubts", "Read this first: doubts about the study's files", columns, rows)
+    heads = ("doubt", "left out of means and tests", "number", "files")
+    return Table.of("doubts", "Read this first: doubts about the study's files", heads, rows)
 
 
 def _noted(result: FileResult) -> dict[str, Any]:
