@@ -1,6 +1,8 @@
 """Edits by hand act on the step they name, are logged with the number, or end the run."""
 
+import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from underfoot.trials import Edit, read_trial, required_frictions, stances, walk
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.simulator import simulated_folder
 from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.file_result import FileResult, Number, Sample
 from underfoot.trials.walking.events import EditError
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -68,8 +71,6 @@ def test_side_and_toe_off_are_set():
 
 
 def test_one_foot_on_two_plates_is_given_to_one_of_them():
-    from dataclasses import replace
-
     trial = read_trial(WALK)
     second = trial.plates[1]
     both = replace(
@@ -143,3 +144,19 @@ def test_edits_do_not_touch_the_forces():
     assert edited.edits[0].why == "video"
     assert trial.edits == ()
     assert np.array_equal(edited.plates[0].force, trial.plates[0].force)
+
+
+def test_a_stored_result_is_what_it_was(walks):
+    """Numbers, steps and edits come back as the rows that they were, whatever JSON knows."""
+    one = _edited(walks, "HC030A05.c3d,2,exclude,,targeted the plate\n").files[0]
+    boards = ((8.7, 9.1, 0.1), (17.3, 17.6, 0.0))
+    one = replace(one, curves={}, sample=Sample((14.1, 14.5), "ramp", boards))
+    again = FileResult.from_dict(json.loads(json.dumps(one.as_dict(), default=list)))
+    assert again == one
+    assert (again.main, again.facts) == (one.main, one.facts)
+    assert again.main["rcof"] == again.numbers[-1].value
+    assert {type(row) for row in again.numbers} == {Number}
+    assert [row.as_dict() for row in again.numbers] == [row.as_dict() for row in one.numbers]
+    assert again.steps[1].by_hand == ("exclude",)
+    assert again.edits[0].why == "targeted the plate"
+    assert again.sample.boards == boards

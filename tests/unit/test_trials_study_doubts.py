@@ -47,7 +47,7 @@ def study(change=lambda conditions, speed: (conditions, speed), seed=1, bodies=N
                         numbers=(Number("rcof", rcof, main="rcof"),),
                         conditions=conditions,
                         steps=(step,),
-                        curves={"person": dict(zip(names, map(float, sizes), strict=True))},
+                        body=dict(zip(names, map(float, sizes), strict=True)),
                     )
                 )
     return files
@@ -146,7 +146,7 @@ def small_study(persons, measures, trials, seed, twins=False, plates=False):
                 FileResult(
                     f"{person}_{trial}.c3d",
                     conditions={"subject": f"S{person}"},
-                    curves={"person": dict(zip(names[:measures], measured.tolist(), strict=False))},
+                    body=dict(zip(names[:measures], measured.tolist(), strict=False)),
                 )
             )
     return files

@@ -106,6 +106,20 @@ class LoggedEdit:
 
 
 @dataclass(frozen=True, slots=True)
+class Sample:
+    """Readings of one sample of a table.
+
+    ``readings``: those that count, less that of zero. ``scheme``: name of the classes that they
+    belong to, or "". ``boards``: (standard angle, angle read, its u) in degrees of each calibration
+    board that the walker of a ramp read.
+    """
+
+    readings: tuple[float, ...] = ()
+    scheme: str = ""
+    boards: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class FileResult:
     """Outcome of one file.
 
@@ -114,6 +128,7 @@ class FileResult:
     without the numbers and places of this file, each once. ``numbers``: all numbers of the file, a
     row each. ``curves``: series for figures, thinned. ``conditions``: what the laboratory noted
     about the file. ``edits``: the edit log. ``steps``: the contacts with plates, rejected ones too.
+    ``body``: what ``person_measures`` tells of who walked. ``sample``: readings of a machine.
 
     Taken from the numbers: ``main`` holds those that stand for the file in tables, ``facts`` what
     the rules were checked against, both as SI value by name.
@@ -129,6 +144,8 @@ class FileResult:
     conditions: Mapping[str, Any] = field(default_factory=dict)
     edits: tuple[LoggedEdit, ...] = ()
     steps: tuple[Step, ...] = ()
+    body: Mapping[str, float] = field(default_factory=dict)
+    sample: Sample = Sample()
     main: Mapping[str, float] = field(init=False, repr=False, compare=False)
     facts: Mapping[str, float] = field(init=False, repr=False, compare=False)
 
@@ -149,7 +166,8 @@ class FileResult:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data; curves are arrays of numbers, NaN where there is a gap."""
         rows = {kind: [*map(parts, getattr(self, kind))] for kind in ("edits", "steps")}
-        return {**parts(self), **rows, "numbers": [number.as_dict() for number in self.numbers]}
+        rows["numbers"] = [number.as_dict() for number in self.numbers]
+        return {**parts(self), **rows, "sample": parts(self.sample)}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
@@ -157,11 +175,13 @@ class FileResult:
         numbers = tuple(map(Number.from_dict, data["numbers"]))
         steps = tuple(Step(**_with_tuples(step)) for step in data["steps"])
         edits = tuple(LoggedEdit(**edit) for edit in data["edits"])
-        rows = {"numbers": numbers, "edits": edits, "steps": steps}
+        readings = _with_tuples(data["sample"])
+        sample = Sample(**{**readings, "boards": tuple(map(tuple, readings["boards"]))})
+        rows = {"numbers": numbers, "edits": edits, "steps": steps, "sample": sample}
         return cls(**{**_with_tuples(data), **rows, "curves": _packed(data["curves"])})
 
 
-def parts(row: FileResult | LoggedEdit | Measurement | Step) -> dict[str, Any]:
+def parts(row: FileResult | LoggedEdit | Measurement | Sample | Step) -> dict[str, Any]:
     """Return what a row was made of, by name."""
     return {part.name: getattr(row, part.name) for part in fields(row) if part.init}
 
@@ -188,6 +208,8 @@ class Draft:
         self.refusals: list[str] = []
         self.edits: list[LoggedEdit] = []
         self.steps: list[Step] = []
+        self.body: dict[str, float] = {}
+        self.sample = Sample()
 
     def add(self, item: str, measurement: Measurement, *, main: str = "") -> None:
         """Keep a number; ``main`` names it as the file's own number of that kind."""
@@ -241,6 +263,8 @@ class Draft:
             conditions=self.conditions,
             edits=tuple(self.edits),
             steps=tuple(self.steps),
+            body=self.body,
+            sample=self.sample,
         )
 
 

@@ -285,7 +285,7 @@ class _Walk:
             raise DataError(no_contact_reason(way), where=self.trial.name)
         rates(self.trial, draft)
         draft.cautions += [flag.message for flag in unseen(way)]
-        draft.curves["person"] = person_measures(self.trial, self.stances, self.axes)
+        draft.body = person_measures(self.trial, self.stances, self.axes)
 
 
 def _gait(walk: _Walk) -> None:

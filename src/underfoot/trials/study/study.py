@@ -402,14 +402,15 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         m = f.measurements[0]
         low = high = None
         if m.spread is not None:
-            _, _, low, high = tables.mean_and_interval(f.curves["readings"], quantity)
+            _, _, low, high = tables.mean_and_interval(f.sample.readings, quantity)
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
         cells += [m.n, m.value, m.spread, low, high, m.uncertainty]
         if quantity == "ptv":
             cof, error = cof_of_pendulum(f.main["ptv"], m.uncertainty or 0.0)
             cells += cof, error or None
-        if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
-            scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
+        name = f.sample.scheme
+        if name and not (quantity == "angle" and "operator" in keys):
+            scheme = schemes.setdefault(name, class_scheme(name))
             cells += _classes(scheme, f.main[quantity], m.uncertainty)
         rows.append(tuple(cells))
     notes = [
@@ -445,13 +446,13 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
 
 def _readings_by(
     files: Sequence[FileResult], by: str, keys: tuple[str, ...]
-) -> dict[tuple[str, ...], dict[str, list[float]]]:
+) -> dict[tuple[str, ...], dict[str, Sequence[float]]]:
     """Return readings by the other conditions, and by laboratory, operator or machine."""
-    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
+    groups: dict[tuple[str, ...], dict[str, Sequence[float]]] = {}
     for f in files:
         if by in f.conditions:
             level = tuple(str(f.conditions.get(k, "")) for k in keys if k != by)
-            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
+            groups.setdefault(level, {})[str(f.conditions[by])] = f.sample.readings
     return groups
 
 
@@ -470,7 +471,7 @@ def _walkers(
     others = tuple(k for k in keys if k != "operator")
     rows, corrected = [], False
     for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
-        boards = [f.curves.get("boards", ()) for f in members]
+        boards = [f.sample.boards for f in members]
         changes = [
             board_correction(f.main["angle"], own, share)
             for f, own in zip(members, boards, strict=True)
@@ -490,7 +491,7 @@ def _walkers(
             + (f" {change:+.{places}f}" if everybody else "")
             for f, change in zip(members, added, strict=True)
         )
-        scheme = members[0].curves.get("scheme")
+        scheme = members[0].sample.scheme
         classes = _classes(class_scheme(scheme), mean, u) if scheme else (None, None)
         few = "1 of 2" if len(members) < 2 else ""
         rows.append((*level, told, mean, u, *classes, few))
@@ -523,7 +524,7 @@ def _lowest(
     for level, members in tables.grouped(files, others).items() if heading else ():
         values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
         low = min(members, key=lambda f: f.main[quantity])
-        scheme, u = low.curves.get("scheme"), low.measurements[0].uncertainty
+        scheme, u = low.sample.scheme, low.measurements[0].uncertainty
         told = "; ".join(f"{name} {value:.{places}f}" for name, value in values.items())
         lacking = f"{len(values)} of {directions}" if len(values) < directions else ""
         numbers = low.main[quantity], u

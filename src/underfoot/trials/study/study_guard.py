@@ -402,7 +402,7 @@ def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doub
 def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Two persons with one body: weight, height and distances of markers agree as repeats do."""
     bodies: dict[str, list[Mapping[str, float]]] = {
-        who: [one.curves["person"] for one in own if one.curves.get("person")]
+        who: [one.body for one in own if one.body]
         for (who,), own in grouped(files, (person,)).items()
     }
     usual = {who: {name: median([b[name] for b in own if name in b]) for name in own[0]}
@@ -531,7 +531,7 @@ def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A recording that shows another body than the person's other recordings."""
     measured = {
-        who: [(one.file, one.curves["person"]) for one in own if one.curves.get("person")]
+        who: [(one.file, one.body) for one in own if one.body]
         for (who,), own in grouped(files, (person,)).items()
     }
     away: dict[tuple[str, str], dict[str, float]] = {}
