@@ -95,10 +95,12 @@ def test_an_interrupted_analysis_goes_on(tester, tmp_path, monkeypatch):
     assert len(analysis.files) == 9
     assert len(made) == 9 - kept
     # A changed file, or a damaged store, is analysed again.
-    (next(store.glob("*.json"))).write_text("{")
-    made.clear()
-    analyse_folder(tester, protocol("report_g4"), store=store, processes=1)
-    assert len(made) == 1
+    for damaged in ("{", '[{"file": "without its rows"}]'):
+        (next(store.glob("*.json"))).write_text(damaged)
+        made.clear()
+        again = analyse_folder(tester, protocol("report_g4"), store=store, processes=1)
+        assert len(made) == 1
+        assert [one.main for one in again.files] == [one.main for one in analysis.files]
 
 
 def test_one_bad_file_never_stops_the_rest(tester, tmp_path):

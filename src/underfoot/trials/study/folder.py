@@ -186,7 +186,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     try:
         kept = json.loads(path.read_text(encoding="utf-8"))
         return [FileResult.from_dict(one) for one in kept]
-    except (OSError, ValueError, TypeError):
+    except (OSError, ValueError, TypeError, KeyError):
         pass
     results = _analysed(checksums[0], *job[:6])
     store.mkdir(parents=True, exist_ok=True)
