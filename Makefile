@@ -43,7 +43,7 @@ fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for
 mutants: $(READY)  ## 20 seeded faults a room, and those that quick tests let pass; ROOM="slip shoe" for some
 	PYTHONPATH=tests $(BIN)/python tests/mutants.py $(ROOM) --count $(or $(COUNT),20) --seed $(SEED)
 
-ways: $(READY)  ## stays, files, climbs and returns of eight values on their way; WAY="trial --stays" for one
+ways: $(READY)  ## stays, files, climbs and returns of eight values on their way; WAY=trial for each stay of one
 	$(BIN)/python tests/ways.py $(WAY)
 
 neighbours:  ## what other programs do with the rows of docs/reference/other_programs.md; WRITE=--write

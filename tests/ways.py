@@ -14,7 +14,7 @@ A real run is watched call by call (``sys.setprofile``). What is counted:
 - Reading a field or property of the value is no handling (what the property hands it on to is), and
   neither is making, comparing or printing it. A function inside another belongs to that one.
 
-``python tests/ways.py [WAY ...] [--stays]`` prints the table, or each stay with its functions.
+``python tests/ways.py`` prints the counts; with the key of one way each stay with its functions.
 """
 
 import json
@@ -233,17 +233,14 @@ def journey(key: str) -> Journey:
 
 
 def main(words: list[str]) -> None:
-    """Print the counts of the ways that are named, or of all; with --stays each stay too."""
-    keys = [word for word in words if not word.startswith("-")] or list(WAYS)
-    if len(keys) > 1:
-        flags = [word for word in words if word.startswith("-")]
-        for key in keys:
-            subprocess.run([sys.executable, __file__, key, *flags], check=True)
-        return
-    watched = journey(keys[0])
-    print(f"{WAYS[keys[0]][0]:30}", json.dumps(watched.counts))
-    for file, functions in watched.stays if "--stays" in words else ():
-        print(f"  {file}: {', '.join(dict.fromkeys(functions))}")
+    """Print the counts of all ways; of one that is named each stay too."""
+    for key in () if words else WAYS:
+        subprocess.run([sys.executable, __file__, key, "counts"], check=True)
+    for key in words[:1]:
+        watched = journey(key)
+        print(f"{WAYS[key][0]:30}", json.dumps(watched.counts), flush=True)
+        for file, functions in watched.stays if len(words) == 1 else ():
+            print(f"  {file}: {', '.join(dict.fromkeys(functions))}")
 
 
 if __name__ == "__main__":

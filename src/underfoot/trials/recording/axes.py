@@ -197,20 +197,13 @@ def marker_velocity(
     markers don't count. Markers that never move (corners of plates, the frame of a treadmill) are
     no part of a body that does. None with fewer than three markers seen.
     """
-    clocks: dict[tuple[int, float, float], slice] = {}  # markers share theirs
-    velocities = []
-    for marker in moving_markers(trial.markers).values():
-        if begin == -np.inf and end == np.inf:
-            velocity = _whole_velocity(marker)
-        elif marker.times is None:
-            clock = len(marker.positions), marker.rate, marker.start
-            if clock not in clocks:
-                clocks[clock] = frames_between(marker.time, begin, end)
-            velocity = _velocity_in(marker, clocks[clock])
-        else:
-            velocity = _velocity_in(marker, frames_between(marker.time, begin, end))
-        if velocity is not None:
-            velocities.append(velocity)
+    whole = begin == -np.inf and end == np.inf
+    velocities = [
+        velocity
+        for marker in moving_markers(trial.markers).values()
+        for velocity in [_whole_velocity(marker) if whole else _velocity_in(marker, begin, end)]
+        if velocity is not None
+    ]
     if len(velocities) < 3:
         return None
     ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
@@ -220,10 +213,11 @@ def marker_velocity(
 
 @once_a_record
 def _whole_velocity(marker: Marker) -> np.ndarray | None:
-    return _velocity_in(marker, slice(None))
+    return _velocity_in(marker, -np.inf, np.inf)
 
 
-def _velocity_in(marker: Marker, frames: slice) -> np.ndarray | None:
+def _velocity_in(marker: Marker, begin: float, end: float) -> np.ndarray | None:
+    frames = frames_between(marker.time, begin, end)
     seen = np.flatnonzero(~marker.missing[frames])
     if len(seen) < 3:
         return None
@@ -256,8 +250,12 @@ def _span(marker: Marker) -> float:
     return float((high - low).max())
 
 
-def walking_direction(trial: Trial, contact: Contact, walking: str | None = None) -> Direction:
+def walking_direction(
+    trial: Trial, contact: Contact, walking: str | None, body: np.ndarray | None
+) -> Direction:
     """Return the walking direction during a contact and how it was found.
+
+    ``walking``: the axis that a person set, as "+x". ``body``: that of ``Axes``.
 
     In this order: the override, the markers during the first half of the stance, the path of
     the centre of pressure (heel to toe), the shear force (braking first, then driving). Markers
@@ -276,10 +274,9 @@ def walking_direction(trial: Trial, contact: Contact, walking: str | None = None
         return Direction(path / speed, DirectionSource.MARKERS, text)
     step, swing = contact.pressure_path, contact.shear_swing
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
-    if path is not None:
-        whole = marker_velocity(trial, -np.inf, np.inf, up)
-        if whole is None or not step @ whole > _ALONG * max(length, 0.05) * WALKING_SPEED:
-            return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
+    least = _ALONG * max(length, 0.05) * WALKING_SPEED
+    if path is not None and (body is None or not step @ body > least):
+        return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
     if length > 0.05:
         text = Choice("centre of pressure, {:.0f} mm heel to toe", 1e3 * length)
         return Direction(step / length, DirectionSource.PRESSURE, text)

@@ -135,13 +135,17 @@ def _carried(
 
 
 def contact_direction(
-    trial: Trial, contact: Contact, belts: Mapping[str, Belt], walking: str | None
+    trial: Trial,
+    contact: Contact,
+    belts: Mapping[str, Belt],
+    walking: str | None,
+    body: np.ndarray | None,
 ) -> Direction:
     """Return the walking direction during a contact: against its belt, else ``walking_direction``.
 
-    ``belts``: by the name of their plate. ``walking``: the axis that a person set, as "+x".
+    ``belts``: by the name of their plate. ``walking`` and ``body`` as ``walking_direction``.
     """
     plate, belt = contact.plate, belts.get(contact.plate.name)
     if belt is not None and not walking:
         return belt.direction(plate.start + contact.start / plate.rate)
-    return walking_direction(trial, contact, walking)
+    return walking_direction(trial, contact, walking, body)

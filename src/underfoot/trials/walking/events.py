@@ -10,7 +10,7 @@ from underfoot.core.remark import Remark
 
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
-from ..recording.plates import Contact, plate_axes, plate_contacts
+from ..recording.plates import plate_axes
 from ..recording.signals import CONTACT_FORCE, frames_between
 from ..recording.trial import Edit, Plate
 from .walkway import Walkway, of_walkway
@@ -194,14 +194,16 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
     """
     trial, up = walk.trial, walk.up
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
+    feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
     detected: list[Stance] = []
     for plate in plates.values():
-        for contact, way in _contacts(walk, plate, threshold):
+        usual = threshold == CONTACT_FORCE
+        found = walk.contacts[plate] if usual else walk.contacts_above(plate, threshold)
+        for contact, way in found:
             time = plate.start + np.array([contact.start, contact.stop]) / plate.rate
             span = contact.start, contact.stop, float(time[0]), float(time[1])
             detected.append(Stance(plate.name, *span, contact.peak, direction=way))
     detected.sort(key=lambda stance: stance.contact)
-    feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
 
     def located(stance: Stance) -> Stance:
         if "side" in stance.by_hand:
@@ -227,16 +229,6 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
         reason = stance.reason or _reason(walk, stance, others, usual, feet[stance.plate])
         judged.append(replace(stance, reason=reason))
     return judged
-
-
-def _contacts(
-    walk: Walkway, plate: Plate, threshold: float
-) -> tuple[tuple[Contact, Direction], ...]:
-    """Contacts with a plate and their walking directions: those of the walk at its threshold."""
-    if threshold == CONTACT_FORCE:
-        return walk.contacts[plate]
-    at_threshold = plate_contacts(plate, walk.up, threshold)
-    return tuple((one, walk.direction(plate, one.start, one.stop)) for one in at_threshold)
 
 
 def _reason(

@@ -88,7 +88,17 @@ class Walkway:
     def direction(self, plate: Plate, start: int, stop: int) -> Direction:
         """Return the walking direction during a contact and how it was found."""
         contact = Contact(plate, start, stop, self.up)
-        return contact_direction(self.trial, contact, self.belts, self.walking)
+        more = self.belts, self.walking, self.axes.body
+        return contact_direction(self.trial, contact, *more)
+
+    def contacts_above(
+        self, plate: Plate, threshold: float
+    ) -> tuple[tuple[Contact, Direction], ...]:
+        """Return the ``contacts`` with a plate above another vertical force (N)."""
+        found, more = plate_contacts(plate, self.up, threshold), (self.belts, self.walking)
+        return tuple(
+            (one, contact_direction(self.trial, one, *more, self.axes.body)) for one in found
+        )
 
 
 def walkway_of(
@@ -119,9 +129,10 @@ def walkway_of(
     contacts = {plate: plate_contacts(plate, axes.up) for plate in usable}
     weight = body_weight(trial, axes)
     belts = belts_of(contacts, axes.body, [foot for foot in feet if foot.times is None])
+    told = belts, walking, axes.body
     directed = {
-        plate: tuple((one, contact_direction(trial, one, belts, walking)) for one in ones)
-        for plate, ones in contacts.items()
+        plate: tuple((each, contact_direction(trial, each, *told)) for each in found)
+        for plate, found in contacts.items()
     }
     return Walkway(trial, axes, weight, heel, toe, pelvis, belts, walking, directed)
 
