@@ -13,11 +13,12 @@ from underfoot.core.constants import GRAVITY
 from underfoot.trials.readers import read_trial
 from underfoot.trials.recording.signals import low_passed
 from underfoot.trials.recording.trial import Marker, Trial
+from underfoot.trials.walking.body_weight import body_mass
 from underfoot.trials.walking.events import Stance
 from underfoot.trials.walking.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.walking.gait_context import FLAT, heel_speed
 from underfoot.trials.walking.slips import HeelMotion, heel_motion
-from underfoot.trials.walking.walkway import Walkway, body_mass, of_walkway, walkway_of
+from underfoot.trials.walking.walkway import Walkway, of_walkway, walkway_of
 
 from .gait import LEAST_LOAD, GaitHistory
 

@@ -17,8 +17,8 @@ from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FILE as CALIBRATION
 from ..recording.tester_calibration import read_calibration
 from ..recording.trial import Edit, Trial, file_checksum, joined
+from ..walking.body_weight import body_mass
 from ..walking.events import EditError
-from ..walking.walkway import body_mass
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
