@@ -13,7 +13,7 @@ from underfoot.shoe import Facet, Flat, Heel, heel_map
 from underfoot.sole_contact._kernels.brick_elements import Bricks, work_of_hats
 from underfoot.sole_contact._kernels.elastic import block_compression
 from underfoot.sole_contact.compliance import half_space_compliance, layered_compliance
-from underfoot.sole_contact.finite_element import finite_element_compliance
+from underfoot.sole_contact.finite_element import Layers, finite_element_compliance, sole_prisms
 from underfoot.sole_contact.row_compliance import short_waves
 
 MODULUS, RATIO, ANGLE = 4e6, 0.49, math.radians(10)
@@ -184,6 +184,15 @@ def test_a_flat_heel_keeps_its_closed_form_within_the_error_of_that():
     assert rise[sole.inside].mean() == pytest.approx(closed[sole.inside].mean(), rel=0.05)
 
 
+def test_the_elements_of_a_bevelled_heel_are_as_thick_as_the_heel():
+    """A corner of the map outside the sole was taken for its plane: 0.9 mm of 25 were missing."""
+    sole = heel_map(heel("rubber"), shoe_angle=ANGLE, spacing=1e-3)
+    mesh = sole_prisms(sole, Layers(25e-3, 0.0, ANGLE))
+    normal = np.array([-math.sin(ANGLE), 0.0, math.cos(ANGLE)])
+    foot, land = (mesh.nodes[np.unique(part)] @ normal for part in (mesh.foot, mesh.land))
+    assert foot.mean() - land.min() == pytest.approx(25e-3, rel=1e-9)
+
+
 def test_every_compliance_has_a_near_field():
     """One that says nothing of short waves meets the half-space of its symbol."""
     known = half_space_compliance((20, 20), 1e-3, modulus=MODULUS, poisson_ratio=RATIO)
@@ -198,7 +207,7 @@ def test_every_compliance_has_a_near_field():
 @pytest.mark.slow
 @pytest.mark.parametrize("body", BODIES)
 def test_finite_elements_have_the_shape_of_elements_of_order_4(body):
-    """Within 7 %: prisms of 3 mm and order 2, on cells of 1 mm."""
+    """Within 6 %: prisms of 3 mm and order 2, on cells of 1 mm."""
     sole = heel_map(heel(body), shoe_angle=ANGLE, spacing=1e-3)
     compliance = finite_element_compliance(
         sole, modulus=MODULUS, poisson_ratio=RATIO, shoe_angle=ANGLE, **BODIES[body]
@@ -206,4 +215,4 @@ def test_finite_elements_have_the_shape_of_elements_of_order_4(body):
     for load in LOADS:
         places, true = reference(body, load)
         rise = RegularGridInterpolator((sole.x, sole.y), compliance.apply(pressed(sole, load)))
-        assert np.abs(rise(places) - true).max() < 0.07 * true.max()
+        assert np.abs(rise(places) - true).max() < 0.06 * true.max()
