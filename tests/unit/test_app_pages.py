@@ -36,6 +36,7 @@ from underfoot.app.trials_study import STANDARD, Study
 from underfoot.app.variant_bar import new_variant
 from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
+from underfoot.trials.study.file_result import Step
 from underfoot.trials.study.record_signals import Envelope
 
 RUN = "underfoot.app.work:computed"
@@ -207,14 +208,13 @@ def test_a_step_is_drawn_with_the_ratio_of_its_own_contact():
     plate = SimpleNamespace(start=0.0, end=9.0, rate=1000.0, envelope=lambda *_: seen)
     signals = SimpleNamespace(force={"P": plate}, heel_speed={})
     ratios = [
-        {"step": f"step {k} on P", "ratio": [k / 10.0] * 2, "normal": [600.0, 10.0],
+        {"number": k, "ratio": [k / 10.0] * 2, "normal": [600.0, 10.0],
          "time": np.array([0.0, 0.1]), "peak": k / 10.0, "peak_time": 0.02, "gate": 0.01}
         for k in (1, 2, 3)
     ]  # fmt: skip
-    entry = {"contact": 1.0, "toe_off": 1.6, "plate": "P", "by_hand": {}, "number": 2}
-    entry |= {"verdict": "accepted", "side": "left"}
+    step = Step(number=2, contact=1.0, toe_off=1.6, plate="P", verdict="accepted", side="left")
     record = SimpleNamespace(curves={"steps": ratios})
-    drawn = trials_plots.step_plot(cast(Any, record), entry, cast(Any, signals))
+    drawn = trials_plots.step_plot(cast(Any, record), step, cast(Any, signals))
     assert [each["value"] for each in drawn["events"] if each["id"] == "rcof"] == [0.2]
     assert len(drawn["panels"]) == 2
 
