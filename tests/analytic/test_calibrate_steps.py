@@ -228,6 +228,6 @@ def test_each_reading_takes_its_part_of_the_work_one_after_the_other(monkeypatch
     calibrated_pair(
         [PairReading(case, cof) for cof in (0.23, 0.25)],
         draws=every.rows(np.arange(0, every.count, 40)),
-        progress=lambda stage, fraction, *_: told.append(fraction),
+        progress=cast(Any, lambda stage, fraction, *_: told.append(fraction)),
     )
     assert told == pytest.approx([0.0, 0.5, 0.5, 1.0])

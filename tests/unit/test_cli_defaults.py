@@ -46,7 +46,7 @@ def commands_of(group, *path):
 def test_no_command_replaces_what_exists_unless_it_is_asked_to():
     options = dict(commands_of(get_command(app)))
     assert {("trials", "plan"), ("wear",), ("study", "run")} <= options.keys()
-    for name, value in (("overwrite", False), ("quick", False), ("json", False)):
+    for name, value in (("overwrite", False), ("json", False)):
         asked = [path for path, known in options.items() if name in known]
         assert asked, name
         assert [path for path in asked if options[path][name] not in (value, None)] == []
