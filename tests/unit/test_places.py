@@ -752,3 +752,57 @@ def test_a_friction_that_people_need_is_assumed_only_where_it_was_not_given():
     told = asked(rcof_mean=0.23, task=[walk, carry | {"rcof": 0.3}])
     assert not assumes(told)
     assert [task.rcof for task in told.tasks] == [0.23, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("known", "worn"),
+    [
+        ({}, {"depth": 0.0}),
+        (
+            {"wear_per_month": "0.25 mm", "months": 4},
+            {"depth": 1e-3, "angle": math.radians(7), "mode": "plane"},
+        ),
+        (
+            {"worn_region": ["20 mm", "12 mm"]},
+            {"mode": "patch", "patch_length": 20e-3, "patch_width": 12e-3},
+        ),
+    ],
+)
+def test_a_shoe_of_a_place_is_new_and_as_worn_as_its_file_says(known, worn):
+    table = small_place()
+    table["shoe"][1] |= known
+    place = place_of(table)
+    new, old = (
+        place.case(place.shoes[1], place.floors[0], "water", worn=when) for when in (False, True)
+    )
+    assert new.value("shoe.wear.depth") == 0.0
+    assert new.origins["shoe.wear.depth"].kind == "default"
+    for name, value in worn.items():
+        told = old.shoe.wear.mode if name == "mode" else old.value(f"shoe.wear.{name}")
+        assert told == (value if name == "mode" else pytest.approx(value))
+    if "worn_region" in known:  # it is through its tread
+        assert old.value("shoe.wear.depth") == pytest.approx(new.value("shoe.tread.depth"))
+
+
+@pytest.mark.parametrize(
+    ("rest", "taken"), [(0.096, True), (0.104, True), (0.094, False), (0.106, False)]
+)
+def test_shares_add_to_one_within_half_a_percent(rest, taken):
+    table = small_place() | {"fluids": {"dry": 0.9, "water": rest}}
+    if taken:
+        assert place_of(table).wet_share == pytest.approx(rest)
+    else:
+        with pytest.raises(InputError, match="add to"):
+            place_of(table)
+
+
+@pytest.mark.parametrize(("share", "left"), [(0.5, 389.6), (0.025, 4000.0)])
+def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share, left):
+    """100 of 4,000 draws have ``share`` of the weight: 1 / (s^2 / 100 + (1 - s)^2 / 3900)."""
+    joint = JointDraws(count=4000)
+    weight = np.repeat([share / 100, (1 - share) / 3900], [100, 3900])
+    unlike = np.unique(joint.constants.constants.kappa_0).size
+    joint.learn(np.log(weight), "hall")
+    assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
+    joint.learn(np.zeros(4000), "hall")  # what tells nothing
+    assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
