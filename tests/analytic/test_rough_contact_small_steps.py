@@ -99,7 +99,7 @@ def test_each_scale_loses_less_where_it_meets_less_of_the_rubber(gamma):
     def rubber(w):
         return 2e6 + 4e5j * (np.asarray(w) > 0)
 
-    given = (3e5, q, 1e-8 * q**-3.6, rubber, 0.3)
+    given = (4e3, q, 1e-8 * q**-3.6, rubber, 0.3)
     fraction, lost = (each[0] for each in persson_growth(*given, gamma=gamma))
     _, whole = (each[0] for each in persson_growth(*given, gamma=1.0))
     assert fraction[0] == 1.0
@@ -193,8 +193,8 @@ def test_points_out_of_contact_stand_off_by_their_gap_at_the_mean_pressure_of_th
     # above 2 bar in full contact: 0.1 of 1 bar and 0.2 of 2 bar, over the 4 bar that are carried
     assert hysteresis == pytest.approx(0.5 + (0.1 * 1 + 0.2 * 2) / 4)
     assert mean == pytest.approx(1e-6 * gaps.mean())
-    assert across == pytest.approx(np.mean(gaps**3) / gaps.mean() ** 3, rel=0.5)
-    assert along < across
+    assert along == pytest.approx(np.mean(gaps**3) / gaps.mean() ** 3)
+    assert across < 0.1 * along  # through the contact
 
 
 @pytest.mark.parametrize("bad", [(), (0,), (1,), (0, 1)])

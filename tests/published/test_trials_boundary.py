@@ -74,6 +74,7 @@ def test_a_study_of_boundary_lubrication_has_a_table_of_parts_and_one_of_fluids(
     forces = {
         "x": {"dry": 10.0, "sae_75w140": 4.0, "water": 7.0, "brine": 5.0},
         "y": {"dry": 6.0, "sae_75w140": 2.0, "water": 4.0, "brine": 3.0},
+        "z": {"dry": 9.0, "sae_75w140": 1.0, "water": 2.5, "brine": 3.0},
     }
     files = [
         FileResult(
@@ -91,6 +92,8 @@ def test_a_study_of_boundary_lubrication_has_a_table_of_parts_and_one_of_fluids(
     assert {"friction_split", "alpha_beta", "fluid_range"} <= {*tables}
     assert all(table.title and table.title != name for name, table in tables.items())
     parts = {(row[0], row[2]): (row[3], row[5]) for row in tables["friction_split"].rows}
+    fitted = [(row[0], row[-1]) for row in tables["alpha_beta"].rows]
+    assert sorted(fitted) == [("brine", 3), ("water", 3)]
     for shoe, by_fluid in forces.items():
         oiled = by_fluid["sae_75w140"]
         assert parts[shoe, "dry"] == (pytest.approx(by_fluid["dry"]), 2)
@@ -102,4 +105,5 @@ def test_a_study_of_boundary_lubrication_has_a_table_of_parts_and_one_of_fluids(
     ranges = {row[0]: row[1:] for row in tables["fluid_range"].rows}
     assert ranges["x"] == (pytest.approx(1), "brine", pytest.approx(3), "water", pytest.approx(2))
     assert ranges["y"] == (pytest.approx(1), "brine", pytest.approx(2), "water", pytest.approx(1))
+    assert ranges["z"][1::2] == ("water", "brine")
     assert any("x on wood" in note for note in made.notes)
