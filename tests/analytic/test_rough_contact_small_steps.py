@@ -155,6 +155,7 @@ def test_a_search_is_done_by_the_powers_of_ten_that_are_behind_it(error, done):
         ({0.0: 0.0, 0.5: 0.0, 30.0: 0.0}, True),
         ({0.0: 0.0, 0.5: 0.3, 30.0: 0.0}, False),  # the slowest wave alone loses
         ({0.0: 0.0, 0.5: 0.0, 30.0: 0.3}, False),
+        ({0.0: 0.0, 0.5: 0.0}, True),  # all waves slower than 1 rad/s
         ({0.0: 0.0}, False),  # nothing slides
     ],
 )

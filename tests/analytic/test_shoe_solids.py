@@ -54,8 +54,8 @@ def test_rounded_rim_takes_what_a_fillet_takes():
             3e-3,
             2e-3,
             angle=0.5,
-            offset=(2e-3, 3e-3),
-            sipes=Sipes(1e-3, 1e-3, 6e-3, angle=0.3),
+            offset=(2e-3, 1e-3),
+            sipes=Sipes(1e-3, 1e-3, 6e-3, angle=0.5),
         ),
         Tread("circles", 12e-3, 3e-3, 2.5e-3),
         pytest.param(
