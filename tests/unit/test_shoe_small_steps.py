@@ -234,6 +234,6 @@ def test_two_arcs_lead_from_one_direction_to_another_without_a_kink(end, turned)
 def test_a_triangle_is_the_same_whichever_corner_comes_first():
     corners = np.array([[0, 0, 0], [3, 0.5, 1], [1, 2, -1]], np.float32)
     orders = list(permutations(range(3)))
-    other = corners + np.float32([0, 0, 1e-4])
+    other = corners + np.array([0, 0, 1e-4], np.float32)
     soup = np.concatenate([[corners[list(order)] for order in orders], [other, other[::-1]]])
     np.testing.assert_array_equal(without_copies(soup), [soup[0], other])
