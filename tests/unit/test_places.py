@@ -805,3 +805,46 @@ def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share,
     assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
     joint.learn(np.zeros(4000), "hall")  # what tells nothing
     assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
+
+
+def test_steps_in_a_fluid_are_those_of_each_floor_by_its_area():
+    """Three parts of a hall with 0.2 of its steps wet and one of a stair with 0.6."""
+    table = small_place() | {"people": {"steps_per_day": 5000, "rcof_sd": 0.05}}
+    del table["fluids"]
+    hall = table["floor"][0] | {"area": 300, "fluids": {"dry": 0.8, "water": 0.2}}
+    stair = hall | {"name": "stair", "area": 100}
+    stair["fluids"] = {"water": 0.1, "dry": 0.4, "glycerol_90pct": 0.5}
+    place = place_of(table | {"floor": [hall, stair]})
+    assert [floor.share for floor in place.floors] == [0.75, 0.25]
+    assert place.wet_share == pytest.approx(0.3)
+    assert place.wet_steps == pytest.approx(1500)
+    assert place.fluids() == ("glycerol_90pct", "water")
+    assert (place.rcof_sd, place.steps, place.reported) == (0.05, 5000, None)
+    assert not any("steps_per_day" in each for each in place.assumed)
+    usual = place_of(small_place())
+    assert (usual.rcof_sd, usual.steps, usual.tasks[0].rcof) == (0.03, 8000, 0.2)
+    assert any("steps_per_day" in each for each in usual.assumed)
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high"),
+    [
+        ("rcof_mean", 0.05, 0.6),
+        ("rcof_sd", 0.001, 0.2),
+        ("steps_per_day", 1, 100_000),
+        ("reported_slips", 0, 1_000_000),
+    ],
+)
+def test_numbers_of_people_are_taken_from_end_to_end(key, low, high):
+    for value in (low, high):
+        place = place_of(small_place() | {"people": {key: value}})
+        told = {
+            "rcof_mean": place.tasks[0].rcof,
+            "rcof_sd": place.rcof_sd,
+            "steps_per_day": place.steps,
+            "reported_slips": place.reported,
+        }
+        assert told[key] == value
+    for value in (low - 1e-4, 1.001 * high):
+        with pytest.raises(RangeError, match=f"people.{key}"):
+            place_of(small_place() | {"people": {key: value}})
