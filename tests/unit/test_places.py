@@ -25,7 +25,7 @@ from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
 from underfoot.places.choice import chosen, slip_share
-from underfoot.places.evidence import floor_likeness, learned, machine_scores, score
+from underfoot.places.evidence import evidence, floor_likeness, learned, machine_scores, score
 from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import (
     FLUIDS,
@@ -848,3 +848,15 @@ def test_numbers_of_people_are_taken_from_end_to_end(key, low, high):
     for value in (low - 1e-4, 1.001 * high):
         with pytest.raises(RangeError, match=f"people.{key}"):
             place_of(small_place() | {"people": {key: value}})
+
+
+def test_a_printed_reading_is_of_a_floor_of_its_source_by_a_machine_with_its_fluid():
+    told = evidence()
+    assert {one.machine.name for one in told} <= set(machines())
+    for one in told:
+        assert one.floor.partition(", ")[2]
+        assert one.floor not in one.source  # of several floors that one source reads
+        for bound in one.bounds:
+            assert bound.fluid == one.machine.fluid_of_standard()
+        assert one.ends[0] <= one.ends[1]
+        assert 0 < one.rq[0] <= one.rq[1] < 1e-3
