@@ -235,7 +235,9 @@ def test_shear_that_ends_early_lags_the_normal_force_at_toe_off_alone():
         shear[middle:-sooner] = shear[middle + sooner :]
         return normal + shear
 
-    plain, early = (step_features(walkway_of(t), stance) for t in (trial, _changed(trial, moved)))
+    plain, early = (
+        step_features(Step(walkway_of(t), stance)) for t in (trial, _changed(trial, moved))
+    )
     rate = walkway_of(trial).plate(stance.plate).rate
     at_contact, at_toe_off = (
         early[name] - plain[name]

@@ -7,7 +7,7 @@ import pytest
 from underfoot.core import DataError
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study.boundary import alpha_beta, friction_split
-from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.file_result import FileResult, Number
 from underfoot.trials.study.study import study_of
 
 _DRY = [10, 12, 15, 18, 20, 25]
@@ -79,7 +79,7 @@ def test_a_study_of_boundary_lubrication_has_a_table_of_parts_and_one_of_fluids(
     files = [
         FileResult(
             f"{shoe} {fluid} {turn}",
-            main={"friction_force": force + turn},
+            numbers=(Number("friction_force", force + turn, main="friction_force"),),
             conditions={"shoe": shoe, "floor": "tile", "fluid": fluid},
         )
         for shoe, by_fluid in forces.items()

@@ -192,12 +192,14 @@ def spread_to_si(given: object, of: object, unit: str, *, where: str) -> float:
 
 
 def _in_percent(given: object) -> bool:
-    """Return whether a value is written in percent."""
+    """Return whether a value is written in percent, or is this unit."""
+    if not isinstance(given, str):
+        return False
     try:
-        parts = split_quantity(given) if isinstance(given, str) else None
+        parts = split_quantity(given)
     except InputError:  # whoever reads the number says what is wrong with it
         return False
-    return parts is not None and parts[1].strip() == "%"
+    return (given if parts is None else parts[1]).strip() == "%"
 
 
 def refuse_percent(given: object, *, where: str) -> None:
