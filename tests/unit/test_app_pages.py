@@ -48,7 +48,7 @@ from underfoot.app.variant_bar import new_variant
 from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
 from underfoot.core.page import Section
-from underfoot.trials.study.file_result import Step
+from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope
 
 RUN = "underfoot.app.work:computed"
@@ -224,7 +224,9 @@ def test_a_step_is_drawn_with_the_ratio_of_its_own_contact():
          "time": np.array([0.0, 0.1]), "peak": k / 10.0, "peak_time": 0.02, "gate": 0.01}
         for k in (1, 2, 3)
     ]  # fmt: skip
-    step = Step(number=2, contact=1.0, toe_off=1.6, plate="P", verdict="accepted", side="left")
+    step = StepResult(
+        number=2, contact=1.0, toe_off=1.6, plate="P", verdict="accepted", side="left"
+    )
     record = SimpleNamespace(curves={"steps": ratios})
     drawn = trials_plots.step_plot(cast(Any, record), step, cast(Any, signals))
     assert [each["value"] for each in drawn["events"] if each["id"] == "rcof"] == [0.2]

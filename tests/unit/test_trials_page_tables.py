@@ -5,7 +5,7 @@ import pytest
 from underfoot.trials.pages.report import _compact, _without_conditions, lead_sentence, page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study import FolderAnalysis, study_of
-from underfoot.trials.study.file_result import FileResult, Number, Step
+from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.tables import (
     HOLM_P,
     P_VALUE,
@@ -56,7 +56,7 @@ def test_a_condition_called_as_a_column_of_ours_is_a_column_of_its_own(name):
                 Number("slip", 0.0, main="slip"),
             ),
             conditions={"subject": f"S{i // 4}", name: "ab"[i % 2]},
-            steps=(Step(rcof=0.2, walking_speed=1.3, number=1),),
+            steps=(StepResult(rcof=0.2, walking_speed=1.3, number=1),),
         )
         for i in range(12)
     ]

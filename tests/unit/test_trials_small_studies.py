@@ -12,7 +12,7 @@ from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size
 from underfoot.trials.study import analyse_folder
-from underfoot.trials.study.file_result import FileResult, Number, Step
+from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
 from underfoot.trials.study.study_tests import comparison_findings
@@ -28,7 +28,7 @@ def files_of(rows):
             f"f{n:03d}.c3d",
             numbers=(Number("rcof", rcof + rng.normal(0, scatter), main="rcof"),),
             conditions=conditions,
-            steps=(Step(rcof=rcof, walking_speed=1.3, contact=0.1, peak_force=700.0),),
+            steps=(StepResult(rcof=rcof, walking_speed=1.3, contact=0.1, peak_force=700.0),),
         )
         for n, (conditions, rcof, scatter) in enumerate(rows)
     ]

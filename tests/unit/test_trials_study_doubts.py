@@ -8,7 +8,7 @@ from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import drift
 from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.conditions import conditions_of
-from underfoot.trials.study.file_result import FileResult, Number, Step
+from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import (
@@ -40,7 +40,7 @@ def study(change=lambda conditions, speed: (conditions, speed), seed=1, bodies=N
                 sizes = np.array([600, 1.0, 0.2, 0.25, 0.3]) * np.exp(body)
                 sizes *= np.exp(rng.normal(0, [0.02, 0.004, 0.004, 0.004, 0.004]))
                 names = (FORCE, HEIGHT, "A to B (m)", "A to C (m)", "B to D (m)")
-                step = Step(rcof=rcof, walking_speed=speed, contact=0.1, peak_force=700.0)
+                step = StepResult(rcof=rcof, walking_speed=speed, contact=0.1, peak_force=700.0)
                 files.append(
                     FileResult(
                         f"S{person:02d}_{place:02d}.c3d",

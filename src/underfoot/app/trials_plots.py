@@ -16,7 +16,7 @@ import numpy as np
 from underfoot.trials.pages.figures import Sheet, Tile
 from underfoot.trials.recording.signals import CONTACT_FORCE
 from underfoot.trials.study import FileResult
-from underfoot.trials.study.file_result import Step
+from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope, RecordSignals
 
 WIDTH = 900
@@ -75,7 +75,7 @@ def record_plot(record: FileResult, signals: RecordSignals) -> dict[str, Any]:
     return {"begin": begin, "end": end, "panels": [_panel("force", loads)], "bands": bands}
 
 
-def step_plot(record: FileResult, step: Step, signals: RecordSignals) -> dict[str, Any]:
+def step_plot(record: FileResult, step: StepResult, signals: RecordSignals) -> dict[str, Any]:
     """Return load, ratio and heel speed around a step, with its events."""
     contact, toe_off, plate = step.contact, step.toe_off, signals.force[step.plate]
     begin, end = max(contact - BEFORE, plate.start), min(toe_off + AFTER, plate.end)
@@ -142,7 +142,7 @@ def run_plot(record: FileResult) -> dict[str, Any] | None:
     return {"begin": time[0], "end": time[-1], "panels": panels, "events": ends, "bands": []}
 
 
-def _band(step: Step) -> dict[str, Any]:
+def _band(step: StepResult) -> dict[str, Any]:
     ends = {"begin": step.contact, "end": step.toe_off}
     return {"id": step.number, "verdict": step.verdict, **ends}
 

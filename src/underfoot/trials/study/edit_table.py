@@ -13,7 +13,7 @@ from ..readers.text import name_and_unit
 from ..recording.trial import Edit
 from ..walking.events import EditError
 from .conditions import named_file, table_columns, table_delimiter
-from .file_result import LoggedEdit, Step
+from .file_result import LoggedEdit, StepResult
 
 NAMES = ("edits.csv", "edits.xlsx")
 COLUMNS = ("file", "step", "edit", "value", "why")
@@ -143,7 +143,7 @@ def with_edit_row(text: str, row: Sequence[str] = (), without: Collection[int] =
 
 
 def edit_log(
-    edits: Sequence[Edit], before: Sequence[Step], after: Sequence[Step]
+    edits: Sequence[Edit], before: Sequence[StepResult], after: Sequence[StepResult]
 ) -> list[LoggedEdit]:
     """Return one row per edit: the event and the number before and after it.
 
@@ -167,7 +167,7 @@ def edit_log(
     return rows
 
 
-def _event(what: str, step: Step) -> str:
+def _event(what: str, step: StepResult) -> str:
     if what in ("contact", "toe off"):
         return f"{step.contact if what == 'contact' else step.toe_off:.4f} s"
     if what == "side":

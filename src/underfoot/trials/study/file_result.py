@@ -47,7 +47,7 @@ class Number(Measurement):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step(GaitContext):
+class StepResult(GaitContext):
     """One contact with a plate: its numbers (SI), verdict and the walk around it.
 
     ``number``, ``plate``, ``side``, ``contact``, ``toe_off``, ``by_hand``: as of its ``Stance``;
@@ -143,7 +143,7 @@ class FileResult:
     curves: Mapping[str, Any] = field(default_factory=dict)
     conditions: Mapping[str, Any] = field(default_factory=dict)
     edits: tuple[LoggedEdit, ...] = ()
-    steps: tuple[Step, ...] = ()
+    steps: tuple[StepResult, ...] = ()
     body: Mapping[str, float] = field(default_factory=dict)
     sample: Sample = Sample()
     main: Mapping[str, float] = field(init=False, repr=False, compare=False)
@@ -173,7 +173,7 @@ class FileResult:
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the result written by ``as_dict``."""
         numbers = tuple(map(Number.from_dict, data["numbers"]))
-        steps = tuple(Step(**_with_tuples(step)) for step in data["steps"])
+        steps = tuple(StepResult(**_with_tuples(step)) for step in data["steps"])
         edits = tuple(LoggedEdit(**edit) for edit in data["edits"])
         readings = _with_tuples(data["sample"])
         sample = Sample(**{**readings, "boards": tuple(map(tuple, readings["boards"]))})
@@ -181,7 +181,7 @@ class FileResult:
         return cls(**{**_with_tuples(data), **rows, "curves": _packed(data["curves"])})
 
 
-def parts(row: FileResult | LoggedEdit | Measurement | Sample | Step) -> dict[str, Any]:
+def parts(row: FileResult | LoggedEdit | Measurement | Sample | StepResult) -> dict[str, Any]:
     """Return what a row was made of, by name."""
     return {part.name: getattr(row, part.name) for part in fields(row) if part.init}
 
@@ -207,7 +207,7 @@ class Draft:
         self.cautions: list[str] = []
         self.refusals: list[str] = []
         self.edits: list[LoggedEdit] = []
-        self.steps: list[Step] = []
+        self.steps: list[StepResult] = []
         self.body: dict[str, float] = {}
         self.sample = Sample()
 

@@ -30,7 +30,7 @@ from ..walking.plausibility import unseen
 from ..walking.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..walking.walkway import Walkway, walkway_of
 from .edit_table import edit_log
-from .file_result import Draft, LoggedEdit, Step, rates, refer_to
+from .file_result import Draft, LoggedEdit, StepResult, rates, refer_to
 from .person_measures import person_measures
 
 
@@ -463,11 +463,11 @@ def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
 
 def _step(
     walk: _Walk, stance: Stance, friction: RequiredFriction | None = None, *, reason: str = ""
-) -> Step:
+) -> StepResult:
     rcof = None if friction is None else friction.measurement
     why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else "")
     shared = ("number", "plate", "side", "contact", "toe_off", "by_hand")
-    return Step(
+    return StepResult(
         **{key: getattr(stance, key) for key in shared},
         item=stance.label,
         stance_time=stance.duration,
