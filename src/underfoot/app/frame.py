@@ -29,6 +29,7 @@ WORDS = "/words/"
 """Where the scripts with the words of each language are."""
 LOOK = 0.5
 """s between two looks at the jobs."""
+ui.linear_progress.default_props("instant-feedback")  # gliding, a bar is drawn 60 times a second
 MOST_SHOWN = 12
 """Jobs that the menu shows, those that compute first, then those that wait."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -39,17 +40,26 @@ def form(text: str, *, progress: Progress) -> dict[str, Any]:
     return {k: dict(flat_paths(v)) if isinstance(v, Mapping) else v for k, v in plain.items()}
 
 
-def state(file: str, folder: str, *, progress: Progress) -> dict[str, Any]:
-    """Return what a study will take, or how far it is where it was begun as the file is now."""
+def state(file: str, folder: str, seen: int | None = None, *, progress: Progress) -> dict[str, Any]:
+    """Return what a study will take, or how far it is where it was begun as the file is now.
+
+    With the number of cases that are ``seen`` already: ``parts`` of its live page where more have
+    ended, and the processor time that this took (``seconds``).
+    """
+    began = time.process_time()
     study = Study.load(file, folder)
     store, plan = study.store, study.plan
     ended = len(store.records()) if store.exists else 0
-    if not ended or not store.jobs() or store.plan().text != plan.text:
+    known = store.exists and store.jobs() and store.plan().text == plan.text
+    status = study_status(study) if known else None
+    if status is None or not (ended or status.working):
         return {**presented(study_check(plan, TRIED)), "ended": ended, "begun": False, "open": True}
-    status = study_status(study)
     budget = None if plan.method.design in ("grid", "lhs") else plan.method.budget
-    so_far = {"ended": ended, "begun": True, "open": status.cases_left > 0}
-    return {**presented(status), **so_far, "working": status.working, "budget": budget}
+    so_far = {"ended": ended, "begun": True, "open": status.cases_left > 0, "budget": budget}
+    sheet = {**presented(status), **so_far, "working": status.working}
+    if seen not in (None, ended):
+        sheet["parts"] = results(file, folder, False, progress=progress)
+    return {**sheet, "seconds": time.process_time() - began}
 
 
 def computed(file: str, folder: str, *, progress: Progress) -> None:

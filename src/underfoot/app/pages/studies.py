@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -272,11 +272,14 @@ class _Study:
         self.editor.value = text
         self.sheet = await self._check()
 
-    async def _check(self) -> dict[str, Any] | None:
-        """Say what the study will take, how far it is, or what is wrong with the file."""
+    async def _check(self, seen: int | None = None) -> dict[str, Any] | None:
+        """Say what the study will take, how far it is, or what is wrong with the file.
+
+        With the number of cases that are ``seen``: for a study that runs.
+        """
         sheet = problem = None
         try:
-            sheet = await self.session.ask(f"{WORK}:state", *self.at)
+            sheet = await self.session.ask(f"{WORK}:state", *self.at, seen)
         except UnderfootError as error:
             problem = error
         self.checked.clear()
@@ -343,19 +346,20 @@ class _Study:
         """Show again and again how far it is, with ``others`` as long as they work on it."""
         self.run_button.set_enabled(False)
         count = self.sheet["ended"] if self.sheet else 0
+        began, spent = time.monotonic(), 0.0
 
         async def look() -> None:
-            nonlocal count
-            began = time.monotonic()
-            self.sheet = sheet = await self._check()
+            nonlocal count, spent
+            self.sheet = sheet = await self._check(count)
             self.run_button.set_enabled(others and not self._working)
             if others and not self._working:
                 timer.deactivate()
                 await self._show()
-            elif sheet and sheet["ended"] != count:
+            elif sheet and "parts" in sheet:
                 count = sheet["ended"]
-                await self._show(whole=False)
-            timer.interval = max(LOOK, SELDOM * (time.monotonic() - began))
+                self._put(sheet["parts"])
+            spent += sheet.get("seconds", 0.0) if sheet else 0.0
+            timer.interval = max(LOOK, spent / SHARE - (time.monotonic() - began))
 
         timer = ui.timer(LOOK, look)
         return timer
@@ -364,7 +368,9 @@ class _Study:
 
     async def _show(self, *, whole: bool = True) -> None:
         """Show what is finished."""
-        parts = await self.session.ask(f"{WORK}:results", *self.at, whole)
+        self._put(await self.session.ask(f"{WORK}:results", *self.at, whole))
+
+    def _put(self, parts: Sequence[str]) -> None:
         addresses = [self.session.keep(part) for part in parts]
         ui.run_javascript(f"showStudy({self.plots.html_id!r}, {addresses[0]!r})")
         ui.run_javascript(f"showPart({self.rest.html_id!r}, {addresses[1]!r})")
@@ -387,10 +393,11 @@ class _Study:
         ui.notify(self.text("studies.made", name=name))
 
 
-LOOK = 5.0
+LOOK = 1.0
 """s between two looks at a study that runs, at least ..."""
-SELDOM = 20
-"""... and as a multiple of what a look takes."""
+SHARE = 0.05
+"""... and of one processor what all looks may take. What a look waits, beside the study's workers,
+does not count: else the first would come late, and the next later still."""
 
 
 class _Rows:
