@@ -15,7 +15,7 @@ from chromium import browser
 
 COMMAND = "from underfoot.cli import main; main()"
 REPOSITORY = Path(__file__).resolve().parents[2]
-PATHS = [str(REPOSITORY / "src"), os.environ.get("PYTHONPATH", "")]
+PATHS = [str(REPOSITORY / "src"), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
 
 
 class Served:
