@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from held_law import held
 from web_app import PATHS, Cost, begin, coarsened, drawn, helped, page_of, served
 
 from machine import slowness
@@ -385,7 +386,8 @@ def test_without_webgl_words_and_numbers_stay(app):
 
 def test_kill_of_the_server_loses_nothing_that_finished(app, tmp_path):
     with page_of(app.link) as page:
-        begin(page, app.base, coarse=app)
+        begin(page, app.base)
+        coarsened(page, app, **held(tmp_path / "hold", free=1))  # what would help is held up
         page.get_by_role("button", name="Compute friction").click()
         page.wait_for_selector(".big")
         first = next((app.folder / "results").glob("*/result.json")).read_text()
@@ -393,8 +395,8 @@ def test_kill_of_the_server_loses_nothing_that_finished(app, tmp_path):
         page.get_by_role("button", name="Open a worked example").first.click()
         page.wait_for_url("**/design?variant=*")
         page.get_by_role("button", name="Compute friction").dblclick()
-        page.wait_for_selector(".task >> text=Stop")
-        page.wait_for_timeout(1500)
+        page.get_by_text("Friction: waits").wait_for()
+        page.get_by_role("button", name="2 running").wait_for()
         app.kill()
     with served(app.folder, tmp_path / "home") as again, page_of(again.link) as page:
         page.get_by_text("Interrupted when the app ended").wait_for()

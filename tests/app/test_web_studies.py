@@ -1,5 +1,6 @@
 """Studies and comparisons in the app: what the pages ask, and both pages in a browser."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("nicegui")
 
-from held_law import MODEL
+from held_law import held
 from web_app import drawn, page_of, served
 
 from underfoot.app import work_studies as work
@@ -141,9 +142,8 @@ def test_what_no_row_can_say_is_left_alone():
 def test_the_studies_page_changes_the_file_runs_stops_and_goes_on(project, tmp_path):
     pytest.importorskip("playwright")
     hold = tmp_path / "hold"
-    hold.touch()
-    held = {"friction.model": MODEL, "friction.hold": str(hold), "friction.free": 0.4}
-    project.add("Held", project.case("Heel").replace({**held, "name": "Held"}).to_toml())
+    few = project.case("Heel").replace({**held(hold, free=6), "name": "Held"})
+    project.add("Held", few.to_toml())
     file = project.inside("studies", "More.toml")
     file.write_text(STUDY.replace("steps = 2", "steps = 20").replace("Heel.toml", "Held.toml"))
     with served(project.folder, tmp_path) as app, page_of(app.link) as page:
@@ -164,7 +164,7 @@ def test_the_studies_page_changes_the_file_runs_stops_and_goes_on(project, tmp_p
         page.locator(".task").wait_for(state="detached")
         stopped = len(list(ended(project)))
         assert 2 <= stopped < 30
-        hold.unlink()
+        shutil.rmtree(hold)
         page.get_by_role("button", name="Go on").click()
         page.get_by_role("button", name="Computed").wait_for()
         assert len(list(ended(project))) == 30

@@ -190,13 +190,16 @@ def helped(page):
     page.get_by_role("heading", name="What would help", exact=True).wait_for()
 
 
-def coarsened(page, app):
-    """Put every variant of an app on a grid that runs in a second, and draw the page anew."""
+def coarsened(page, app, **changes):
+    """Put every variant of an app on a grid that runs in a second, and draw the page anew.
+
+    ``changes`` are made beside.
+    """
     from underfoot.app.project import Project
 
     project = Project(app.folder)
     for name in project.variants():
-        project.change(name, COARSE)
+        project.change(name, COARSE | changes)
     page.reload()
     drawn(page)
 
