@@ -602,3 +602,35 @@ def test_results_of_a_study_are_those_of_its_end_or_of_its_live_page(monkeypatch
     assert running == [
         [("Cost", ""), ("plots", "so far of live")], [("so many", "of live")],
     ]  # fmt: skip
+
+
+def test_looks_at_a_study_are_put_off_by_their_own_work_not_by_their_waiting(monkeypatch):
+    clock, shows = [100.0], []
+    looks = iter([(0.4, 1), (0.4, 2), (0.4, 2)])  # processor time, cases that ended
+
+    async def check(seen):
+        clock[0] += 3.0  # the study's workers have the processors
+        seconds, ended = next(looks)
+        return {"ended": ended, "seconds": seconds} | ({"parts": ended} if ended != seen else {})
+
+    page: Any = SimpleNamespace(
+        run_button=SimpleNamespace(set_enabled=lambda _: None), sheet={"ended": 0}, _working=2,
+        _check=check, _put=shows.append,
+    )  # fmt: skip
+    monkeypatch.setattr(studies, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    made: list[Any] = []
+
+    def timer(interval, look):
+        made.append(SimpleNamespace(interval=interval, look=look))
+        return made[-1]
+
+    monkeypatch.setattr(studies.ui, "timer", timer)
+    watch = studies._Study._watch(page)
+    intervals = []
+    for _ in range(3):
+        asyncio.run(made[0].look())
+        intervals.append(watch.interval)
+        clock[0] += 4.0
+    # of 3, 10 and 17 s that have gone looks took 0.4, 0.8 and 1.2 s: 5 % of 8, 16 and 24 s
+    assert intervals == pytest.approx([5.0, 6.0, 7.0])
+    assert shows == [1, 2]
