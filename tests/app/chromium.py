@@ -15,6 +15,9 @@ import numpy as np
 
 from conftest import CHROMIUM
 
+PATIENCE = 300
+"""s after which a test gives a page up: many, for others may compute on the machine."""
+
 
 def browser():
     """Return the path of a Chromium; tests with the mark "browser" run only where there is one."""
@@ -80,7 +83,7 @@ class Session:
     def go(self, page, query=""):
         self.call("Page.navigate", url=page.resolve().as_uri() + query)
         ready = "[...document.querySelectorAll('.viewer')].every((v) => v.dataset.ready)"
-        limit = time.monotonic() + 60
+        limit = time.monotonic() + PATIENCE
         while not self.value(f"document.readyState === 'complete' && {ready}"):
             assert time.monotonic() < limit, f"the page does not get ready: {self.complaints}"
             time.sleep(0.1)

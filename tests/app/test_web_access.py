@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.files.trials_c3d_writing import c3d_bytes
-from web_app import begin, drawn, page_of, served
+from web_app import begin, drawn, page_of, served, settled
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
@@ -30,7 +30,7 @@ def faults(page, name):
             "document.querySelector('.nicegui-content') === null || "
             f"document.body.classList.contains('body--dark') === {dark}"
         )
-        page.wait_for_timeout(1000)
+        settled(page)
         found += [
             f"{name}, {look}: {rule['id']} ({rule['impact']}): {rule['nodes'][0]['html'][:120]}"
             for rule in Axe().run(page).response["violations"]
@@ -103,17 +103,17 @@ def test_labels_titles_and_catalogue_text_of_others_stay_text(app):
         page.get_by_role("tab", name="Floor").click()
         page.locator(".q-tab-panel:visible .q-select").first.click()
         page.get_by_text(STRANGE).first.click()
-        page.wait_for_timeout(1500)
+        settled(page)
         assert STRANGE in page.content().replace("&lt;", "<").replace("&gt;", ">")
         page.get_by_role("tab", name="Assumptions").click()
-        page.wait_for_timeout(1500)
+        settled(page)
         for address in ("studies", "studies?study=strange", "trials", "trials?study=strange"):
             page.goto(app.base + address)
-            page.wait_for_timeout(3000)
+            settled(page)
             assert page.evaluate("document.body.dataset.hit") is None
             assert page.locator("img[src=x]").count() == 0
         page.goto(app.base + "trials?study=strange")
         page.locator(".trial-card").first.click()
-        page.wait_for_timeout(3000)
+        settled(page)
         assert page.evaluate("document.body.dataset.hit") is None
         assert page.locator("img[src=x]").count() == 0

@@ -2,7 +2,7 @@
 
 import pytest
 from test_web_pages import until
-from web_app import page_of, project_of, served
+from web_app import page_of, project_of, served, settled
 
 from underfoot.case import load
 
@@ -96,7 +96,7 @@ def test_what_is_typed_while_the_form_is_drawn_anew_is_kept(tmp_path, pause, lea
         page.keyboard.press("Control+A")
         page.keyboard.type("432", delay=pause)
         until(lambda: load(file).value("motion.speed") == pytest.approx(0.4))
-        page.wait_for_timeout(500)
+        settled(page)
         assert page.get_by_label("Load on the shoe", exact=True).input_value() == "432"
         page.keyboard.press(leave)
         until(lambda: load(file).value("motion.normal_force") == pytest.approx(432))

@@ -154,7 +154,6 @@ def test_a_project_that_can_only_be_read_says_so_and_goes_on(small_disk, tmp_pat
 
     mount("ro")
     with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
-        page.set_default_timeout(30_000)
         said = page.locator(".problem", has_text="the disk is read-only")
         page.goto(app.base + "design?variant=heel")
         drawn(page)

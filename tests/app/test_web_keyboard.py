@@ -1,7 +1,7 @@
 """Every page by keyboard alone: each control is reached, focus is seen, nothing traps."""
 
 import pytest
-from web_app import coarsened, drawn, page_of, served
+from web_app import coarsened, drawn, page_of, served, settled
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
@@ -33,7 +33,7 @@ MOST = 250
 
 def walked(page):
     """Return what Tab does not reach, and what has no visible focus, on the page as it is."""
-    page.wait_for_timeout(1500)
+    settled(page)
     wanted = page.evaluate(CONTROLS)
     page.evaluate(TO_START)
     reached, unseen = [], []
@@ -89,7 +89,7 @@ def test_the_first_answer_and_every_page_without_a_mouse(tmp_path):
             tabbed(page, "tab", page.get_by_role("tab", selected=True).inner_text())
             page.keyboard.press("ArrowRight")
             page.keyboard.press("Enter")
-            page.wait_for_timeout(600)
+            settled(page)
         coarsened(page, app)
         slider = page.locator("input[name='shoe.tread.lug_width']")
         before = slider.input_value()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from package_messages import filled
-from web_app import coarsened, drawn, page_of, served
+from web_app import coarsened, drawn, page_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 
@@ -79,12 +79,12 @@ def app(tmp_path):
 
 def seen(page, *, fold=True):
     """Return every text on the page, what is folded away too."""
-    page.wait_for_timeout(1500)
+    settled(page)
     for each in page.query_selector_all(".q-expansion-item .q-item") if fold else ():
         each.click()
     if fold:
         page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true })")
-    page.wait_for_timeout(500)
+    settled(page)
     return page.evaluate(TEXTS)
 
 
@@ -232,7 +232,7 @@ def test_five_pages_and_the_report_have_no_english_word_in_german(app, english):
         assert page.evaluate("document.documentElement.lang") == "de"
         for tab in page.query_selector_all(".q-tab"):
             tab.click()
-            page.wait_for_timeout(600)
+            settled(page)
             for choice in page.query_selector_all(".q-tab-panel .q-select"):
                 choice.click()
                 texts.setdefault("design", []).extend(seen(page, fold=False))

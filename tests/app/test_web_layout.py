@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from test_web_studies import STUDY
-from web_app import page_of, project_of, served
+from web_app import page_of, project_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
 
@@ -48,7 +48,7 @@ def faults(page, name):
     found = []
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": max(768, width // 2)})
-        page.wait_for_timeout(400)
+        settled(page)
         found += [f"{name}, {width} px: {each}" for each in page.evaluate(FAULTS)]
     return found
 
@@ -76,17 +76,17 @@ def test_nothing_is_cut_covered_or_empty(project, tmp_path, language):
     with served(project.folder, tmp_path / "home") as app, page_of(app.link) as page:
         page.context.add_cookies([{"name": "language", "value": language, "url": app.base}])
         page.reload()
-        page.wait_for_timeout(1000)
+        settled(page)
         found += faults(page, "tour")
         for name, address in pages(app, project):
             page.set_viewport_size({"width": 1366, "height": 768})
             page.goto(address)
-            page.wait_for_timeout(1500)
+            settled(page)
             for tab in page.query_selector_all(".q-tab") or [None]:
                 page.set_viewport_size({"width": 1366, "height": 768})
                 if tab:
                     tab.click()
-                    page.wait_for_timeout(800)
+                    settled(page)
                 label = tab.inner_text() if tab else ""
                 found += faults(page, f"{name} {label}".strip())
                 if folder := os.environ.get("UNDERFOOT_PICTURES"):

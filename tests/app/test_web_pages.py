@@ -17,8 +17,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from chromium import PATIENCE
 from held_law import held
-from web_app import PATHS, Cost, begin, coarsened, drawn, helped, page_of, served
+from web_app import PATHS, Cost, begin, coarsened, drawn, helped, page_of, served, settled
 
 from machine import slowness
 from underfoot.case import Case
@@ -29,9 +30,9 @@ Error = pytest.importorskip("playwright.sync_api").Error
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 
-def until(met, seconds=60):
+def until(met):
     """Wait until a condition is met."""
-    limit = time.monotonic() + seconds
+    limit = time.monotonic() + PATIENCE
     while not met():
         assert time.monotonic() < limit
         time.sleep(0.05)
@@ -132,7 +133,7 @@ def test_the_answer_then_previews_then_the_full_run(app):
         page.set_viewport_size({"width": 390, "height": 844})
         assert page.evaluate("document.documentElement.scrollWidth") <= 390
         page.set_viewport_size({"width": 1366, "height": 768})
-        page.wait_for_timeout(2000)  # nothing else is computed
+        settled(page)  # nothing else is computed
         with Cost() as cost:
             switches = page.evaluate(
                 """async () => {
@@ -180,7 +181,7 @@ def test_verdict_and_sole_are_seen_without_scrolling_at_one_left_edge(app):
         places = "(s) => { const b = document.querySelector(s).getBoundingClientRect(); return b; }"
         for width, height in ((390, 844), (1366, 768), (3840, 2160)):
             page.set_viewport_size({"width": width, "height": height})
-            page.wait_for_timeout(300)
+            settled(page)
             verdict, sole, table, head = (
                 page.evaluate(places, each) for each in (".verdict", "canvas", ".whole", ".brand")
             )

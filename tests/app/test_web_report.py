@@ -5,7 +5,7 @@ import re
 import shutil
 
 import pytest
-from web_app import Cost, drawn, page_of, project_of, served
+from web_app import Cost, drawn, page_of, project_of, served, settled
 
 pytest.importorskip("nicegui")
 
@@ -112,7 +112,7 @@ def test_all_that_is_missing_is_computed_in_one_click(tmp_path, project):
         assert "can't be read" in page.get_by_role("row", name=re.compile("^broken")).inner_text()
         page.get_by_role("columnheader", name="COF").click()
         page.wait_for_selector(".result-table th.sorted")
-        page.wait_for_timeout(300)
+        settled(page)
         cells = page.locator(".result-table tbody tr td:nth-child(2)").all_inner_texts()
         shown = [float(cell.split()[0]) for cell in cells if cell]
         assert len(shown) == 5

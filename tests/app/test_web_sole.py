@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+from chromium import PATIENCE
 from test_web_truth import computed
 from web_app import Cost, begin, drawn, page_of, project_of, served, unfold
 
@@ -81,7 +82,7 @@ def value(app, path):
 
 
 def until(met):
-    limit = time.monotonic() + 120
+    limit = time.monotonic() + PATIENCE
     while not met():
         assert time.monotonic() < limit
         time.sleep(0.1)

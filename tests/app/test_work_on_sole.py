@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from chromium import opened
+from chromium import PATIENCE, opened
 
 from underfoot.case import Case
 from underfoot.compute.run import run
@@ -98,7 +98,7 @@ def test_places_stay_and_follow_what_is_shown(tab, treaded):
         tab.value(f"[...document.querySelectorAll('.choice label')].find((each) => "
                   f"each.innerText === '{title}').click()")  # fmt: skip
         tab.settle()
-        limit = time.monotonic() + 30
+        limit = time.monotonic() + PATIENCE
         while title not in text(tab, "[data-part=probes-head]"):
             assert time.monotonic() < limit
         value = float(tab.value("document.querySelector('[data-part=probes-rows] td:nth-child(3)')"
@@ -116,7 +116,7 @@ def test_a_section_shows_gap_film_and_pressures_along_its_line(tab, treaded):
     left, top, wide, high = tab.value(BOX % "canvas")
     for share in (0.44, 0.56):
         click(tab, left + share * wide, top + 0.72 * high)
-    limit = time.monotonic() + 30
+    limit = time.monotonic() + PATIENCE
     while tab.value("document.querySelectorAll('[data-section]').length") < 4:
         assert time.monotonic() < limit
     names = tab.value("[...document.querySelectorAll('[data-section]')].map((s) => "
@@ -151,7 +151,7 @@ def test_two_soles_are_shown_by_turns_at_one_place(treaded, tmp_path):
         places = tab.value("[...document.querySelectorAll('.stage')].map((stage) => "
                            "stage.getBoundingClientRect().left)")  # fmt: skip
         assert places[0] == places[1]
-        states, limit = set(), time.monotonic() + 60
+        states, limit = set(), time.monotonic() + PATIENCE
         while len(states) < 2:
             states.add(tuple(tab.value(shown)))
             assert time.monotonic() < limit

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import psutil
-from chromium import browser
+from chromium import PATIENCE, browser
 
 COMMAND = "from underfoot.cli import main; main()"
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -127,7 +127,7 @@ def page_of(link, *, width=1366, height=768, dark=False, touch=False, webgl=True
         page.on("console", note)
         page.on("pageerror", lambda error: page.complaints.append(str(error)))
         page.on("request", asked)
-        page.set_default_timeout(300_000)
+        page.set_default_timeout(1000 * PATIENCE)
         page.goto(link)
         try:
             yield page
@@ -167,6 +167,36 @@ def drawn(page):
     """Wait until a sole is drawn."""
     page.wait_for_selector(SOLE)
     page.evaluate("new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))")
+
+
+SHOWN = """() => {
+  const moving = document.getAnimations().some((each) => each.playState === "running"
+    && Number.isFinite(each.effect.getComputedTiming().endTime));
+  if (moving || document.querySelector(".viewer:not([data-ready])")) return "";
+  const page = document.querySelector(".nicegui-content")?.cloneNode(true);
+  page?.querySelectorAll(".task, [role=status]").forEach((each) => each.remove());
+  if (page) return window.did_handshake ? page.innerHTML : "";
+  return document.readyState === "complete" ? "a report" : "";
+}"""
+"""What a page shows, without what tells progress; "" while it is not there yet."""
+QUIET = 3
+"""Rounds in which nothing changes after which a page is taken as settled."""
+
+
+def settled(page):
+    """Wait until a page shows all that it asked for, however long that takes.
+
+    In each round the app answers a question that waits for those which were asked before.
+    """
+    frame = "new Promise((d) => requestAnimationFrame(() => requestAnimationFrame(d)))"
+    rounds, before = 0, ""
+    while rounds < QUIET:
+        if page.url.startswith("http"):
+            page.evaluate("fetch('/api/picture/variant/settled').then((answer) => answer.text())")
+        page.evaluate(frame)
+        now = page.evaluate(SHOWN)
+        rounds = rounds + 1 if now and now == before else 0
+        before = now
 
 
 def unfold(page):
