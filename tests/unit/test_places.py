@@ -530,6 +530,7 @@ def test_how_often_the_fluid_is_there_changes_no_step_in_it(choice):
 @pytest.mark.slow
 def test_the_order_of_floors_and_shoes_changes_nothing():
     table = small_place()
+    table["floor"][0]["area"] = 1
     table["floor"].append({"name": "yard", "roughness": {"rq": "6 um"}, "area": 2})
     turned = copy.deepcopy(table)
     turned["floor"].reverse()
