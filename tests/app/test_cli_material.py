@@ -193,6 +193,21 @@ def test_moduli_of_another_temperature_than_that_of_use_are_told(tmp_path, form,
     )
 
 
+@pytest.mark.parametrize("form", ["sweep", "relaxation", "series"])
+@pytest.mark.parametrize(("use", "at"), [(None, 23), (296.15, 23), (278.15, 5)])
+def test_a_test_that_names_no_temperature_is_told(tmp_path, form, use, at):
+    """It counts as one at the temperature of use: a note at 23 °C, elsewhere a warning."""
+    w = np.geomspace(0.6, 600, 13)
+    heads, columns = {
+        "sweep": ("f (rad/s),E' (MPa),E'' (MPa)", (w, TRUTH(w).real / 1e6, TRUTH(w).imag / 1e6)),
+        "relaxation": ("t (s),E (MPa)", (1 / w[::-1], TRUTH.relaxation_modulus(1 / w[::-1]) / 1e6)),
+        "series": ("tau (s),E_i (MPa)", (np.array([0.01, 1.0, np.inf]), np.array([2.0, 1.0, 3.0]))),
+    }[form]
+    found = compound_from_files([written(tmp_path / "test.csv", heads, *columns)], temperature=use)
+    told = f"no test names its temperature: that of use is assumed, {at} °C"
+    assert (told in found.notes, told in found.warnings) == (at == 23, at != 23)
+
+
 def context_law(folder):
     case = Case.load(folder / "case.toml")
     return case.friction.build(resolved(case))

@@ -324,6 +324,8 @@ def test_readings_of_a_case_go_beside_those_of_its_shoe(tmp_path):
     [
         ({"ptv_96": 350}, "350 is outside"),
         ({"ramp_angle": "60 deg"}, "60 deg is outside"),
+        ({"ptv_96": 0.41}, "0.41 is no reading"),
+        ({"ramp_angle": "0.2 deg"}, "0.2 is no reading"),
         ({"ramp_class": "R8"}, "R9"),
         ({}, "no reading of the floor"),
         ({"ptv": 36}, "ptv_96"),
@@ -528,6 +530,7 @@ def test_how_often_the_fluid_is_there_changes_no_step_in_it(choice):
 @pytest.mark.slow
 def test_the_order_of_floors_and_shoes_changes_nothing():
     table = small_place()
+    table["floor"][0]["area"] = 1
     table["floor"].append({"name": "yard", "roughness": {"rq": "6 um"}, "area": 2})
     turned = copy.deepcopy(table)
     turned["floor"].reverse()
@@ -688,7 +691,24 @@ def changed(**changes):
             "beside wear_per_month",
         ),
         ({"floor__reading": [{"machine": "ramp-oil", "value": 60}]}, "60 is no reading"),
-        ({"floor__reading": {"machine": "ramp-oil", "value": 12}}, "no table"),
+        ({"floor__reading": {"machine": "ramp-oil", "value": 12}}, r"reading: .*a list of tables"),
+        ({"floor__reading": [{"machine": "ramp-oil"}]}, "reading 1.value: is missing"),
+        ({"floor__reading": [{"machine": "pendulum-96", "value": 0.41}]}, "0.41 is no reading"),
+        ({"floor__reading": [{"machine": "ramp-oil", "value": 0.21}]}, "0.21 is no reading"),
+        ({"shoe__reading": [{"test": "tile_glycerine"}]}, "reading 1.cof: is missing"),
+        ({"people": {"rcof_mean": 0.2, "task": [{"rcof": 0.3}]}}, "each task has its own rcof"),
+        (
+            {"shoe": [one | {"present": True} for one in small_place()["shoe"]]},
+            "shoe.present: 2 shoes: smooth, treaded",
+        ),
+        (
+            {"floor": [{**small_place()["floor"][0], "area": 60}, DRY]},
+            "floor store.area: is missing, other floors have one",
+        ),
+        (
+            {"floor": [small_place()["floor"][0] | {"fluids": {"dry": 0.9, "water": 0.1}}]},
+            "fluids: each floor has its own",
+        ),
         ({"floor__reading": [{"machine": "bot-3000e", "value": True}]}, "True"),
         ({"floor__area": 0}, "area"),
         ({"fluids": {"dry": 0.5, "watr": 0.5}}, 'floor hall.fluids.*"water'),
@@ -850,6 +870,23 @@ def test_steps_in_a_fluid_are_those_of_each_floor_by_its_area():
     usual = place_of(small_place())
     assert (usual.rcof_sd, usual.steps, usual.tasks[0].rcof) == (0.03, 8000, 0.2)
     assert any("steps_per_day" in each for each in usual.assumed)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"people": {"days_per_year": 220}}, "people.days_per_year: no number"),
+        ({"floor": [*small_place()["floor"], DRY]}, "floor.area: not given; each floor"),
+        ({}, "people.rcof_sd: not given; 0.03"),
+    ],
+)
+def test_what_a_place_leaves_open_or_says_in_vain_is_told(changes, told):
+    assert any(each.startswith(told) for each in place_of(small_place() | changes).assumed)
+
+
+def test_nothing_is_told_of_a_place_that_says_all():
+    people = {"rcof_mean": 0.2, "rcof_sd": 0.03, "steps_per_day": 8000}
+    assert place_of(small_place() | {"people": people}).assumed == ()
 
 
 @pytest.mark.parametrize(

@@ -319,7 +319,8 @@ def compound_from_files(
         files: Sweeps, relaxation moduli, a Prony series, recordings of compression tests.
         hardness: A durometer's reading.
         temperature: Of use, K; None takes 23 C where tests at several temperatures hold it, else
-            the middle one. Moduli of another temperature than that of use (23 C) get a warning.
+            the middle one. Moduli of another temperature than that of use (23 C) get a warning, and
+            those of an unnamed one where that of use is another than 23 C (else a note).
         thickness, area: Of one block of a compression test (m, m^2).
         shear: Whether moduli are those of shear; None takes what the headings say (G', G_stor).
         modulus_unit: Of moduli, where a file has none.
@@ -385,6 +386,9 @@ def compound_from_files(
     used = ROOM if temperature is None else temperature
     if at is None:
         at = temperature
+        if spectrum is not None:
+            told = f"no test names its temperature: that of use is assumed, {_celsius(used)}"
+            (warnings if abs(used - ROOM) > APART else notes).append(told)
     elif abs(at - used) > APART:
         warnings.append(f"Tested at {_celsius(at)}, used at {_celsius(used)}: not shifted.")
     return Compound(

@@ -22,6 +22,8 @@ FEWEST = 3
 """Frequencies of a sweep."""
 SAME = 0.5
 """K: tests within it, and far closer than others, are at one temperature."""
+OTHER_STRAIN = 1.5
+"""Ratio of two strains from which they are not one that the machine did not quite hold."""
 _LEVELS = 'the modulus at once (--at-once "8 MPa") or at rest (--at-rest "0.8 MPa")'
 
 
@@ -151,6 +153,7 @@ def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
     for table in tables:
         w = table.angular_frequency()
         storage, loss = _moduli(table, w)
+        _refuse_strains(table, w)
         if w.size > FEWEST and np.ptp(w) < 1e-3 * w.max():
             raise DataError(
                 f"one frequency, {w[0] / (2 * np.pi):.3g} Hz, in all {w.size} rows: no spectrum",
@@ -163,6 +166,36 @@ def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
             for rows, temperature in _sets(table, w)
         ]
     return sorted(found, key=lambda sweep: sweep.temperature or 0.0)
+
+
+def _refuse_strains(table: Table, w: np.ndarray) -> None:
+    """Refuse a table that repeats its frequencies at other strains.
+
+    A filled rubber is softer the further it is strained (Payne): no spectrum fits them together.
+    """
+    column, hot = table.named("strain"), table.named("temperature")
+    if column is None:
+        return
+    try:
+        strain = np.abs(table.numbers(column))
+    except DataError:  # a gap in a column that no modulus needs
+        return
+    kelvin = np.zeros_like(w) if hot is None else table.si(hot)
+    places: dict[tuple[int, int], list[float]] = {}
+    for row in zip(np.round(100 * np.log(w)), np.round(kelvin / SAME), strain, strict=True):
+        places.setdefault((int(row[0]), int(row[1])), []).append(float(row[2]))
+    repeated = [each for each in places.values() if len(each) > 1]
+    if len(repeated) > 0.5 * len(places) and all(
+        max(each) > OTHER_STRAIN * min(each) for each in repeated
+    ):
+        raise DataError(
+            f"each frequency was tested at several strains, {column.name} {strain.min():g} to "
+            f"{strain.max():g}",
+            where=table.where,
+            allowed="one strain",
+            remedy="Keep the rows of one strain, near that of use: a filled rubber is softer the "
+            "further it is strained",
+        )
 
 
 def _moduli(table: Table, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -69,6 +69,8 @@ WORDS: tuple[tuple[str, str], ...] = (
     (r"fraction|normali[sz]ed modulus|relative modulus", "fraction"),
     (r"(instantaneous|glassy) modulus|modulus at once", "modulus at once"),
     (r"(equilibrium|long[ -]term|relaxed|rubbery) modulus|modulus at rest", "modulus at rest"),
+    (r"(oscillation |shear |dynamic |strain |test )?strain( amplitude)?( %)?|dehnung(samplitude)?"
+     r"|deformation(samplitude)?|verformung|scherdeformation", "strain"),
     (r"set|sweep|run|segment", "set"),
 )  # fmt: skip
 """Whole names in words, English and German, in any case; the first that fits counts."""
@@ -79,7 +81,7 @@ UNITS = {
     "complex viscosity": "Pa*s", "storage compliance": "1/Pa", "loss compliance": "1/Pa",
     "decay rate": "1/s",
 }  # fmt: skip
-PURE = ("loss factor", "fraction", "set")
+PURE = ("loss factor", "fraction", "set", "strain")
 _CYCLES = {"hz": 1.0, "khz": 1e3, "mhz": 1e-3, "cycles/s": 1.0, "cps": 1.0}
 _PER_SECOND = {"1/s", "s^-1", "s-1", "s⁻¹", "1/sec", "sec^-1", "sec-1", "/s", "s**-1", "s^{-1}"}
 _PER_MINUTE = {"1/min", "min^-1", "min-1", "min⁻¹", "/min", "min**-1", "min^{-1}"}

@@ -72,10 +72,14 @@ FLUIDS = {
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """How a machine prints friction: name of its number, its unit, and both ways."""
+    """How a machine prints friction: name of its number, its unit, and both ways.
+
+    ``least``: below it a number is none of the unit but a COF, or an angle in radians.
+    """
 
     name: str
     unit: str
+    least: float = 0.0
 
     def reading(self, cof: Any) -> Any:
         """Return the machine's number of a COF.
@@ -100,8 +104,8 @@ class Scale:
 
 
 SCALES = {
-    "ptv": Scale("ptv", "PTV"),
-    "angle": Scale("angle", "deg"),
+    "ptv": Scale("ptv", "PTV", least=2.0),
+    "angle": Scale("angle", "deg", least=1.6),
     "cof": Scale("cof", "COF"),
 }
 
@@ -263,11 +267,11 @@ class Machine:
         """
         if isinstance(reading, bool) or not isinstance(reading, int | float):
             raise InputError(f"{reading!r}", where=where, allowed="a number")
-        if not 0 < reading <= self.most:
+        if not self.scale.least < reading <= self.most:
             raise RangeError(
                 f"{reading:g} is no reading of the {self.title.lower()}",
                 where=where,
-                allowed=f"above 0, at most {self.most:g} {self.scale.unit}",
+                allowed=f"above {self.scale.least:g}, at most {self.most:g} {self.scale.unit}",
                 remedy="Check machine and unit: a pendulum prints PTV (36), a ramp degrees (12), a "
                 "tribometer COF (0.42)",
             )

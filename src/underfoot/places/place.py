@@ -176,8 +176,20 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     _check_keys(table, "", "")
     assumed: list[str] = []
     common = _shares(table.get("fluids"), "fluids") if "fluids" in table else None
-    floors = tuple(_floor(each, common, assumed) for each in _tables(table, "floor"))
+    entries = _tables(table, "floor")
+    floors = tuple(_floor(each, common, assumed) for each in entries)
     shoes = tuple(_shoe(each) for each in _tables(table, "shoe"))
+    _share_steps(entries, assumed)
+    if common is not None and all("fluids" in each for each in entries):
+        remedy = "Leave these out, or those of the floors"
+        raise InputError("each floor has its own", where="fluids", remedy=remedy)
+    today = [shoe.name for shoe in shoes if shoe.present]
+    if len(today) > 1:
+        raise InputError(
+            f"{len(today)} shoes: {', '.join(today)}",
+            where="shoe.present",
+            allowed="one shoe, with which changes are compared",
+        )
     for kind, each in (("floor", floors), ("shoe", shoes)):
         names = [one.name for one in each]
         twice = next((one for one in names if names.count(one) > 1), None)
@@ -202,14 +214,22 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     _check_keys(people, "people", "people")
     mean = _number(people, "rcof_mean", "people", 0.20, (0.05, 0.6))
     steps = _number(people, "steps_per_day", "people", 8000.0, (1, 1e5))
-    _number(people, "days_per_year", "people", 220.0, (1, 366))  # files of 0.2 have it
+    if "days_per_year" in people:  # files of 0.2 have it
+        _number(people, "days_per_year", "people", 220.0, (1, 366))
+        assumed.append("people.days_per_year: no number of the choice hangs on it")
     if "steps_per_day" not in people:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
-    tasks = tuple(_task(each, mean) for each in people.get("task", []))
-    tasks = tasks or (Task("walking", 1.0, mean),)
-    if "rcof_mean" not in people and not all("rcof" in t for t in people.get("task") or [{}]):
+    named = _listed(people, "task", "people")
+    tasks = tuple(_task(each, mean) for each in named) or (Task("walking", 1.0, mean),)
+    of_tasks = all("rcof" in each for each in named or [{}])
+    if "rcof_mean" in people and of_tasks:
+        remedy = "Leave it out, or the rcof of the tasks that need no more than the mean"
+        raise InputError("each task has its own rcof", where="people.rcof_mean", remedy=remedy)
+    if "rcof_mean" not in people and not of_tasks:
         assumed.append("people.rcof_mean: not given; 0.20 of adults who walk straight on the level")
-    _adds_to_one([task.share for task in tasks], "people.task")
+    if "rcof_sd" not in people:
+        assumed.append("people.rcof_sd: not given; 0.03 between steps assumed")
+    _adds_to_one([task.share for task in tasks], "people.task", "")
     place = Place(
         str(table.get("name", name)),
         floors,
@@ -225,6 +245,19 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     )
     _check_cases(place)
     return place
+
+
+def _share_steps(floors: Sequence[Mapping[str, Any]], assumed: list[str]) -> None:
+    """Say how steps are shared between floors without areas; refuse areas of some of them."""
+    without = [each["name"] for each in floors if "area" not in each]
+    if without and len(without) < len(floors):
+        raise InputError(
+            "is missing, other floors have one",
+            where=f"floor {without[0]}.area",
+            allowed="the area of each floor in one unit, or of none",
+        )
+    if without and len(floors) > 1:
+        assumed.append("floor.area: not given; each floor has as many steps")
 
 
 def _check_cases(place: Place) -> None:
@@ -258,6 +291,15 @@ def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
     return entries
 
 
+def _listed(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
+    """Return a list of tables within one; one table by itself is refused as such."""
+    entries = table.get(key, [])
+    if not isinstance(entries, list):
+        allowed = "a list of tables, as [{ ... }]"
+        raise InputError(f"{entries!r}", where=f"{where}.{key}", allowed=allowed)
+    return entries
+
+
 def _check_keys(table: Any, section: str, where: str) -> None:
     if not isinstance(table, Mapping):
         raise InputError(f"{table!r} is no table", where=where or "PLACE")
@@ -284,17 +326,17 @@ def _shares(table: Any, where: str) -> Mapping[str, float]:
             f"{table!r}", where=where, allowed="shares of the steps, as { dry = 0.9, water = 0.1 }"
         )
     shares = {name: _number(table, name, where, 0.0, (0.0, 1.0)) for name in table}
-    _adds_to_one(list(shares.values()), where)
+    _adds_to_one(list(shares.values()), where, "A share named dry takes what no fluid has")
     return {name: share for name, share in sorted(shares.items()) if share > 0}
 
 
-def _adds_to_one(shares: Sequence[float], where: str) -> None:
+def _adds_to_one(shares: Sequence[float], where: str, remedy: str) -> None:
     if abs(sum(shares) - 1) > 0.005:
         raise InputError(
             f"the shares add to {sum(shares):.3g}",
             where=where,
             allowed="shares of all steps, which add to 1",
-            remedy="A share named dry takes what no fluid has",
+            remedy=remedy or None,
         )
 
 
@@ -336,7 +378,7 @@ def _floor(
         assumed.append(f"{where}.roughness: Rq is Rz over 4 to 8")
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
-        for number, each in enumerate(entry.get("reading", []), start=1)
+        for number, each in enumerate(_listed(entry, "reading", where), start=1)
     )
     if not section and not readings:
         assumed.append(
@@ -353,10 +395,11 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
     _check_keys(entry, "floor.reading", where)
     device = machine(str(entry.get("machine", "")), f"{where}.machine")
     fluid = device.fluid_of_standard(str(entry.get("fluid", "")), f"{where}.fluid")
-    value = device.checked(entry.get("value", 0), f"{where}.value")
+    if "value" not in entry:
+        raise InputError("is missing", where=f"{where}.value", allowed="what the machine printed")
+    value = device.checked(entry["value"], f"{where}.value")
     kind = str(entry.get("kind", "value"))
-    sd = entry.get("sd")
-    spread = None if sd is None else device.checked(sd, f"{where}.sd")
+    spread = _number(entry, "sd", where, 0.0, (1e-6, device.most)) if "sd" in entry else None
     Reading(float(device.scale.cof(value)), kind)  # refuses what is none
     return FloorReading(device, fluid, value, kind, spread)
 
@@ -390,12 +433,14 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             remedy="Give the tread that is left (tread.depth), and its wear from then on",
         )
     readings = []
-    for number, each in enumerate(entry.get("reading", []), start=1):
+    for number, each in enumerate(_listed(entry, "reading", where), start=1):
         at = f"{where}.reading {number}"
         _check_keys(each, "shoe.reading", at)
         test = str(each.get("test", ""))
         if test not in slip_tests():
             raise unknown_name("test", test, slip_tests(), where=f"{at}.test")
+        if "cof" not in each:
+            raise InputError("is missing", where=f"{at}.cof", allowed="the COF of the certificate")
         cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
         sd = _number(each, "sd", at, 0.0, (1e-6, 2.0)) if "sd" in each else None
         readings.append(ShoeReading(test, Reading(cof, str(each.get("kind", "value")), sd)))

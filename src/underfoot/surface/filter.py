@@ -10,6 +10,13 @@ from .prepare import Surface
 
 ENDS = ("drop", "regression", "periodic")
 ALPHA = np.sqrt(np.log(2.0) / np.pi)
+ROUNDED = 1e-5
+"""Relative rounding of positions that a file prints; a length within it of a cut-off holds it."""
+
+
+def holds(length: float, cutoff: float) -> bool:
+    """Return whether a length (m) holds a cut-off (m)."""
+    return length >= cutoff * (1.0 - ROUNDED)
 
 
 def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
@@ -46,7 +53,7 @@ def within_cutoffs(flat: HeightMap, short: float, cutoff: float) -> HeightMap:
 
     Half a long cut-off is left out at each end of a side that keeps as much.
     """
-    if min(flat.size) < cutoff:
+    if not holds(min(flat.size), cutoff):
         return flat
     if short < cutoff / 4:
         flat = long_waves(flat, short, "regression")
@@ -75,7 +82,7 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
     drop = ends == "drop"
     lost = [weights(h, cutoff, 0.5).size // 2 if drop else 0 for h in surface.spacings]
     for n, h, rim in zip(surface.heights.shape, surface.spacings, lost, strict=True):
-        if n - 2 * rim < 2 or n * h < cutoff * (1.0 - 1e-9):
+        if n - 2 * rim < 2 or not holds(n * h, cutoff):
             raise DataError(
                 f"a length of {metres(n * h)} is too short for the cut-off {metres(cutoff)}",
                 where="cutoff",

@@ -55,6 +55,22 @@ def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarr
     return z, f"{count} of {z.size} missing heights interpolated"
 
 
+def held_level(heights: ArrayLike) -> tuple[float, float]:
+    """Return which share of the heights is one number, and the number; (0, 0) of usual heights.
+
+    That number stands in 1 % of the points and more, and five times as often as any of the three
+    numbers on either side: missing heights written as one, or the end of an instrument's range.
+    The steps of an instrument are as frequent as their neighbours.
+    """
+    values, counts = np.unique(np.asarray(heights, dtype=float), return_counts=True)
+    k = int(counts.argmax())
+    beside = np.concatenate([counts[max(k - 3, 0) : k], counts[k + 1 : k + 4]])
+    share = float(counts[k] / counts.sum())
+    if len(values) < 8 or share < 0.01 or counts[k] < 5 * beside.max():
+        return 0.0, 0.0
+    return share, float(values[k])
+
+
 def levelled(surface: Surface, degree: int = 1) -> Surface:
     """Return the surface without its least squares polynomial of ``degree`` in x (and y).
 

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, SourcedValue, display
 from underfoot.core.arrays import Array
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import Presentable, Table, percent
 
-from .filter import short_waves, within_cutoffs
+from .filter import holds, short_waves, within_cutoffs
 from .heights import HeightMap, Profile, shortest_derivable_wavelength
 from .lay import Directions, Texture, directions, lines_across, lines_along_axes, texture
-from .prepare import levelled, without_spikes
+from .prepare import held_level, levelled, without_spikes
 from .read import read_surface
 from .roughness import STANDARDS, level_roughness
 from .spectrum import (
@@ -42,6 +42,8 @@ NO_FLOOR = 50e-9
 NO_ROUGHNESS = 300e-6
 ROUNDING = 1e-6
 """Relative spread between sections that is rounding of what a file prints, not of a surface."""
+UNEVEN = 2.0
+"""Rq of all sections over that of the middle one from which few of them carry the roughness."""
 QUANTITIES = {
     "ra": ("Ra", "m", "mean deviation"),
     "rq": ("Rq", "m", "root mean square"),
@@ -74,8 +76,8 @@ class Scan(Presentable):
     roll_off: float | None
     ends: tuple[float, float]
     notes: tuple[str, ...]
-    short: str = ""
-    """What a scan shorter than the usual cut-off lacks."""
+    doubts: tuple[str, ...] = ()
+    """What a scan shorter than the usual cut-off lacks, and what looks like no roughness."""
     texture: Texture | None = None
     """Texture of a map behind the cut-off; None of a profile."""
     directions: Directions | None = None
@@ -130,7 +132,7 @@ class Scan(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return why the heights are none of a floor or sole, and which waves they lack."""
-        return (*height_cautions(self.values["rq"].value or 0.0), *filter(None, [self.short]))
+        return (*height_cautions(self.values["rq"].value or 0.0), *self.doubts)
 
     def table(self) -> Table:
         """Return the numbers with their standard errors."""
@@ -254,15 +256,15 @@ def read_scan(
             resolved = shortest_derivable_wavelength(lines[0])
             longest = max(line.length for line in lines)
             chosen, short = _cutoff(longest, resolved.wavelength, cutoff, str(path))
-            if min(surface.size) >= chosen:
+            if holds(min(surface.size), chosen):
                 areal = within_cutoffs(flat, shortest, chosen).rms_height
         elif len(set(surface.spacings)) > 1:
             finer = "xy"[int(np.argmin(surface.spacings))]
             sides = " by ".join(display(side, "m") for side in surface.spacings)
             notes.append(f"cells of {sides}: numbers are of lines along {finer}, which shows more")
-    cutoff, lines = chosen, [line for line in lines if line.length >= chosen]
+    cutoff, lines = chosen, [line for line in lines if holds(line.length, chosen)]
     level = [flat] if isinstance(flat, Profile) else [levelled(line) for line in lines]
-    values, sections = _numbers(
+    values, sections, uneven = _numbers(
         lines, level, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface
     )
     if areal is not None:
@@ -272,9 +274,11 @@ def read_scan(
         notes.append(f"{sections} sections of {display(cutoff, 'm')} where a standard takes five")
     if resolved.wavelength > SHORT_CUTOFF:
         notes.append(f"waves below {display(resolved.wavelength, 'm')} not seen: {resolved.reason}")
-    if short:
+    doubts = tuple(filter(None, [short, uneven, _held(surface)]))
+    if doubts:
+        said = "; ".join(doubts)
         values = {
-            name: replace(value, source=f"{value.source}; {short}", assumed=True)
+            name: replace(value, source=f"{value.source}; {said}", assumed=True)
             for name, value in values.items()
         }
     unlikely = unlikely_height(values["rq"].value or 0.0)
@@ -304,7 +308,7 @@ def read_scan(
         notes.append(rises_text(rises))
     return Scan(
         *(Path(path).name, surface, cutoff, values, spectrum, hurst, roll_off, ends),
-        *(tuple(notes), short, found),
+        *(tuple(notes), doubts, found),
         directions(even, spectrum.wavenumber)
         if lay is not None and isinstance(even, HeightMap)
         else None,
@@ -317,7 +321,7 @@ def _cutoff(length: float, resolved: float, given: float | None, where: str) -> 
     ``length``: of the longest line (m); ``resolved``: its shortest wave (m).
     """
     if given is not None:
-        if given > length:
+        if not holds(length, given):
             raise DataError(
                 f"a scan of {display(length, 'm')} for a cut-off of {display(given, 'm')}",
                 where=where,
@@ -326,7 +330,7 @@ def _cutoff(length: float, resolved: float, given: float | None, where: str) -> 
                 "fits",
             )
         return given, ""
-    fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved]
+    fitting = [one for one in CUTOFFS if holds(length, one) and one >= 4 * resolved]
     if not fitting:
         raise DataError(
             f"a scan of {display(length, 'm')} that resolves waves of "
@@ -352,8 +356,10 @@ def _numbers(
     short: float,
     lay: Texture | None,
     surface: Profile | HeightMap,
-) -> tuple[dict[str, SourcedValue], int]:
+) -> tuple[dict[str, SourcedValue], int, str]:
     """Return the numbers over all lines, which hold the cut-off, and the sections of a line.
+
+    The last is a doubt, where few sections carry most of the roughness.
 
     ``level``: the same without their straight line, which those of a periodic surface keep.
     Means of the lines, of Rq and Rdq root mean squares. The standard error is the spread of Rq
@@ -375,7 +381,8 @@ def _numbers(
     for line in level:
         rough = short_waves(line, cutoff, ends).heights
         size = round(cutoff / line.spacing)
-        pieces += [np.std(rough[n * size : (n + 1) * size]) for n in range(count)]
+        start = (rough.size - count * size) // 2  # of the sections that the numbers are of
+        pieces += [np.std(rough[start + n * size : start + (n + 1) * size]) for n in range(count)]
     beside, alike = shortest, cutoff
     if lay is not None and isinstance(surface, HeightMap):
         along = math.sin(lay.across), math.cos(lay.across)
@@ -398,4 +405,31 @@ def _numbers(
         mean = float(np.mean(np.power(found, power)) ** (1 / power))
         error = None if spread is None else mean * spread / math.sqrt(independent)
         values[name] = SourcedValue(mean, unit, source=source, uncertainty=error)
-    return values, count
+    return values, count, _uneven(np.array(pieces))
+
+
+def _uneven(sections: np.ndarray) -> str:
+    """Return what sections that carry most of the roughness ask; "" of ones that are alike.
+
+    ``sections``: Rq of each, (n,), m. A joint, an edge or a scratch makes one far rougher than the
+    others; of sections of one surface the root mean square stays near the median.
+    """
+    usual, whole = float(np.median(sections)), float(np.sqrt(np.mean(sections**2)))
+    if len(sections) < 3 or whole <= UNEVEN * usual:
+        return ""
+    numbers = [display(one, "m") for one in (float(sections.max()), usual)]
+    return (
+        f"few sections carry the roughness: Rq of the roughest is {numbers[0]}, of the middle one "
+        f"{numbers[1]}. A joint, an edge or damage? Cut it off, or measure beside it"
+    )
+
+
+def _held(surface: Profile | HeightMap) -> str:
+    """Return what many equal heights ask; "" where no number stands out."""
+    share, height = held_level(surface.heights)
+    if not share:
+        return ""
+    return (
+        f"{percent(share)} of the heights are one number, {display(height, 'm')}: missing ones, or "
+        "the end of the range? Leave them empty in the file, or measure again"
+    )
