@@ -245,7 +245,7 @@ def _changed(case: Case, change: Mapping[str, object]) -> Case | None:
         return None
 
 
-def moved(own: Numbers, other: Numbers) -> dict[str, float]:
+def moved(before: Numbers, after: Numbers) -> dict[str, float]:
     """Return what is added to the logarithms of the numbers of a place, as ``StatedEffect`` has it.
 
     A number that one of both lacks stays.
@@ -258,8 +258,8 @@ def moved(own: Numbers, other: Numbers) -> dict[str, float]:
         logs |= {name: logs[name] + _log(whole) - _log(contact) for name in ON_CONTACT}
         return {**logs, ODDS: float(log_film_odds(film, contact)), WHOLE: _log(whole)}
 
-    before, after = logarithms(own), logarithms(other)
-    apart = {name: after[name] - value for name, value in before.items() if name in after}
+    end = logarithms(after)
+    apart = {name: end[name] - log for name, log in logarithms(before).items() if name in end}
     return {name: one if math.isfinite(one) else 0.0 for name, one in apart.items()}
 
 
