@@ -204,9 +204,9 @@ def test_one_walker_has_a_probability_of_his_own(tmp_path):
     path = tmp_path / "measurements.csv"
     heads = "file,person,item,quantity,value,caution"
     path.write_text("\n".join([heads, "a,,step 1,rcof,0.20,", "a,,step 2,rcof,0.24,", ""]))
-    mean, sd, words = measured_rcof(path)
-    assert (mean, sd) == pytest.approx((0.22, 0.02828), rel=1e-3)
-    assert "that walker's, nobody else's" in words
+    read = measured_rcof(path)
+    assert (read.mean, read.sd) == pytest.approx((0.22, 0.02828), rel=1e-3)
+    assert "that walker's, nobody else's" in read.text
     path.write_text("\n".join([heads, "a,,step 1,rcof,0.20,", ""]))
     with pytest.raises(InputError, match="RCOF of one step"):
         measured_rcof(path)

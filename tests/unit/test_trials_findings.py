@@ -255,11 +255,11 @@ def test_rcof_of_persons_not_of_steps_and_means(tmp_path):
             if step.rcof is not None:
                 people.setdefault(one.conditions["subject"], []).append(step.rcof)
     means = [np.mean(values) for values in people.values()]
-    mean, sd, words = measured_rcof(path)
+    read = measured_rcof(path)
     assert len(means) == 2
-    assert mean == pytest.approx(np.mean(means))
-    assert sd == pytest.approx(np.std(means, ddof=1))
-    assert "between 2 persons" in words
+    assert read.mean == pytest.approx(np.mean(means))
+    assert read.sd == pytest.approx(np.std(means, ddof=1))
+    assert "between 2 persons" in read.text
     path.write_text("file,person,item,quantity,value,caution\na,S1,step 1,rcof,0.2,\n")
     with pytest.raises(InputError, match="there is no spread"):
         measured_rcof(path)

@@ -322,7 +322,9 @@ def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress)
             f"the case {case.name} gave no result: {contact.status}", history=(), where=case.name
         )
     on = case, parts.context, parts.local_law, parts.sole, contact
-    friction = contact_friction(*on, samples=law.draws.count, spreads=solution.spreads)
+    friction = contact_friction(
+        *on, samples=law.draws.count, spreads=solution.spreads, stated=solution.stated
+    )
     sums, sampled = friction.sums, friction.sampled
     positions = averaged(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
     if positions is not None:

@@ -1,6 +1,6 @@
 """Section for grid, tolerance and limits of the computation."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,8 @@ Tolerance = Annotated[float, Quantity("1", 1e-10, 0.1)]
 
 class Numerics(Section):
     """Grid and tolerance."""
+
+    without_spread: ClassVar[str] = "a setting of the computation is exact"
 
     grid_spacing: Spacing = default(
         0.6 * _mm, "0.6 mm", "four cells in the narrowest channel of the report"

@@ -86,6 +86,8 @@ class ChangRisk(_Published):
 class Walkers(Section):
     """A population's steps; the required friction is that of ``risk``, the angle of ``motion``."""
 
+    without_spread: ClassVar[str] = "what differs between people is the sd beside it"
+
     subjects: Annotated[int, Field(ge=1, le=10_000, strict=True)] = default(
         40, 40, "enough for a share to within 15 %"
     )

@@ -74,6 +74,8 @@ class Section(BaseModel):
     """Paths of files: a hash counts their names alone, and the checksums beside them."""
     replaced: ClassVar[tuple[str, ...]] = ()
     """Fields that name a file whose content is a field beside them."""
+    without_spread: ClassVar[str] = ""
+    """Why no value has a standard deviation of its own; "" where numbers may have one."""
 
     _origins: dict[str, Origin] = PrivateAttr(default_factory=dict)
     _entry: str = PrivateAttr(default="")
@@ -100,7 +102,25 @@ class Section(BaseModel):
             key: cls._bound(section, key, origin) for key, origin in origins.items()
         }
         section._entry = entry
+        for name in section.model_fields_set:
+            items = getattr(section, name)
+            for number, item in enumerate(items if isinstance(items, tuple) else (), start=1):
+                cls._refuse_spreads(item, (name, number))
         return section
+
+    @classmethod
+    def _refuse_spreads(cls, item: Any, path: tuple[str | int, ...]) -> None:
+        """Refuse a standard deviation in an item of a list, which nothing reads."""
+        origins = item._origins if isinstance(item, Section) else {}
+        for key, origin in origins.items():
+            if origin.uncertainty is not None:
+                error = InputError(
+                    "a value in a list has no standard deviation of its own",
+                    allowed="sd of a friction reading; of others none",
+                    remedy="Leave uncertainty out",
+                )
+                where = (*map(str, path), key, "uncertainty")
+                raise refused_at(cls, where, error, origin.leaf.uncertainty)
 
     @classmethod
     def in_own_terms(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -111,10 +131,18 @@ class Section(BaseModel):
     def _bound(cls, section: "Section", key: str, origin: Origin) -> Origin:
         """Return the origin tied to the value that the section holds."""
         field, written = cls.model_fields.get(key), origin.leaf.uncertainty
-        if field is None:
+        if field is None and written is None:
             return origin
         uncertainty = None
         if written is not None:
+            number = field is not None and quantity_of(field)
+            number = number and isinstance(getattr(section, key), float | None)
+            if why := cls.without_spread or ("" if number else "it is no quantity"):
+                error = InputError(
+                    f"has no standard deviation: {why}", remedy="Leave uncertainty out"
+                )
+                raise refused_at(cls, (key, "uncertainty"), error, written)
+            assert field is not None
             unit = unit_of(field)
             try:
                 uncertainty = spread_to_si(written, origin.leaf.given, unit, where="")

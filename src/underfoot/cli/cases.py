@@ -16,15 +16,15 @@ RcofFrom = Annotated[
 ]
 
 
-def _measured_rcof(path: Path | None) -> list[str]:
+def _measured_rcof(path: Path | None, *, steps: bool = False) -> list[str]:
     """Return the settings of a case that hold the RCOF of measured walkers."""
     if path is None:
         return []
     from underfoot.questions.slips import measured_rcof
 
-    mean, sd, words = measured_rcof(path)
-    say(words)
-    return [f"risk.rcof_mean={mean:.6g}", f"risk.rcof_sd={sd:.6g}"]
+    measured = measured_rcof(path)
+    say(measured.text)
+    return measured.settings(steps=steps)
 
 
 @sharing(without=("out", "quick", "processes", "overwrite"))
@@ -121,7 +121,7 @@ def slip(
     """
     from underfoot.questions.slips import own_histories, slip_population
 
-    given = shared.case(case, _measured_rcof(rcof_from))
+    given = shared.case(case, _measured_rcof(rcof_from, steps=True))
     steps = [step for path in history or () for step in own_histories(path)]
     if shared.out is None and not shared.json:
         shared.out = Path("out") / f"{case.stem}_slip"

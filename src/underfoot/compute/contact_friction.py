@@ -30,6 +30,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from . import numbers
 from .sole import sole_map
+from .stated_spreads import VISCOSITY, StatedEffects, friction_draws, odds_changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,8 @@ class ContactFriction:
     """Shear stresses on the sole, what edges of lugs do to them, their sum and its draws.
 
     ``parts`` are maps (nx, ny), the viscous part 0 outside the film; ``film_odds`` (samples,) draws
-    of the error of ln F / (W - F), F the load on the film, W the whole.
+    of the error of ln F / (W - F), F the load on the film, W the whole; ``stated`` those of what
+    the case states with a spread, by path and name (``StatedEffects``).
     """
 
     parts: FrictionParts
@@ -45,6 +47,7 @@ class ContactFriction:
     sums: FrictionCoefficients
     sampled: SampledCof | None
     film_odds: Array
+    stated: Mapping[str, Mapping[str, Array]]
 
 
 def contact_friction(
@@ -56,11 +59,17 @@ def contact_friction(
     *,
     samples: int = SAMPLES,
     spreads: Mapping[str, tuple[float, float]] | None = None,
+    stated: StatedEffects | None = None,
+    drawn_law: FrictionLaw | EdgedLaw | None = None,
 ) -> ContactFriction:
     """Return the friction of a contact by the local law, drawn over the spread of its inputs.
 
-    ``spreads``: what a standard deviation less and more of a part of the rough contact adds to the
-    logarithm of the film's odds (``film_spreads``); between and beyond in proportion.
+    Parameters:
+        spreads: What a standard deviation less and more of a part of the rough contact adds to the
+            logarithm of the film's odds (``film_spreads``); between and beyond in proportion.
+        stated: Of what the case states with a spread.
+        drawn_law: The law without what ``stated`` holds, which it would draw once more; None takes
+            ``law``.
     """
     maps = law_on(law, contact)(contact.contact_pressure, case.motion.speed, contact.film_thickness)
     at = contact.finest
@@ -71,12 +80,15 @@ def contact_friction(
         maps = _on_squares(parts, at, contact)
     else:
         maps = replace(maps, viscous=np.where(contact.wet, maps.viscous, 0.0))
-    lugs, suction, plain = None, None, law
+    lugs, suction = None, None
+    plain = law if drawn_law is None else law_on(drawn_law, at)
     if isinstance(law, EdgedLaw):
-        plain, lugs = law.with_mean_state(*values), law.lugs(*values)
+        lugs = law.lugs(*values)
         pull = case.sourced("film.suction")
         pull = pull if pull.uncertainty else replace(pull, uncertainty=numbers.SUCTION_SPREAD)
         suction = pull, lugs.suction_share(parts)
+    if isinstance(plain, EdgedLaw):
+        plain = plain.with_mean_state(*values)
     assert isinstance(plain, FrictionLaw)
     place, seed = place_of_tread(case, sole), case.numerics.seed
     known: Mapping[str, Array] = getattr(plain, "known_errors", lambda _: {})(samples)
@@ -95,6 +107,10 @@ def contact_friction(
     source = f"{plain.name} law: {plain.source}"
     exact = cof(parts, *pressures, **on_cells, source=source).cof.value or 0.0
     film_shear = film_warmth(case, context, exact, contact, samples=samples)
+    of_case = (stated or StatedEffects()).draws(lambda name: normal_draws(seed, name, samples))
+    fluid = {"viscosity": context.viscosity} if context.viscosity is not None else {}
+    if VISCOSITY in of_case:
+        fluid = {}
     sampled = sampled_cof(
         plain,
         *pressures,
@@ -102,10 +118,11 @@ def contact_friction(
         speed=case.motion.speed,
         wet=at.wet,
         **at.areas,
-        fluid_inputs={} if context.viscosity is None else {"viscosity": context.viscosity},
+        fluid_inputs=fluid,
         film_error=errors["film_error"],
         rough_errors=rough,
         tread_error=errors["tread_error"],
+        stated=friction_draws(of_case),
         film_shear=film_shear,
         zero=numbers.ZERO * normal_draws(seed, "zero of the cell", samples),
         contact_factor=1.0 if lugs is None else lugs.factor_map(),
@@ -115,12 +132,7 @@ def contact_friction(
     )
     sums = cof(parts, *pressures, **on_cells, sampled=sampled, source=source)
     film_odds = errors["film_error"] + sum(rough.values())
-    return ContactFriction(maps, lugs, sums, sampled, film_odds)
-
-
-def odds_changes(less: float, more: float, normal: Array) -> Array:
-    """Return what standard normal draws add to ln F / (W - F): ``less`` at -1, ``more`` at 1."""
-    return np.where(normal > 0, more, -less) * normal
+    return ContactFriction(maps, lugs, sums, sampled, film_odds, of_case)
 
 
 def film_warmth(

@@ -30,7 +30,8 @@ from .contact_friction import ContactFriction, contact_friction
 from .position_draws import COF_PARTS, LOADS
 from .positions import place_numbers, treaded
 from .prepare import Prepared, prepared
-from .solve import continued, film_spreads, solved_motion
+from .solve import continued, film_spreads, law_without, solved_motion, stated_effects
+from .stated_spreads import StatedEffects
 
 SAFETY, SHARE = 2.0, 0.1
 """Error per unit of what the steps move, and of the change. Chosen on 21 changes of two treaded
@@ -138,12 +139,19 @@ class Continuation:
     def _friction(self, parts: Prepared, contact: SoleContact) -> ContactFriction:
         """Return the friction of a contact; its film is as unknown as that of the march."""
         on = parts.case, parts.context, parts.local_law, parts.sole, contact
-        return contact_friction(*on, spreads=self.spreads)
+        stated = self.stated.of(parts.case)
+        law = law_without(parts, stated)
+        return contact_friction(*on, spreads=self.spreads, stated=stated, drawn_law=law)
 
     @cached_property
     def spreads(self) -> dict[str, tuple[float, float]]:
         """Relative spread of the film (``film_spreads``)."""
         return film_spreads(self._parts, self.contact)
+
+    @cached_property
+    def stated(self) -> StatedEffects:
+        """What the spreads that the case states do to its numbers (``stated_effects``)."""
+        return stated_effects(self._parts, self.contact)
 
     @threads_limited(1)
     def continued(self, changes: Mapping[str, Any], *, drawn: bool = True) -> Preview:

@@ -18,7 +18,10 @@ from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
+from .stated_spreads import ODDS, WHOLE, added
+
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated"
+UNKNOWN_SPREAD = ("contact_area", "minimum_film_thickness")
 CONTACT_SHARE = 1e-3
 """Contact pressure below this share of the mean pressure doesn't count as contact."""
 BEARING_SHARE = 0.99
@@ -121,26 +124,34 @@ def with_film_spread(
     values: Mapping[str, SourcedValue],
     film_odds: Array,
     drawn: Callable[[str, int], Array] | None = None,
+    stated: Mapping[str, Mapping[str, Array]] | None = None,
 ) -> dict[str, SourcedValue]:
     """Return the numbers of the film with the spread of its load, and that over places.
 
     ln F / (W - F), F the load on the film, W the whole, is off by ``film_odds`` (n,); what sensors
     read and peaks go with F, place by place. ``drawn`` gives a number over positions of the tread
-    and shoe angles, in the order of the draws of COF.
+    and shoe angles, in the order of the draws of COF. ``stated`` (``ContactFriction``) moves F by
+    its odds and W, the others by what each moves beside F.
     """
+    stated = stated or {}
     load, whole = values["fluid_load"].value, values["normal_force"].value
     if not load or not whole:
         return dict(values)
     loads = load if drawn is None else drawn("fluid_load", film_odds.size)
     share = np.minimum(np.asarray(loads) / whole, 1.0)
-    factors = 1 / (share + (1 - share) * np.exp(-film_odds))
+    factors = 1 / (share + (1 - share) * np.exp(-film_odds - added(stated, ODDS)))
+    most = whole * np.exp(added(stated, WHOLE))
     result = dict(values)
     for name in GRID_NAMES[1:]:
         value = values[name].value
         if not value:
             continue
         draws = (value if drawn is None else drawn(name, factors.size)) * factors
-        draws = np.minimum(draws, whole) if name == "fluid_load" else draws
+        if name == "fluid_load":
+            draws = np.minimum(draws * (most / whole), most)
+        else:
+            beside = added(stated, name) - added(stated, "fluid_load") + added(stated, WHOLE)
+            draws = draws * np.exp(beside)
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
         known = values[name].uncertainty or 0.0
         own = 1.96 * known / value
@@ -157,12 +168,36 @@ def with_film_spread(
     return result
 
 
+def with_stated(
+    values: Mapping[str, SourcedValue], stated: Mapping[str, Mapping[str, Array]]
+) -> dict[str, SourcedValue]:
+    """Return the numbers whose own spread is not estimated with that of what the case states.
+
+    In their note: an interval of it alone would be too narrow.
+    """
+    result = dict(values)
+    for name in UNKNOWN_SPREAD:
+        value, draws = values[name], added(stated, name)
+        if value.value and np.std(draws) > 0:
+            off = display(float(np.std(value.value * np.exp(draws))), value.unit)
+            words = f"± {off} by what the case states"
+            note = f"{value.note}; {words}" if value.note else words
+            result[name] = replace(value, note=note)
+    return result
+
+
 def required_friction(case: Case) -> RcofPopulation:
     """Return what the people of a case need on its floor, down its slope if it has one."""
-    source = case.sourced("risk.rcof_mean").source
+    mean, sd, slope = map(case.sourced, ("risk.rcof_mean", "risk.rcof_sd", "floor.slope"))
     # the case itself lists an assumed required friction, so the population need not do so again
-    level = RcofPopulation(case.risk.rcof_mean, case.risk.rcof_sd, source)
-    return level.on_slope(case.floor.slope or 0.0)
+    level = RcofPopulation(
+        case.risk.rcof_mean,
+        case.risk.rcof_sd,
+        mean.source,
+        mean_deviation=mean.uncertainty or 0.0,
+        sd_deviation=sd.uncertainty or 0.0,
+    )
+    return level.on_slope(case.floor.slope or 0.0, slope.uncertainty or 0.0)
 
 
 def slope_words(case: Case) -> str:

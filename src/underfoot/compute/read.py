@@ -84,7 +84,10 @@ def readings(
         values = positions.averaged(values)
     values = with_steadiness(values)
     drawn = positions.drawn if positions else None
-    values = numbers.with_film_spread(values, solution.friction.film_odds, drawn)
+    values = numbers.with_film_spread(
+        values, solution.friction.film_odds, drawn, solution.friction.stated
+    )
+    values = numbers.with_stated(values, solution.friction.stated)
     drainage = None
     if contact.fluid_load > FILM_MATTERS * contact.normal_force:
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
@@ -106,7 +109,7 @@ def readings(
     rocker = case.origins.get("shoe.heel.profile.radius")
     if rocker is None or not rocker.leaf.assumed:
         labels["film_heel_basis"] = "with lengths of the heel that nobody measured"
-    labels |= _remarks(parts, solution, remarks)
+    labels |= _remarks(parts, solution, remarks) | solution.stated.labels()
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
         errors = errors.sentence(values)

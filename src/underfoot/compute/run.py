@@ -68,10 +68,10 @@ def run(
     parts = prepared(case, spacing, given, progress=progress)
     moments.append(time.perf_counter())
     first = first_share(case, quick=quick)
-    solution = solved(parts, part(progress, 0.0, first))
     if processes is None and run_cost(case, quick=quick).seconds[0] < LONG:
         processes = 1
     beside = min(workers(processes), max(int(most / expected.memory), 1))
+    solution = solved(parts, part(progress, 0.0, first), processes=beside)
     rest = part(progress, first, 1.0)
     positions = averaged(parts, solution, quick=quick, processes=beside, progress=rest)
     moments.append(time.perf_counter())

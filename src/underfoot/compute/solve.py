@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import ConvergenceError, Progress, silent
+from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.pool import in_processes
 from underfoot.core.progress import part
 from underfoot.film import FilmModel, NewtonianFilm
+from underfoot.friction import FrictionLaw
 from underfoot.friction.sampled_cof import FLOW, GAP, LEAK
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw, TabulatedLaw
 from underfoot.sole_contact import SensorReading
@@ -27,17 +28,24 @@ from .micro_contact import micro_contact
 from .position_draws import Place, TreadPositions, log_film_odds
 from .positions import (
     TURNED,
+    case_places,
     place_numbers,
     position_count,
+    shoe_angles,
     tread_positions,
     treaded,
 )
 from .prepare import Prepared, prepared
 from .sensors import scanned
 from .sole import sole_map
+from .stated_spreads import Numbers, StatedEffects, solved_effects, stated_spreads
 
 LEAST_FILM = 1e-3
 """Share of the load from which it is computed how unknown a film is."""
+STATED_SHARE = 0.5
+"""Share of the work of a march that both ends of a stated spread take."""
+OF_PLAN = ("heel", "tread", "outsole", "wear")
+"""Parts of a shoe that make the map of its sole."""
 LANDING = 0.2e-3
 """Height from which a sole lands in a deeper pool, m. The time to squeeze a film goes with 1 / h^2:
 what lies above takes a hundredth of what a film of 20 um takes."""
@@ -57,6 +65,7 @@ class Solution:
         friction: Of the contact, as the tread lies.
         sensor: What the scans of the floor read.
         spreads: ``film_spreads``.
+        stated: ``stated_effects``.
     """
 
     contact: SoleContact
@@ -64,10 +73,11 @@ class Solution:
     friction: ContactFriction
     sensor: SensorReading
     spreads: Mapping[str, tuple[float, float]]
+    stated: StatedEffects
 
 
-def solved(parts: Prepared, progress: Progress = silent) -> Solution:
-    """Return the contact of a prepared case.
+def solved(parts: Prepared, progress: Progress = silent, *, processes: int = 1) -> Solution:
+    """Return the contact of a prepared case; ``processes`` as in ``averaged``.
 
     Raises:
         ConvergenceError: Not even the first contact could be solved.
@@ -75,11 +85,93 @@ def solved(parts: Prepared, progress: Progress = silent) -> Solution:
     case, sole, law = parts.case, parts.sole, parts.local_law
     recorder = Recorder(case, law, sole, parts.viscosity)
     done = 1.0 if case.motion.build() is None else OWN_MARCH
-    contact = solved_motion(parts, watch=recorder, progress=part(progress, 0.0, done))
-    spreads = film_spreads(parts, contact, part(progress, done, 1.0))
-    friction = contact_friction(case, parts.context, law, sole, contact, spreads=spreads)
+    own = 1.0 / (1.0 + STATED_SHARE * len(stated_spreads(case)))
+    contact = solved_motion(parts, watch=recorder, progress=part(progress, 0.0, own * done))
+    spreads = film_spreads(parts, contact, part(progress, own * done, own))
+    stated = StatedEffects()
+    if contact.status.usable:
+        rest = part(progress, own, 1.0)
+        stated = stated_effects(parts, contact, rest, processes=processes)
+    on = case, parts.context, law, sole, contact
+    drawn_law = law_without(parts, stated)
+    friction = contact_friction(*on, spreads=spreads, stated=stated, drawn_law=drawn_law)
     sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
-    return Solution(contact, recorder, friction, sensor, spreads)
+    return Solution(contact, recorder, friction, sensor, spreads, stated)
+
+
+def stated_effects(
+    parts: Prepared, contact: SoleContact, progress: Progress = silent, *, processes: int = 1
+) -> StatedEffects:
+    """Return what the spreads that a case states do to its numbers.
+
+    Each number is taken at one standard deviation less and more. Where sliding is steady and the
+    sole stays as it is, the finished contact goes on in two steps, without lugs to the shoe angles
+    of a run too, and is compared with such steps of the case itself. Else both are solved from the
+    start on the quick grid, as the tread lies at the places of a quick run (``effect_places``).
+    """
+    steady = parts.case.motion.end_time is None
+    beside = not treaded(parts.case) and parts.case.numerics.tread_positions > 1
+    turns = shoe_angles() if beside else (Place(),)
+
+    def stepped(case: Case) -> Numbers | None:
+        same = all(getattr(case.shoe, name) == getattr(parts.case.shoe, name) for name in OF_PLAN)
+        if not (steady and same and case.motion.shoe_angle == parts.case.motion.shoe_angle):
+            return None
+        try:
+            here = prepared(case, parts.spacing, parts.objects)
+            ends = [continued(contact, here, turn=place.turn)[-1] for place in turns]
+        except (InputError, ConvergenceError):
+            return None
+        usable = all(end.status.usable for end in ends)
+        return _mean([place_numbers(here, end) for end in ends]) if usable else None
+
+    def marched(cases: Sequence[Case]) -> list[Numbers | None]:
+        asked = [(k, place) for k, case in enumerate(cases) for place in effect_places(case)]
+        numbers = _NumbersOfCases(tuple(cases), _effect_spacing(parts), parts.objects)
+        ended: list[list[Numbers]] = [[] for _ in cases]
+        count = 1 if parts.objects else processes
+        stage = "Stated spreads"
+        for index, each in in_processes(numbers, asked, count, progress=progress, stage=stage):
+            if each is not None:
+                ended[asked[index][0]].append(each)
+        return [_mean(each) for each in ended]
+
+    return solved_effects(parts.case, stepped, marched)
+
+
+def effect_places(case: Case) -> tuple[Place, ...]:
+    """Return where the tread lies as the effect of a stated spread is solved."""
+    one = case.numerics.tread_positions == 1 or case.motion.build() is not None
+    if one:
+        return (Place(),)
+    return case_places(case, quick=True) if treaded(case) else shoe_angles()
+
+
+def law_without(parts: Prepared, stated: StatedEffects) -> FrictionLaw | EdgedLaw | None:
+    """Return the local friction that draws nothing of what ``stated`` holds.
+
+    None where its own is that: nothing is stated, or a law was given, which the effects leave as
+    it is.
+    """
+    exact = None if "friction" in parts.objects else stated.exact(parts.case)
+    if exact is None:
+        return None
+    geometry = parts.sole, parts.compliance
+    return prepared(exact, parts.spacing, parts.objects, geometry=geometry).local_law
+
+
+def _effect_spacing(parts: Prepared) -> float:
+    return (
+        parts.spacing if "compliance" in parts.objects else parts.case.numerics.quick_grid_spacing
+    )
+
+
+def _mean(numbers: Sequence[Numbers]) -> Numbers | None:
+    """Return the means of numbers over places; None without any."""
+    if not numbers:
+        return None
+    names = set.intersection(*(set(each) for each in numbers))
+    return {name: float(np.mean([each[name] for each in numbers])) for name in names}
 
 
 def film_spreads(
@@ -229,6 +321,23 @@ class _PlaceNumbers:
 
     def __call__(self, asked: tuple[Place, float]) -> Mapping[str, float] | None:
         return _numbers_at(self._parts, *asked)
+
+
+@dataclass(frozen=True)
+class _NumbersOfCases:
+    """The numbers of changed cases, each as its tread lies at a place."""
+
+    cases: tuple[Case, ...]
+    spacing: float
+    objects: Mapping[str, Any]
+
+    def __call__(self, asked: tuple[int, Place]) -> Numbers | None:
+        number, place = asked
+        try:
+            parts = prepared(self.cases[number], self.spacing, self.objects)
+        except InputError:
+            return None
+        return _numbers_at(parts, place, self.spacing)
 
 
 def _numbers_at(

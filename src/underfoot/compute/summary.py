@@ -63,6 +63,8 @@ LUGS_SHOWN = 6
 LABELS = {
     "cof_spread_from": "Uncertainty of the COF",
     "film_spread": "Spread of the film",
+    "stated_spreads": "Stated spreads",
+    "stated_idle": "Stated without effect",
     "slope": "Slope",
     "tread_position": "Tread position",
     "shoe_angle": "Shoe angle",
@@ -74,7 +76,7 @@ LABELS = {
     "sensor": "Caution on the sensor",
     "objects": "Computed with an object in place of the case's option",
 }
-CAUTIONS = ("floor_reading", "positions_left_out", "angle_as_exact")
+CAUTIONS = ("floor_reading", "positions_left_out", "angle_as_exact", "stated_left_out")
 """Labels that are cautions, the most serious first."""
 PARTS: Mapping[str, str] = {
     "exponential": "how closely rough surfaces come together under this pressure",

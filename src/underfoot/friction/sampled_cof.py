@@ -139,6 +139,7 @@ def sampled_cof(
     film_error: Array | None = None,
     rough_errors: Mapping[str, Array] | None = None,
     tread_error: Array | None = None,
+    stated: Mapping[str, Mapping[str, Array]] | None = None,
     film_shear: Array | None = None,
     zero: Array | None = None,
     contact_factor: ArrayLike = 1.0,
@@ -166,6 +167,10 @@ def sampled_cof(
         rough_errors: Those of ``ROUGH``: draws (samples,) of what each adds to the error of the
             load on the film.
         tread_error: Draws (samples,) of the error of ln COF by the tread; None counts none.
+        stated: Draws (samples,) of inputs that contact and film were solved for, by input and name:
+            "adhesion" and "hysteresis" of ln of what a newton of the contact has of each,
+            "viscous" of that of the film's shear, "odds" of what is added to ln F / (W - F),
+            "normal" of the input itself. No newton gets more than the law's highest COF by them.
         film_shear: Draws (samples,) of ln of the film's shear stress over that computed.
         zero: Draws (samples,) of what a reading of COF under a film is off by.
         contact_factor: On the contact friction of the law, (nx, ny), 1.
@@ -175,10 +180,15 @@ def sampled_cof(
     Returns None when one of the law's own inputs has no standard deviation, or when nothing has
     one: an interval of the rest alone would be too narrow.
     """
-    inputs = _inputs(law, fluid_inputs)
+    stated = stated or {}
+    beyond = {name: SourcedValue(0.0, "1", "", 1.0) for name in stated}
+    inputs = _inputs(law, {**(fluid_inputs or {}), **beyond})
     if inputs is None:
         return None
-    joint = dict(_joint(law, samples, seed))
+    joint = {
+        **_joint(law, samples, seed),
+        **{name: each["normal"] for name, each in stated.items()},
+    }
     highest = getattr(law, "highest", HIGHEST)
     beside = {FILM: film_error, SHEAR: film_shear, ZERO: zero, **(rough_errors or {})}
     beside = beside if np.any(fluid_pressure) else {}
@@ -207,7 +217,7 @@ def sampled_cof(
     factor = np.where(coarse > 0, exact / np.where(coarse > 0, coarse, 1.0), 1.0)
 
     def parts(values: Mapping[str, float]) -> Array:
-        drawn = law.at({k: v for k, v in values.items() if k not in APART})
+        drawn = law.at({k: v for k, v in values.items() if k not in (*APART, *stated)})
         return factor * sums(drawn(pressure, speed, gap), counts, wet_counts)
 
     options = {"samples": samples, "seed": seed, "shares": False}
@@ -218,11 +228,18 @@ def sampled_cof(
         suctions = 1.0 + pull_share * (ratio - 1.0)
     of_law = np.where(exact > 0, spread.draws / np.where(exact > 0, exact, 1.0), 1.0).T
     of_law[2] *= np.exp(drawn.get(SHEAR, 0.0))
+    if stated:
+        of_law *= np.exp(
+            np.sum([[each[name] for name in PARTS] for each in stated.values()], axis=0)
+        )
+        newton, most = exact[:2] @ of_law[:2], max(highest * carried, float(exact[:2].sum()))
+        of_law[:2] /= np.maximum(newton / max(most, 1e-30), 1.0)
     draws = LawDraws(
         *of_law,
         model=drawn.get(MODEL, 0.0),
         suction=suctions,
-        odds=sum(drawn.get(name, 0.0) for name in (FILM, *ROUGH)),
+        odds=sum(drawn.get(name, 0.0) for name in (FILM, *ROUGH))
+        + sum(each["odds"] for each in stated.values()),
         zero=drawn.get(ZERO, 0.0),
         tread=drawn.get(TREAD, 0.0),
         highest=highest,

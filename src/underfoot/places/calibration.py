@@ -94,10 +94,26 @@ class FloorCalibration(Presentable):
     before: tuple[float, float, float]
     after: tuple[float, float, float]
     effective: float
+    beside: tuple[FloorReading, ...] = ()
+    """Readings that the case itself holds: they count there, not in these draws."""
+    again: tuple[Machine, ...] = ()
+    """Machines of which the draws to begin with hold a reading of this floor already."""
 
     def cautions(self) -> tuple[str, ...]:
-        """Return the readings that were not foretold."""
-        return tuple(map(str, self.draws.outside))
+        """Return the readings that were not foretold, left out, or may count twice."""
+        return (
+            *map(str, self.draws.outside),
+            *(
+                f"{one} stays in the case, and is not in the file: friction.model = "
+                '"pair_read" counts it there.'
+                for one in self.beside
+            ),
+            *(
+                f"friction.draws_file holds a reading of {one.title} on this floor already: this "
+                "one counts as a further reading. If it is the same, do not use the file."
+                for one in self.again
+            ),
+        )
 
     def heading(self) -> str:
         """Return the title."""
@@ -209,15 +225,34 @@ def calibrated_floor(
 ) -> FloorCalibration:
     """Return the draws of the law calibrated to a machine's reading of the floor of a case.
 
+    What ``pair_read`` holds in the case stays there: it does not count in these draws too.
+
     Raises:
-        InputError: Another law of friction; a reading that the machine cannot print, or one that
-            hardly any draw agrees with.
+        InputError: Another law of friction; a reading that the machine cannot print, one of a
+            machine whose reading the case holds, or one that hardly any draw agrees with.
     """
     device = machine(named, "--machine")
     liquid = device.fluid_of_standard(fluid, "--fluid")
     value = device.checked(reading, "--reading")
     law, read = pair_law(case), FloorReading(device, liquid, value, kind)
-    return floor_calibration(law.pair, law.draws, (read,), case.numerics.seed + seed)
+    beside: tuple[FloorReading, ...] = ()
+    if isinstance(case.friction, PairReadOption):
+        beside, law = case.friction.floor_readings(), case.friction.unread(resolved(case))
+    if any(one.machine == device for one in beside):
+        raise InputError(
+            f"the case holds what {device.title} read of this floor",
+            where="--machine",
+            allowed="a machine whose reading is not in the case",
+            remedy="Write the mean of its readings into the case, which counts it by itself",
+        )
+    told = floor_calibration(law.pair, law.draws, (read,), case.numerics.seed + seed)
+    again = (device,) if was_read(law.draws, device) else ()
+    return replace(told, beside=beside, again=again)
+
+
+def was_read(draws: PairDraws, device: Machine) -> bool:
+    """Return whether draws hold what a machine read of their floor."""
+    return any(name.startswith(f"{KEPT_AS}{device.name} on {FLOOR}") for name in draws.errors)
 
 
 FIELDS = {
@@ -288,12 +323,17 @@ class PairReadOption(PairOption):
         except InputError as error:
             yield error
 
-    def build(self, context: Context) -> FrictionLaw:
-        """Return the law, narrowed."""
+    def unread(self, context: Context) -> PairContactLaw:
+        """Return the law without the readings, on any floor where none was measured."""
         law: Any = super().build(context)
         pair = law.pair if law.pair.measured[1] else replace(law.pair, floor_rq=ANY_FLOOR_RQ)
-        told = _narrowed(pair, self.floor_readings(), self.draws_file, self.sha256)
-        return PairContactLaw(pair, law.viscosity, told.draws)
+        return PairContactLaw(pair, law.viscosity, law.draws)
+
+    def build(self, context: Context) -> FrictionLaw:
+        """Return the law, narrowed."""
+        law = self.unread(context)
+        told = _narrowed(law.pair, self.floor_readings(), self.draws_file, self.sha256)
+        return PairContactLaw(law.pair, law.viscosity, told.draws)
 
 
 @lru_cache(maxsize=32)
@@ -304,4 +344,10 @@ def _narrowed(
     if draws_file:
         with meant_file(draws_file, sha256, "friction.draws_file") as path:
             draws = read_pair_draws(path)
+    if twice := [one.machine.title for one in readings if was_read(draws, one.machine)]:
+        raise InputError(
+            f"holds what {twice[0]} read of this floor, and so does the case",
+            where="friction.draws_file",
+            remedy="Leave the reading out of the case, or the file",
+        )
     return floor_calibration(pair, draws, readings, 0)

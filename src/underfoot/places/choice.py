@@ -25,13 +25,14 @@ import numpy as np
 from scipy.special import expit
 
 from underfoot.case import Case
-from underfoot.compute.contact_friction import odds_changes, place_of_tread, sole_errors
+from underfoot.compute.contact_friction import place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
 from underfoot.compute.positions import place_numbers, places, treaded
 from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import resolved
 from underfoot.compute.sole import file_periods, sole_map
 from underfoot.compute.solve import solved_at
+from underfoot.compute.stated_spreads import ODDS, added, odds_changes
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
@@ -390,7 +391,7 @@ class _Solver:
                 values = march.values
             pair = _law(self.place.case(shoe, floor, fluid, worn)).pair
             found[floor.name, fluid] = self._cell(
-                case, values, solved.spreads, shoe, floor, pair, moved, tread
+                case, values, solved, shoe, floor, pair, moved, tread
             )
         return found
 
@@ -398,7 +399,7 @@ class _Solver:
         self,
         case: Any,
         values: Mapping[str, float],
-        spreads: Mapping[str, tuple[float, float]],
+        march: Continuation,
         shoe: PlaceShoe,
         floor: PlaceFloor,
         pair: Pair,
@@ -425,17 +426,18 @@ class _Solver:
         errors = {
             name: joint.error(error, tread) for name, error in sole_errors(case, context).items()
         }
+        stated = march.stated.of(case).draws(joint.normal) if film > 0 else {}
         share = np.zeros(joint.count)
         if film > 0:
             odds = math.log(film / (1 - film)) + errors["film_error"] + moved.mean()
             odds = odds + moved.std() * joint.normal(f"position of the tread of {shoe_name(shoe)}")
-            for name, (less, more) in spreads.items():
+            for name, (less, more) in march.spreads.items():
                 normal = joint.normal(f"{name} of the rough contact on {floor.name}")
                 odds = odds + odds_changes(less, more, normal)
-            share = expit(odds)
+            share = expit(odds + added(stated, ODDS))
         acof = factor * mu * (1 - share) * np.exp(errors["tread_error"])
         if film > 0:
-            acof = acof + viscous * share / film
+            acof = acof + viscous * np.exp(added(stated, "cof_viscous")) * share / film
         return Cell(np.clip(acof, 0.0, law.highest), solved, film)
 
 

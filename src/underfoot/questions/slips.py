@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -325,12 +325,67 @@ def own_histories(path: Path) -> list[GaitHistory]:
     return recorded_histories(path)
 
 
-def measured_rcof(path: Path) -> tuple[float, float, str]:
-    """Return mean and standard deviation of the RCOF of persons, and whose they are in words.
+@dataclass(frozen=True, slots=True)
+class MeasuredRcof:
+    """Required friction of measured walkers.
+
+    Attributes:
+        mean, sd: Of the persons; of one person alone those of the steps.
+        mean_deviation, sd_deviation: What both may be off by, one standard deviation.
+        within: Standard deviation between the steps of one person, pooled; None of single steps.
+        persons: Their number; 1: ``sd`` is ``within``, and nobody else's.
+        text: Whose they are.
+    """
+
+    mean: float
+    sd: float
+    mean_deviation: float
+    sd_deviation: float
+    within: float | None
+    persons: int
+    text: str
+
+    @classmethod
+    def of(cls, steps: Mapping[str, Sequence[float]], who: str, more: str) -> Self:
+        """Return that of the steps of each person or file; ``who`` names these, ``more`` adds."""
+        values = [np.asarray(each, dtype=float) for each in steps.values()]
+        count = sum(each.size for each in values)
+        freedom = count - len(values)
+        squares = sum(float(((each - each.mean()) ** 2).sum()) for each in values)
+        within = math.sqrt(squares / freedom) if freedom else None
+        one = len(values) == 1
+        of = values[0] if one else np.array([each.mean() for each in values])
+        mean, sd = float(of.mean()), float(of.std(ddof=1))
+        words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between "
+        if one:
+            words += f"{count} steps of one walker: the slip probability is that walker's, nobody "
+            words += "else's"
+        else:
+            words += f"{len(values)} {who}, {count} steps"
+            words += "" if within is None else f", SD {within:.3f} between the steps of one"
+        both = sd / math.sqrt(of.size), sd / math.sqrt(2 * (of.size - 1))
+        return cls(mean, sd, *both, within, len(values), words + more)
+
+    def settings(self, *, steps: bool) -> list[str]:
+        """Return what to set in a case; ``steps``: the spread between steps has a key of its own.
+
+        There one walker differs from nobody, and his steps from each other.
+        """
+        sd, off = (0.0, 0.0) if steps and self.persons == 1 else (self.sd, self.sd_deviation)
+        numbers = {"mean": (self.mean, self.mean_deviation), "sd": (sd, off)}
+        made = [
+            f"risk.rcof_{name}={{value = {value:.6g}, uncertainty = {off:.6g}}}"
+            for name, (value, off) in numbers.items()
+        ]
+        return [*made, *([f"slip.rcof_step_sd={self.within:.6g}"] if steps and self.within else [])]
+
+
+def measured_rcof(path: Path) -> MeasuredRcof:
+    """Return the RCOF of measured persons.
 
     Read from measurements.csv of ``underfoot trials analyse``. The steps of a person count as one
-    value, their mean; where no person is named, those of a file do. Of one person alone the steps
-    count.
+    value, their mean; where no person is named, those of a file do. Where some are named, steps of
+    nobody are left out: they may be of one of them. Of one person alone the steps count.
 
     Raises:
         InputError: No such file, no RCOF in it, or one step only.
@@ -341,40 +396,33 @@ def measured_rcof(path: Path) -> tuple[float, float, str]:
         rows = list(csv.DictReader(decoded(path.read_bytes(), str(path)).splitlines()))
     except FileNotFoundError:
         raise InputError("there is no such file", where=str(path)) from None
+    rows = [
+        row
+        for row in rows
+        if row.get("quantity") == "rcof" and row.get("value") and row["item"] != MEAN_OF_STEPS
+    ]
+    named = [row for row in rows if row.get("person")]
     steps: dict[str, list[float]] = {}
-    cautions, named = 0, False
-    for row in rows:
-        if row.get("quantity") != "rcof" or not row.get("value") or row["item"] == MEAN_OF_STEPS:
-            continue
-        named = named or bool(row.get("person"))
-        who = row.get("person") or row.get("file") or ""
-        steps.setdefault(who, []).append(float(row["value"]))
-        cautions += row.get("caution") == "yes"
+    for row in named or rows:
+        steps.setdefault(row.get("person") or row.get("file") or "", []).append(float(row["value"]))
     if not steps:
         raise InputError(
             "holds no RCOF",
             where=str(path),
             allowed='rows with quantity "rcof" and a value, as in measurements.csv',
         )
-    means = [float(np.mean(values)) for values in steps.values()]
-    kind = "persons" if named else "files (no person is named: several may be one person)"
-    if len(means) == 1:
-        (own,) = steps.values()
-        if len(own) == 1:
-            raise InputError(
-                "RCOF of one step: there is no spread",
-                where=str(path),
-                remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
-            )
-        mean, sd = float(np.mean(own)), float(np.std(own, ddof=1))
-        words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(own)} steps of one walker"
-        return mean, sd, f"{words}: the slip probability is that walker's, nobody else's"
-    mean, sd = float(np.mean(means)), float(np.std(means, ddof=1))
-    count = sum(map(len, steps.values()))
-    text = f"RCOF mean {mean:.3f}, SD {sd:.3f} between {len(means)} {kind}, {count} steps" + (
-        f", {cautions} of them with a caution" if cautions else ""
-    )
-    return mean, sd, text
+    if [len(each) for each in steps.values()] == [1]:
+        raise InputError(
+            "RCOF of one step: there is no spread",
+            where=str(path),
+            remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
+        )
+    cautions = sum(row.get("caution") == "yes" for row in named or rows)
+    more = f", {cautions} of them with a caution" if cautions and len(steps) > 1 else ""
+    if nobody := len(rows) - len(named) if named else 0:
+        more += f"; {nobody} steps of no named person are left out"
+    who = "persons" if named else "files (no person is named: several may be one person)"
+    return MeasuredRcof.of(steps, who, more)
 
 
 def shown_motion(study: SlipStudy) -> SlipMotion:

@@ -97,7 +97,7 @@ class LogisticModel(PresentableModel):
         return scalar_or_array(normal_mean_of_logistic(self._log_odds(a, mean), spread))
 
     def drawn(
-        self, acof: Array, rcof_mean: float, rcof_sd: float, normal: Callable[[str], Array]
+        self, acof: Array, rcof_mean: ArrayLike, rcof_sd: ArrayLike, normal: Callable[[str], Array]
     ) -> Array:
         """Return the mean probability over persons in draws (n,) of ACOF and of slope and x50.
 
@@ -105,8 +105,8 @@ class LogisticModel(PresentableModel):
         """
         slope = self.log_odds_slope * np.exp(self.log_slope_sd * normal("slope of the slip model"))
         even = self.fifty_percent_at + self.fifty_percent_sd * normal("even odds of the slip model")
-        odds = slope * (available(acof) - rcof_mean - even)
-        return normal_mean_of_logistic(odds, -slope * rcof_sd)
+        odds = slope * (available(acof) - required(rcof_mean, "rcof_mean") - even)
+        return normal_mean_of_logistic(odds, -slope * deviation(rcof_sd, "rcof_sd"))
 
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:
         """Return whether ACOF - RCOF leaves that of the study (``tested``)."""

@@ -46,7 +46,7 @@ class Chang2004(PresentableModel):
         return scalar_or_array(np.where(sd > 0, certain, np.heaviside(mean - a, 0.5)))
 
     def drawn(
-        self, acof: Array, rcof_mean: float, rcof_sd: float, normal: Callable[[str], Array]
+        self, acof: Array, rcof_mean: ArrayLike, rcof_sd: ArrayLike, normal: Callable[[str], Array]
     ) -> Array:
         """Return the probability in draws (n,) of ACOF: the model has no constants to draw."""
         return np.asarray(self.population(acof, rcof_mean, rcof_sd))

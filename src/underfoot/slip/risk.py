@@ -77,13 +77,16 @@ def slip_chances(
         acof: Draws (n,) of the available friction; below 0 counts as 0.
         rcof: Required friction of the population, on a slope ``rcof.on_slope``.
         model: A slip model. One without ``drawn`` is taken as exact.
-        normal: Standard normal draws (n,) by name, of the model's constants; None draws them.
+        normal: Standard normal draws (n,) by name, of the model's constants and of what the
+            population is off by; None draws them.
     """
     drawn = np.maximum(np.asarray(acof, dtype=float), 0.0)
+    normal = normal or _named(drawn.size)
+    people = rcof.drawn(normal)
     known = getattr(model, "drawn", None)
     if known is None:
-        return np.asarray(model.population(drawn, rcof.mean, rcof.sd))
-    return known(drawn, rcof.mean, rcof.sd, normal or _named(drawn.size))
+        return np.asarray(model.population(drawn, *people))
+    return known(drawn, *people, normal)
 
 
 def mean_of_draws(chances: Array, **rest: Any) -> SourcedValue:
@@ -115,8 +118,8 @@ def slip_risk(
     Returns:
         SlipRisk: For one ACOF; for an array a list of them, nested as the array is.
 
-    The band holds the uncertainty of ACOF (cut at 0) and how far publications differ in the model's
-    constants; not that of the population.
+    The band holds the uncertainty of ACOF (cut at 0), how far publications differ in the model's
+    constants, and what the population's mean and standard deviation are off by, where known.
 
     Raises:
         InputError: ACOF not determined, negative or not finite.

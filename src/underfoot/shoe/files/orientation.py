@@ -17,6 +17,7 @@ from .view import View, extents, view
 
 _COARSE = 300  # cells along a body that is looked at from four sides
 _SAMPLE = 200_000  # triangles: more change the axes by less than the snapping
+_ANGLE_CLASS = 1e-3  # rad
 _SNAP = math.cos(math.radians(20))
 _NEARLY = 1.10  # a box along the file's axes may be this much larger than the smallest one
 _TREAD_SHARE = 0.03  # of the plan form: fewer channels decide nothing
@@ -124,7 +125,11 @@ def _long_axis(corners: Array, thin: Array) -> Array:
     except (QhullError, ValueError):  # on a line, or too few: any frame will do for a refusal
         return u
     edges = np.roll(hull, -1, axis=0) - hull
-    angles = np.unique(np.mod(np.arctan2(edges[:, 1], edges[:, 0]), math.pi / 2).round(3))
+    every = np.mod(np.arctan2(edges[:, 1], edges[:, 0]), math.pi / 2)
+    angles = np.unique(every.round(3))
+    areas = np.prod(_extents(hull, angles), axis=0)
+    # an edge of the hull lies on the smallest rectangle: its own angle, not that of its class
+    angles = every[np.abs(every - angles[np.argmin(areas)]) < _ANGLE_CLASS]
     areas = np.prod(_extents(hull, angles), axis=0)
     best, least = float(angles[np.argmin(areas)]), float(np.min(areas))
     for axis in np.eye(3):
@@ -389,6 +394,8 @@ LEVEL = math.radians(0.05)
 """A tilt (rad) below it is that of noise and roundings."""
 _DRAWN_LEVEL = 0.2
 _BROAD = 0.5  # of the plan form: a sole's own land
+_DRAWN_FACES = 0.02  # of all faces' area
+_OF_THE_FILE = 1e-3  # of a unit vector's largest component: along an axis of the file, but tilted
 _OTHER_FACE, _ALIKE = math.radians(3.0), math.radians(1.0)
 
 
@@ -411,6 +418,35 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     if plan[level].sum() > _DRAWN_LEVEL * plan.sum():
         best = int(np.argmax(np.where(level, plan, 0.0)))
     return float(a[best]), float(b[best]), float(c[best])
+
+
+def on_its_faces(triangles: NDArray[np.float32], axes: Array) -> Array:
+    """Return the axes of a levelled sole turned onto the faces that lie nearly level below it.
+
+    Heights in cells leave some hundredths of a degree of it; the faces of a drawn tread tell it
+    exactly. As it is where less than a fiftieth of the area lies within ``LEVEL``, as in a scan.
+    The rectangle around the plan form, which a tilt distorts, is found again; a file's axis stays
+    the direction that it is.
+    """
+    size = float(np.linalg.norm(axes[0]))
+    frame = axes / size
+    first, second, third = (triangles[:, n].astype(np.float64) for n in range(3))
+    normals = np.cross(second - first, third - first)
+    area = np.linalg.norm(normals, axis=1)
+    down = -normals @ frame[2]
+    level = down > math.cos(LEVEL) * area
+    if np.sum(area[level]) < _DRAWN_FACES * np.sum(area):
+        return axes
+    up = -normals[level].sum(axis=0)
+    up /= np.linalg.norm(up)
+    along = frame[0] - (frame[0] @ up) * up
+    if np.abs(frame[0]).max() < 1 - _OF_THE_FILE:
+        corners, _ = _sample(triangles)
+        long = _long_axis(corners.reshape(-1, 3), up)
+        ways = [long, -long, np.cross(up, long), -np.cross(up, long)]
+        along = max(ways, key=lambda way: float(way @ along))
+    along /= np.linalg.norm(along)
+    return size * np.stack([along, np.cross(up, along), up])
 
 
 def broad_rest(height: Array, spacing: float, plane: tuple[float, float, float]) -> bool:

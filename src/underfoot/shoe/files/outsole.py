@@ -287,6 +287,9 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
         total += angle
         axes = turned
         seen = view(mesh.triangles, axes, spacing)
+    if total > 0:
+        axes = orientation.on_its_faces(mesh.triangles, axes)
+        seen = view(mesh.triangles, axes, spacing)
     height, _ = cleaned(seen.lowest, spacing)
     if total > 0:
         told = f"turned by {math.degrees(total):.2g}° so that it rests on its lowest lugs"
