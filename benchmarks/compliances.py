@@ -40,8 +40,8 @@ SOLES: dict[str, dict[str, Any]] = {
     },
     "midsole": {
         "sole": {
-            "outsole_thickness": "10 mm",
-            "midsole": {"modulus": "2 MPa", "thickness": "15 mm"},
+            "outsole_thickness": "15 mm",
+            "midsole": {"modulus": "2 MPa", "thickness": "10 mm"},
         },
     },
     "facet 45 mm, 300 N": {

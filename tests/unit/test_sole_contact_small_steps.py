@@ -2,6 +2,8 @@
 
 import math
 import re
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ import pytest
 from underfoot.core import InputError
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
-from underfoot.sole_contact.long_waves import SIDE, wide_hats
+from underfoot.sole_contact.long_waves import SIDE, net_over, waves_on
 from underfoot.sole_contact.solver import longest_step, passing_time
 
 
@@ -62,16 +64,41 @@ def test_a_step_is_no_longer_than_its_stage_and_no_finer_than_its_eighth():
     assert longest_step(stage, 0.5 * stage / 6) == pytest.approx(0.5 * stage)
 
 
-@pytest.mark.parametrize(("cells", "count"), [(4, 1), (8, 1), (12, 2), (58, 10)])
-def test_hats_share_the_land_between_corners_a_side_apart(cells, count):
+@pytest.mark.parametrize(("cells", "count"), [(4, 1), (5, 2), (12, 3), (58, 12)])
+def test_waves_share_the_land_and_have_no_kink(cells, count):
+    """Splines of second order: they sum to one, lines are exact, parabolas off by one number."""
     sole = striped(cells + 1)
-    hats = wide_hats(sole, sole.land).toarray()
-    assert SIDE == 6e-3
-    assert hats.shape[1] == 2 * (count + 1)  # 2 mm across: one hat at either rim
+    net = net_over(sole, sole.land)
+    assert SIDE == 5e-3
+    assert net.x.size == 2 * count + 1
+    waves = waves_on(sole, sole.land, net).toarray()
     land = sole.land.ravel()
-    np.testing.assert_allclose(hats[land].sum(axis=1), 1.0)
-    assert not hats[~land].any()
-    # linear between its corners: at rest where its corner stands, gone at the next
-    corners = np.repeat(1e-3 * np.linspace(1, cells + 1, count + 1), 2)
-    x = np.repeat(sole.x, sole.y.size)
-    np.testing.assert_allclose((hats @ corners)[land], x[land])
+    np.testing.assert_allclose(waves[land].sum(axis=1), 1.0)
+    assert not waves[~land].any()
+    side = net.x[2] - net.x[0]
+    middles = np.repeat(net.x[0] + side * (np.arange(count + 2) - 0.5), net.ny + 2)
+    x = np.repeat(sole.x, sole.y.size)[land]
+    np.testing.assert_allclose((waves @ middles)[land], x, atol=1e-12)
+    np.testing.assert_allclose((waves @ middles**2)[land] - x**2, side**2 / 4, rtol=1e-9)
+
+
+def test_columns_of_a_net_end_at_the_rim():
+    """A disc: within 2 % of the radius but at its ends, the area within 1 %."""
+    turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    radius = 30e-3
+    centres = np.arange(-32e-3, 32.5e-3, 1e-3)
+    inside = np.hypot(centres[:, None], centres) < radius
+    disc = cast(
+        Any,
+        SimpleNamespace(
+            x=centres, y=centres, inside=inside, spacing=1e-3, whole=None,
+            outline=radius * np.column_stack([np.cos(turn), np.sin(turn)]),
+        ),
+    )  # fmt: skip
+    net = net_over(disc, inside)
+    rim = np.sqrt(np.maximum(radius**2 - net.x**2, 0.0))
+    np.testing.assert_allclose(net.high[2:-2], rim[2:-2], atol=0.02 * radius)
+    np.testing.assert_allclose(net.low, -net.high, atol=1e-9)
+    ends, middles = (net.high - net.low)[::2], (net.high - net.low)[1::2]
+    area = (net.x[2] - net.x[0]) / 6 * (ends[:-1] + 4 * middles + ends[1:]).sum()
+    assert area == pytest.approx(np.pi * radius**2, rel=0.01)

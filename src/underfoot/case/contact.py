@@ -317,7 +317,7 @@ class FiniteElementCompliance(ComplianceOption):
     def build(self, context: Context, sole: SoleMap) -> Compliance:
         from underfoot.sole_contact.finite_element import finite_element_compliance
 
-        store = Cache("sole_compliance-2")
+        store = Cache("sole_compliance-3")
         return finite_element_compliance(
             sole, **_layers(context), cache=store, progress=context.progress
         )

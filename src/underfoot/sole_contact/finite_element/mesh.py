@@ -53,10 +53,9 @@ def sole_mesh(
     points, triangles, on_land = _triangulation(plan, element, far_element, reach)
     height, depth = (_at(plan, field, points) for field in (plan.land_height, plan.tread_depth))
     sine, cosine = math.sin(layers.shoe_angle), math.cos(layers.shoe_angle)
-    # the plane that the sole rests on, and each point's height over it along the shoe's normal
-    known = plan.land_height - sine / cosine * plan.x[:, None]
-    offset = float(known[np.isfinite(known)].min())
-    over = (height - offset - points[:, 0] * sine / cosine) * cosine
+    # each point's height over the plane that the land rests on, along the shoe's normal
+    over = height * cosine - points[:, 0] * sine
+    over -= over[triangles[on_land]].min()
     lug = depth * cosine
     body = layers.thickness - over - lug
     if (body <= 0.1 * layers.thickness).any():
