@@ -38,9 +38,10 @@ REACH = 6e-3
 """Land higher above the floor than this (m) keeps the layers alone."""
 MARGIN = 1.5
 """Thicknesses of the body around this land that are meshed."""
+ALIKE = 1e-3
+"""The same for waves that the cells can't tell apart, over a whole wave's overlap with itself."""
 NARROWEST = 0.1
 """Width of a row of bricks where the rim ends in a point, over the widest."""
-RIM_PLACES = 12  # a column, at which parabolas are fitted to the rim
 SAMPLES = 3  # a side of a quarter of a square
 GROWTH = 1.6  # from a layer of bricks to the next, from the floor up
 MIDSOLE_LAYERS = 2
@@ -181,10 +182,10 @@ def body_correction(
 def _compliance(work: Array, overlap: Array, sizes: Array) -> Array:
     """Return the rise by waves (m) of forces on waves (N): R W R, R = overlap^-1.
 
-    Waves that little of what presses is left of fade out.
+    Waves that little of what presses is left of fade out, and what few cells can't tell apart.
     """
     missing = np.maximum(sizes - np.diagonal(overlap), 0.0)
-    inverse = np.linalg.inv(overlap + np.diag(FAINT * missing))
+    inverse = np.linalg.inv(overlap + np.diag(FAINT * missing + ALIKE * sizes))
     product = inverse @ work @ inverse
     return 0.5 * (product + product.T)
 
@@ -220,49 +221,29 @@ def _through(values: Array, column: NDArray[np.intp], share: Array) -> Array:
 
 def net_over(sole: SoleMap, near: NDArray[np.bool_], margin: float = 0.0) -> Net:
     """Return the squares over some cells and what of the sole is within ``margin`` (m) of them."""
-    outline = _outline(sole.whole or sole)
-    margin += 0.5 * sole.spacing
+    whole = sole.whole or sole
+    half = 0.5 * sole.spacing
     ends = []
-    for axis, places in ((0, sole.x), (1, sole.y)):
-        reached = places[near.any(axis=1 - axis)]
-        low = max(float(outline[:, axis].min()), float(reached[0]) - margin)
-        ends.append((low, min(float(outline[:, axis].max()), float(reached[-1]) + margin)))
+    for axis, places, cells in ((0, sole.x, whole.x), (1, sole.y, whole.y)):
+        reached, rim = places[near.any(axis=1 - axis)], cells[whole.inside.any(axis=1 - axis)]
+        low = max(float(rim[0]), float(reached[0]) - margin) - half
+        ends.append((low, min(float(rim[-1]), float(reached[-1]) + margin) + half))
     (x0, x1), (y0, y1) = ends
     side = max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
     nx, ny = (max(1, math.ceil(length / side - 1e-9)) for length in (x1 - x0, y1 - y0))
     x = np.linspace(x0, x1, 2 * nx + 1)
     # parabolas nearest to the rim, which may end in a round
-    at = (np.arange(RIM_PLACES * nx) + 0.5) / RIM_PLACES
-    column = at.astype(np.intp)
+    rows = np.flatnonzero(whole.inside.any(axis=1) & (whole.x > x0) & (whole.x < x1))
+    at = nx * (whole.x[rows] - x0) / (x1 - x0)
+    column = np.minimum(at.astype(np.intp), nx - 1)
     bends = _through(np.eye(x.size), column, at - column)
-    rim = np.clip(_rim(outline, x0 + (x1 - x0) * at / nx), y0, y1)
-    low, high = np.linalg.lstsq(bends, rim.T)[0].T
+    first = whole.inside[rows].argmax(axis=1)
+    last = whole.y.size - 1 - whole.inside[rows, ::-1].argmax(axis=1)
+    rim = np.clip(np.column_stack([whole.y[first] - half, whole.y[last] + half]), y0, y1)
+    low, high = np.linalg.lstsq(bends, rim)[0].T
     least = 0.5 * NARROWEST * (y1 - y0)
     middle = 0.5 * (low + high)
     return Net(x, np.minimum(low, middle - least), np.maximum(high, middle + least), ny)
-
-
-def _outline(sole: SoleMap) -> Array:
-    """Return the polygon (n, 2) of the plan form, around its cells where a map has none."""
-    if np.ptp(sole.outline, axis=0).min() > 0:
-        return np.asarray(sole.outline)
-    columns = np.flatnonzero(sole.inside.any(axis=1))
-    half = 0.5 * sole.spacing
-    first = sole.inside[columns].argmax(axis=1)
-    last = sole.y.size - 1 - sole.inside[columns, ::-1].argmax(axis=1)
-    x = np.repeat(sole.x[columns], 2) + np.tile([-half, half], columns.size)
-    low, high = np.repeat(sole.y[first] - half, 2), np.repeat(sole.y[last] + half, 2)
-    return np.column_stack([np.append(x, x[::-1]), np.append(low, high[::-1])])
-
-
-def _rim(outline: Array, x: Array) -> Array:
-    """Return the lowest and the highest y of a polygon over some x, (2, n)."""
-    ends = np.roll(outline, -1, axis=0)
-    run = ends[:, 0] - outline[:, 0]
-    share = (x[:, None] - outline[:, 0]) / np.where(run == 0, 1.0, run)
-    met = (share >= -1e-9) & (share <= 1 + 1e-9) & (run != 0)
-    y = outline[:, 1] + share * (ends[:, 1] - outline[:, 1])
-    return np.stack([np.where(met, y, np.inf).min(axis=1), np.where(met, y, -np.inf).max(axis=1)])
 
 
 def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Net]:
