@@ -437,6 +437,28 @@ def test_a_reading_that_the_others_contradict_is_said():
     assert len(met.headline()) == 2
 
 
+def test_draws_of_a_case_that_readings_do_not_begin_with_are_told(tmp_path):
+    """What they say is lost where the new file takes their place."""
+    every = packaged_pair_draws()
+    fourth = every.rows(np.arange(0, every.count, 4))
+    fourth.write(tmp_path / "floor.csv")
+    case = Case(
+        name="a shoe",
+        shoe="work_shoe_untreaded",
+        floor="vinyl_g4",
+        contaminant="water",
+        motion="slip_tester_g4",
+        friction={"model": "pair", "draws_file": str(tmp_path / "floor.csv")},
+    )
+    known = {name: np.zeros(fourth.count) for name in ("laboratory", "dry part of the laboratory")}
+    given = replace(fourth, errors=known)
+    found = calibrated_pair([PairReading(case, 0.15)], draws=given)
+    assert not found.cautions()
+    (told,) = replace(found, not_begun=("a shoe",)).cautions()
+    assert told.startswith("friction.draws_file of a shoe is not begun with")
+    assert calibrated_pair([PairReading(case, 0.15)]).not_begun == ("a shoe",)
+
+
 def test_a_reading_of_one_tread_leaves_another_its_own_error():
     """Read far above the prediction: part is the laboratory's, part the tread's, part a reading's.
 

@@ -12,7 +12,7 @@ from underfoot.calibrate import law_file_text, law_table, trial_readings
 from underfoot.case import Case
 from underfoot.cli.app import app
 from underfoot.compute.resolve import resolved
-from underfoot.core import DataError
+from underfoot.core import DataError, InputError
 from underfoot.friction import stribeck_cof
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_half_tread_detergent.toml"
@@ -72,6 +72,7 @@ def test_a_dry_case_takes_a_table(folder):
     [
         ("speed,friction\n1,2\n3,4\n", 'no column "cof"'),
         ("speed (kg),cof\n1,0.2\n3,0.4\n", "kg"),
+        ("speed,cof,sd (%)\n1,0.2,5\n3,0.4,5\n", '"%" is no unit of sd'),
         ("speed,cof\n0.1,0.5\n0.2,-0.4\n", "row 2"),
         ("speed,cof\n0.1,0.5\n0.2,\n", "missing"),
         ("speed,cof\n0.1,0.5\n0.1,0.4\n", "two or more speeds"),
@@ -85,6 +86,18 @@ def test_bad_tables_are_refused_with_the_row(folder, text, word):
     )  # fmt: skip
     assert found.exit_code == 2
     assert word in found.stderr
+
+
+@pytest.mark.parametrize("name", ["viscosity", "sd"])
+def test_what_some_readings_lack_is_asked(folder, name):
+    """Viscosities of three readings counted for nothing where the fourth had none."""
+    value = {"viscosity": "50 cP", "sd": 0.02}[name]
+    readings = [{"speed": f"{v} m/s", "cof": 0.2, name: value} for v in (0.1, 0.3, 1)]
+    case = Case.load(folder / "case.toml")
+    lacking = [*readings[:2], {key: readings[2][key] for key in ("speed", "cof")}]
+    with pytest.raises(InputError, match=rf"friction.readings 3.{name}: is missing, other"):
+        case.replace({"friction": {"model": "table", "readings": lacking}})
+    case.replace({"friction": {"model": "table", "readings": readings}})
 
 
 def test_a_missing_table_names_the_nearest(folder):
@@ -149,6 +162,7 @@ def test_from_trials_to_the_friction_of_a_case(analysed, folder):
         (("--where", "fluid=thn"), 'Did you mean "thin"?'),
         (("--where", "flud=thin"), 'Did you mean "fluid"?'),
         (("--where", "thin"), "CONDITION=VALUE"),
+        (("--where", "fluid=thin", "--where", "fluid=thick"), "fluid is chosen twice"),
         (("--where", "fluid=thick"), "--form readings"),
         (("--where", "fluid=thin", "--form", "fitt"), 'Did you mean "fit"?'),
         (("--where", "fluid=thin", "--pressure", "0 kPa"), "above 0"),

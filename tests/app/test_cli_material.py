@@ -10,7 +10,7 @@ from commands import called
 from underfoot.calibrate.compound import compound_from_files
 from underfoot.case import Case
 from underfoot.compute.resolve import resolved
-from underfoot.core import InputError, to_si
+from underfoot.core import InputError, RangeError, to_si
 from underfoot.material import power_law_spectrum, shear_modulus
 
 ROOT = Path(__file__).parents[2]
@@ -154,6 +154,43 @@ def test_one_temperature_and_rates_never_tested_are_told(tmp_path):
     # sliding starts at 5500 rad/s: the loss is that of a compound without a spectrum
     law = context_law(tmp_path)
     assert law.pair.hysteresis is None
+
+
+@pytest.mark.parametrize("form", ["sweep", "sweeps", "relaxation"])
+@pytest.mark.parametrize(("use", "said"), [(None, 23), ("room", 23), ("tested", None)])
+def test_moduli_of_another_temperature_than_that_of_use_are_told(tmp_path, form, use, said):
+    """Sweeps at 60 °C alone, or at 60 and 70, or a relaxation: none knows the modulus at 23 °C."""
+    w, temperatures = np.geomspace(0.6, 600, 13), [60.0, 70.0] if form == "sweeps" else [60.0]
+    if form == "relaxation":
+        heads, columns = (
+            "T (°C),t (s),E (MPa)",
+            (1 / w[::-1], TRUTH.relaxation_modulus(1 / w[::-1])),
+        )
+    else:
+        heads = "T (°C),f (rad/s),E' (MPa),E'' (MPa)"
+        columns = (w, TRUTH(w).real, TRUTH(w).imag)
+    rows = [
+        [
+            np.full(13, at),
+            columns[0],
+            *(part / 1e6 * (333.15 / (at + 273.15)) for part in columns[1:]),
+        ]
+        for at in temperatures
+    ]
+    path = written(tmp_path / "test.csv", heads, *np.concatenate(rows, axis=1))
+    kelvin = {None: None, "room": 296.15, "tested": 333.15}[use]
+    if form == "sweeps" and use == "room":
+        with pytest.raises(RangeError, match="the temperatures tested"):
+            compound_from_files([path], temperature=kelvin)
+        return
+    told = [
+        line
+        for line in compound_from_files([path], temperature=kelvin).warnings
+        if line.startswith("Tested at ")
+    ]
+    assert [line.split(",")[1] for line in told] == [f" used at {said} °C: not shifted."] * bool(
+        said
+    )
 
 
 def context_law(folder):

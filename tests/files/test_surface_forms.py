@@ -599,6 +599,19 @@ def test_the_heading_says_which_column_is_which(tmp_path, order):
     assert found.spacings == pytest.approx((5e-6, 4e-6))
 
 
+@pytest.mark.parametrize("units", [("mm", "cm", "nm"), ("um", "mm", "um"), ("in", "mm", "mil")])
+def test_each_column_of_a_map_has_its_own_unit(tmp_path, units):
+    z = np.random.default_rng(4).standard_normal((6, 5))
+    size = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "nm": 1e-9, "in": 25.4e-3, "mil": 25.4e-6}
+    cells = [(5e-6 * i, 4e-6 * j, 1e-6 * z[i, j]) for i in range(6) for j in range(5)]
+    rows = [";".join(f"{name} ({unit})" for name, unit in zip("xyz", units, strict=True))]
+    rows += [";".join(f"{v / size[u]:.12g}" for v, u in zip(c, units, strict=True)) for c in cells]
+    (tmp_path / "map.csv").write_text("\n".join(rows))
+    found = read_surface(tmp_path / "map.csv")
+    np.testing.assert_allclose(found.heights, 1e-6 * z, atol=1e-12)
+    assert found.spacings == pytest.approx((5e-6, 4e-6))
+
+
 def test_a_profile_may_have_its_heights_first(tmp_path):
     z = np.random.default_rng(4).standard_normal(40)
     rows = "\n".join(f"{v:.6f}\t{0.005 * i:g}" for i, v in enumerate(z))

@@ -1,8 +1,11 @@
 """Viscosities of water and glycerol-water against published tables."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from underfoot.case import Case
 from underfoot.core import InputError, RangeError, SourcedValue
 from underfoot.fluid import (
     Contaminant,
@@ -15,6 +18,7 @@ from underfoot.fluid import (
     water_viscosity,
 )
 
+ROOT = Path(__file__).parents[2]
 # Cheng (2008) evaluated by an independent code (github.com/H-Cox/PhD-MatLab-Scripts, with
 # Cheng's own densities); mPa s at 20, 22 and 25 degC.
 TABLE = {
@@ -34,6 +38,32 @@ TABLE = {
 def test_cheng_table(basis, fraction):
     got = glycerol_water_viscosity(fraction, np.array([20.0, 22.0, 25.0]) + 273.15, basis)
     np.testing.assert_allclose(got * 1e3, TABLE[basis, fraction], rtol=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "spread", "ends"),
+    [
+        ("temperature", "22.5 degC", "2.5 degC", (41.5, 55.5)),  # 20 and 25 degC of the table
+        ("glycerol_fraction", "75 %", "0.1 %", None),
+        ("glycerol_fraction", "100 %", "0.1 %", None),
+    ],
+)
+def test_what_is_not_known_of_a_mixture_is_in_its_viscosity(path, value, spread, ends):
+    mixture = {"glycerol_fraction": "75 %", "fraction_basis": "volume", "temperature": "20 degC"}
+    case = Case.load(ROOT / "examples" / "work_shoe_untreaded_glycerol.toml")
+    changed = {"contaminant": mixture | {path: {"value": value, "uncertainty": spread}}}
+    viscosity = case.replace(changed).contaminant.build()
+    exact = case.replace({"contaminant": mixture | {path: value}}).contaminant.build()
+    assert viscosity.value == exact.value
+    if ends is None:
+        share, step = case.replace(changed).contaminant.glycerol_fraction, 1e-3
+        ends = [
+            1e3 * glycerol_water_viscosity(share + at, 293.15, "volume")
+            for at in (-step, step if share < 1 else 0.0)
+        ]
+        ends[0] = ends[1] - (ends[1] - ends[0]) * (1 if share < 1 else 2)
+    expected = np.hypot(exact.uncertainty, 1e-3 * (ends[1] - ends[0]) / 2)
+    assert viscosity.uncertainty == pytest.approx(expected, rel=0.01)
 
 
 def test_water_against_reference_values():

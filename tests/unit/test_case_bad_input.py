@@ -43,6 +43,8 @@ def test_brackets_within_brackets_end_in_an_answer(tmp_path):
         ("contaminant.viscosity", True, "True is not a number"),
         ("contaminant.viscosity", {"value": "2 cP", "uncertainty": "1 kg"}, "viscosity.uncert"),
         ("contaminant.viscosity", {"value": "2 cP", "uncertainty": "-1 cP"}, "0 or more"),
+        ("shoe.material.shore_a", {"value": 62, "uncertainty": "10 %"}, "10 % can be of the value"),
+        ("risk.rcof_sd", "15 %", "rcof_sd: 15 % can be of the value"),
         ("contaminant.viscosity", {"value": "2 cP", "sorce": "own"}, 'Did you mean "source"?'),
     ],
 )

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from underfoot.core import InputError, display, to_si
+from underfoot.core.units import spread_to_si
 
 
 @pytest.mark.parametrize(
@@ -28,6 +29,28 @@ from underfoot.core import InputError, display, to_si
 )
 def test_text_with_a_unit_becomes_si(text, unit, expected):
     assert to_si(text, unit, where="x") == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("spread", "value", "unit", "expected"),
+    [
+        ("2 degC", "20 degC", "K", 2.0),
+        ("2 C", "20 C", "K", 2.0),
+        ("3,6 °F", "68 °F", "K", 2.0),
+        ("2 K", "20 °C", "K", 2.0),
+        ("5 cP", "219 cP", "Pa*s", 0.005),
+        ("1 %", "90 %", "1", 0.01),
+        (5, 68, "1", 5.0),
+    ],
+)
+def test_a_spread_is_a_difference(spread, value, unit, expected):
+    """Two degrees were 275.15 K."""
+    assert spread_to_si(spread, value, unit, where="x") == pytest.approx(expected, rel=1e-9)
+
+
+def test_percent_of_a_plain_number_is_asked():
+    with pytest.raises(InputError, match=r"sd: 10 % can be of the value or in its unit"):
+        spread_to_si("10 %", 68, "1", where="sd")
 
 
 def test_a_plain_number_is_dimensionless_only():

@@ -106,6 +106,7 @@ def test_jobs_are_the_same_whenever_the_file_is_read():
         ("[uncertain]", "[uncertian]", ['Did you mean "uncertain"']),
         ("factor = 1.3", "factor = 0.3", ["line 9", "above 1"]),
         ("lognormal = 2.0, factor = 1.3", "normal = 2.0, sd = 1.5", ["line 9", "Narrow it"]),
+        ("lognormal = 2.0, factor = 1.3", 'normal = 2.0, sd = "10 %"', ["line 9", "of the value"]),
         ('of = "shoe.tread.channel_width"', 'of = "shoe.heel.width"', ["line 6", "channel_width"]),
         ('{ from = "1 mm", to', '{ form = "1 mm", to', ["line 4", "is no range"]),
         ("wear = [", '"shoe.tread.depth" = ["1 mm"]\nwear = [', ["set twice"]),

@@ -13,8 +13,6 @@ from underfoot.core.catalogue import Catalogue
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 BASE = Case.load(EXAMPLE)
 KNOWN = Catalogue.load()
-WITHOUT_ROUGHNESS = {"ceramic_low_g1", "ceramic_medium_g1", "ceramic_high_g1"}
-"""Floors of which the report prints neither Rq nor Ra: one law needs the floor's own."""
 CHOICES = [
     (section, name)
     for section, kind in (
@@ -27,15 +25,23 @@ CHOICES = [
 ]
 
 
+def test_a_law_that_needs_the_floor_s_own_roughness_asks_for_it():
+    case = Case(
+        shoe="work_shoe_untreaded",
+        floor={"shore_a": 99, "roughness": {}},
+        contaminant="glycerol_90pct",
+        motion="slip_tester_g4",
+        friction="mean_film_sharing",
+    )
+    with pytest.raises(InputError, match="own roughness is not given"):
+        case.friction.build(resolved(case))
+
+
 @pytest.mark.parametrize("law", ["stribeck", "asperity_ehl", "boundary", "mean_film_sharing"])
 @pytest.mark.parametrize(("section", "name"), CHOICES, ids=lambda value: str(value))
 def test_every_entry_gives_a_law_or_a_remedy(section, name, law):
     settings = {section: name, "models.friction": law}
     case = BASE.replace(settings)
-    if name in WITHOUT_ROUGHNESS and law == "mean_film_sharing":
-        with pytest.raises(InputError, match="own roughness is not given"):
-            case.friction.build(resolved(case))
-        return
     found = case.friction.build(resolved(case))
     speed = np.array([0.0, 0.05, 0.3, 1.0])
     parts = found(np.full(4, 2e5), speed, np.full(4, 1.0))

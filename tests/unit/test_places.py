@@ -42,6 +42,8 @@ from underfoot.questions.method import method_name, method_prediction
 from underfoot.rough_contact import ExponentialLaw
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "places"
+DRY = {"name": "store", "fluids": {"dry": 1.0}}
+READ = {"test": "tile_glycerine", "cof": 0.3}
 UM = 1e-6
 
 
@@ -490,6 +492,20 @@ def test_a_floor_that_is_as_rough_is_not_offered_another():
 
 
 @pytest.mark.slow
+def test_another_floor_is_none_that_was_read_whatever_its_name():
+    """What a pendulum read of a floor called "quarry tile" is not known of one that is laid."""
+    ends = []
+    for name in ("hall", "quarry tile"):
+        rq = {"value": "1.7 um", "uncertainty": "1.9 um"}
+        floor = {"name": name, "roughness": {"rq": rq}}
+        floor["reading"] = [{"machine": "pendulum-96", "value": 15}]
+        table = small_place() | {"floor": [floor], "fluids": {"dry": 0.8, "water": 0.2}}
+        table["shoe"] = table["shoe"][:1]
+        ends.append(chosen(place_of(table)).levers[0].left[2])
+    assert abs(np.log(ends[1] / ends[0])) < np.log(2)  # it was a fifth
+
+
+@pytest.mark.slow
 def test_a_cell_is_the_whole_run_of_its_case(choice):
     """The draws that every shoe shares spread as those of a run do, about the same COF."""
     case = choice.place.case(choice.place.shoes[0], choice.place.floors[0], "glycerol_90pct")
@@ -681,6 +697,16 @@ def changed(**changes):
         ({"shoe__from": "work_sho"}, "shoe smooth.*work_sho"),
         ({"people": {"task": [{"name": "walking", "share": 0.5}]}}, "add to 0.5"),
         ({"people": {"rcof_mean": 20}}, "20"),
+        ({"floor__rz": "50 um"}, "floor hall.rz: stands beside roughness"),
+        ({"floor": [*small_place()["floor"], DRY | {"from": "quary_tile"}]}, "floor store.from"),
+        ({"shoe__present": "false"}, "shoe smooth.present: 'false'. Allowed: true or false"),
+        ({"shoe__wear": {"depth": "1 mm"}, "shoe__worn_region": ["9 mm", "9 mm"]}, "smooth.wear"),
+        (
+            {"shoe__wear": {"depth": "2 mm"}, "shoe__wear_per_month": "1 mm", "shoe__months": 1},
+            "smooth.wear: stands beside",
+        ),
+        ({"shoe__reading": [READ | {"sd": "0.02"}]}, "shoe smooth.reading 1.sd: '0.02'"),
+        ({"shoe__class": 3}, 'shoe smooth.class: unknown slip class "3"'),
     ],
 )
 def test_bad_places_are_refused(changes, words):

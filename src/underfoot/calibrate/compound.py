@@ -43,6 +43,8 @@ LOAD_TIME = 0.1
 """s: a heel loads its rubber for about this long; the modulus of a case is that after it."""
 RISES = 0.05
 """A relaxation modulus that rises by more than this over an earlier value is none (assumed)."""
+ROOM, APART = 296.15, 2.0
+"""K: temperature of use where none is given, and what it may be off that of the tests unsaid."""
 SLIDING_WAVES = (0.8e-3, 2.5e-6)
 """Longest and shortest wave (m) of a floor that works the rubber at sliding speed."""
 SLIDING_SPEED = 0.3
@@ -317,7 +319,7 @@ def compound_from_files(
         files: Sweeps, relaxation moduli, a Prony series, recordings of compression tests.
         hardness: A durometer's reading.
         temperature: Of use, K; None takes 23 C where tests at several temperatures hold it, else
-            the middle one.
+            the middle one. Moduli of another temperature than that of use (23 C) get a warning.
         thickness, area: Of one block of a compression test (m, m^2).
         shear: Whether moduli are those of shear; None takes what the headings say (G', G_stor).
         modulus_unit: Of moduli, where a file has none.
@@ -380,8 +382,11 @@ def compound_from_files(
         warnings += _fit_warnings(fit)
     elif spectrum is not None:
         warnings += spectrum.cautions()
+    used = ROOM if temperature is None else temperature
     if at is None:
         at = temperature
+    elif abs(at - used) > APART:
+        warnings.append(f"Tested at {_celsius(at)}, used at {_celsius(used)}: not shifted.")
     return Compound(
         name=_names(files) or (f"Shore A {hardness.shore_a:.0f}" if hardness else ""),
         spectrum=spectrum,
@@ -504,13 +509,6 @@ def _swept(
             "One temperature was tested: no shift factors, and nothing is known beyond its "
             "frequencies. Sweeps at 0 °C and below reach the rates of sliding."
         )
-        if temperature is not None and only.temperature is not None:
-            apart = abs(temperature - only.temperature)
-            if apart > 2:
-                warnings.append(
-                    f"Tested at {_celsius(only.temperature)}, used at {_celsius(temperature)}: "
-                    "not shifted."
-                )
         return only, None, only.temperature
     at = _reference([sweep.temperature for sweep in sweeps], temperature)
     master = dynamic_master_curve(sweeps, at)
@@ -536,9 +534,8 @@ def _relaxed(
 
 def _reference(tested: Sequence[float | None], temperature: float | None) -> float | None:
     known = [kelvin for kelvin in tested if kelvin is not None]
-    room = 296.15
-    if temperature is None and known and min(known) <= room <= max(known):
-        return room
+    if temperature is None and known and min(known) <= ROOM <= max(known):
+        return ROOM
     return temperature
 
 

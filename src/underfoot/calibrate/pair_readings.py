@@ -80,7 +80,8 @@ class PairCalibration(Presentable):
 
     ``before`` and ``after`` are (readings, 3): COF at 2.5, 50 and 97.5 %. ``errors`` names each
     error of ln COF with its standard deviation before and after. ``effective`` is the number of
-    equal draws that the weighted ones are worth.
+    equal draws that the weighted ones are worth. ``not_begun`` names the cases that have draws of
+    their own, with which the readings did not begin.
     """
 
     kind: ClassVar[str] = "pair_calibration"
@@ -91,6 +92,7 @@ class PairCalibration(Presentable):
     after: Array
     errors: tuple[tuple[str, float, float], ...]
     effective: float
+    not_begun: tuple[str, ...] = ()
 
     def heading(self) -> str:
         """Return the title."""
@@ -107,6 +109,15 @@ class PairCalibration(Presentable):
             + ", ".join(f"{name} ({then:.2f} to {now:.2f})" for name, then, now in self._taken())
             + " (standard deviations of logarithms). Another tread keeps its own error.",
             *self._missed(),
+        )
+
+    def cautions(self) -> tuple[str, ...]:
+        """Return the cases whose own draws are not those that the readings begin with."""
+        return tuple(
+            f"friction.draws_file of {name} is not begun with: what it says is not in the file of "
+            "these readings. Give all readings of this tester at once; what a machine read of the "
+            'floor stays in a case with friction.model = "pair_read".'
+            for name in self.not_begun
         )
 
     def _missed(self) -> list[str]:
@@ -233,6 +244,7 @@ def calibrated_pair(
                 allowed='"pair"',
             )
         laws.append(law)
+    own = {each.case.name for each in readings if getattr(each.case.friction, "draws_file", None)}
     words = {LABORATORY: "the laboratory", DRY_PART: "its dry-like part"}
     errors = {**wide.errors}
     errors[LABORATORY] = wide.error(LABORATORY, wide.sd_laboratory, seed)
@@ -292,6 +304,7 @@ def calibrated_pair(
         np.quantile(predicted[:, rows], levels, axis=1).T,
         tuple((words[name], *each) for name, each in spreads.items() if each[0] > 0),
         effective,
+        tuple(sorted(own)) if draws is None else (),
     )
 
 

@@ -37,6 +37,8 @@ _ALTERNATIVES = {
     "shoe.material.shore_a": ("shoe.material.modulus",),
     "shoe.roughness.ra": ("shoe.roughness.rq",),
     "floor.roughness.ra": ("floor.roughness.rq",),
+    "shoe.roughness.rz": ("shoe.roughness.ra", "shoe.roughness.rq"),
+    "floor.roughness.rz": ("floor.roughness.ra", "floor.roughness.rq"),
 }
 """Given value: values of the catalogue that it stands in for."""
 
@@ -84,7 +86,7 @@ def composed(
         given_leaves = leaves(_without_from(tables), source="")
     except InputError as error:
         raise CaseError([*composition.errors, placed(error, places)]) from error
-    record = _friction_record(composition, tables)
+    record, beneath = _friction_record(composition, tables), dict(laid)
     for path, leaf in given_leaves.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
         if origin is None:
@@ -92,7 +94,7 @@ def composed(
         if path.startswith("friction.") and _of_another_fluid(origin, composition.entries):
             continue
         for other in _ALTERNATIVES.get(path, ()):
-            if other in laid and laid[other].kind == CATALOGUE:
+            if other in beneath and laid.get(other) is beneath[other]:
                 del laid[other]
         laid[path] = origin
         record.pop(path, None)

@@ -1,7 +1,11 @@
 """Slot for the fluid on the floor: its viscosity as measured, or glycerol in water."""
 
+import math
 from abc import abstractmethod
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
+
+import numpy as np
 
 from underfoot.core import Breach, SourcedValue
 
@@ -10,6 +14,11 @@ from .section import Option
 
 Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
 Temperature = Annotated[float, Quantity("K", 250.0, 450.0)]
+
+FREEZES_AND_BOILS = (273.15, 373.15)
+"""K, between which Cheng's formula holds."""
+SLOPE = 0.01
+"""Share of a spread over which the slope of the viscosity is taken."""
 
 
 class ContaminantSection(Option):
@@ -77,10 +86,20 @@ class GlycerolWater(ContaminantSection):
     temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)
 
     def build(self) -> SourcedValue:
-        from underfoot.fluid import glycerol_water
+        from underfoot.fluid import glycerol_water, glycerol_water_viscosity
 
-        mixture = glycerol_water(self.glycerol_fraction, self.temperature, self.fraction_basis)
-        return mixture.viscosity
+        at = {"fraction": self.glycerol_fraction, "temperature": self.temperature}
+        viscosity = glycerol_water(*at.values(), basis=self.fraction_basis).viscosity
+        spreads, (coldest, hottest) = [viscosity.uncertainty or 0.0], FREEZES_AND_BOILS
+        for name, field, low, high in (
+            ("fraction", "glycerol_fraction", 0.0, 1.0),
+            ("temperature", "temperature", coldest, hottest),
+        ):
+            if spread := self.sourced(field).uncertainty:
+                ends = np.clip((at[name] - SLOPE * spread, at[name] + SLOPE * spread), low, high)
+                values = glycerol_water_viscosity(**{**at, name: ends}, basis=self.fraction_basis)
+                spreads.append(spread * float(np.ptp(values) / np.ptp(ends)))
+        return replace(viscosity, uncertainty=math.hypot(*spreads))
 
     def breaches(self) -> list[Breach]:
         from underfoot.fluid import glycerol_water_breaches

@@ -35,7 +35,10 @@ def assumptions(case: Case) -> list[Remark]:
                 lines.append(Remark(f"{path}.roughness", "not given, the middle of what is usual"))
             elif roughness.rq is None:
                 rq = display(roughness.rq_or_estimate or 0.0, "m")
-                lines.append(Remark(f"{path}.roughness", f"rq = {rq} (1.25 Ra, Gaussian heights)"))
+                told = f"rq = {rq} (1.25 Ra, Gaussian heights)"
+                if roughness.ra is None:
+                    told = f"rq = {rq} (Rz over 5.7; it is over 4 to 8)"
+                lines.append(Remark(f"{path}.roughness", told))
         rq = case.effective_rq
         value = display(rq.value or 0.0, rq.unit)
         if rq.assumed:

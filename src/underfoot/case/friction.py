@@ -14,7 +14,17 @@ from underfoot.core import InputError, RangeError, SourcedValue
 from underfoot.core.catalogue import Catalogue
 
 from .context import Context
-from .quantity import Force, Friction, Pressure, Quantity, Speed, Viscosity, optional, required
+from .quantity import (
+    Force,
+    Friction,
+    FrictionSpread,
+    Pressure,
+    Quantity,
+    Speed,
+    Viscosity,
+    optional,
+    required,
+)
 from .section import CaseView, Option, Section
 from .surfaces import FLOOR_RQ, SOLE_RQ, WAVES, SurfaceRoughness
 from .tables import as_written, meant_file, plain, table_columns, table_source, with_checksum
@@ -429,7 +439,7 @@ class FrictionReading(Section):
 
     speed: Speed
     cof: Friction
-    sd: Friction | None = None
+    sd: FrictionSpread | None = None
     pressure: Pressure | None = None
     viscosity: Viscosity | None = None
 
@@ -510,6 +520,14 @@ class TableOption(FrictionOption):
         )
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
+        for name in ("sd", "viscosity"):
+            lacking = [n for n, each in enumerate(self.readings, 1) if getattr(each, name) is None]
+            if 0 < len(lacking) < len(self.readings):
+                yield InputError(
+                    "is missing, other readings have it",
+                    where=f"{where}.readings {lacking[0]}.{name}",
+                    allowed=f"{name} of all readings, or of none",
+                )
         if len({reading.speed for reading in self.readings}) < 2:
             yield InputError(
                 "of one speed only" if self.readings else "are missing",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from .quantity import Friction, Quantity, default
+from .quantity import Friction, FrictionSpread, Quantity, default
 from .section import Option, Section
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Risk(Option):
     usual: ClassVar[str | None] = "report_g6"
 
     rcof_mean: Friction = default(0.20, 0.20, _ADULTS, assumed=True)
-    rcof_sd: Friction = default(0.03, 0.03, _ADULTS, assumed=True)
+    rcof_sd: FrictionSpread = default(0.03, 0.03, _ADULTS, assumed=True)
 
     @abstractmethod
     def build(self) -> SlipModel:
@@ -110,7 +110,7 @@ class Walkers(Section):
     )
     brake_time_mean: Time = default(0.011, "11 ms", _MARKERS, assumed=True)
     brake_time_sd: TimeSpread = default(0.007, "7 ms", _MARKERS, assumed=True)
-    rcof_step_sd: Friction = default(
+    rcof_step_sd: FrictionSpread = default(
         0.015, 0.015, "14 steps of six persons about their own mean (95 %: 0.010 to 0.030)"
     )
     weight_transfer_from: Transfer = default(0.35, 0.35, _SLIPS, assumed=True)

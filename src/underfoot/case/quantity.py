@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from underfoot.core import InputError, display, to_si
+from underfoot.core.units import refuse_percent
 
 DOOR = {"door": True}
 """Validation context of files: numbers must carry their unit."""
@@ -25,7 +26,8 @@ def si_of_text(text: str, unit: str) -> float:
 class Quantity:
     """SI unit and physical range of a field; ``open_low``/``open_high`` exclude the bound.
 
-    ``remedy``: what to do instead of a value outside.
+    ``remedy``: what to do instead of a value outside. ``percent`` False refuses percent: of a
+    standard deviation they can be of the value beside it.
     """
 
     unit: str
@@ -34,6 +36,7 @@ class Quantity:
     open_low: bool = False
     open_high: bool = False
     remedy: str | None = None
+    percent: bool = True
 
     def allowed(self) -> str:
         """Return the range as a person reads it."""
@@ -51,6 +54,8 @@ class Quantity:
         else:
             try:
                 if isinstance(given, str):
+                    if not self.percent:
+                        refuse_percent(given, where="")
                     value = si_of_text(given, self.unit)
                 else:
                     value = to_si(given, self.unit, where="")
@@ -133,6 +138,7 @@ def default_of(field: FieldInfo) -> Default | None:
     return Default(extra["default_text"], str(extra["source"]), bool(extra["assumed"]))
 
 
+FrictionSpread = Annotated[float, Quantity("1", 0.0, 5.0, percent=False)]
 Length = Annotated[float, Quantity("m", 0.0, 0.5, open_low=True)]
 Depth = Annotated[float, Quantity("m", 0.0, 0.05)]
 Rounding = Annotated[float, Quantity("m", 0.0, 0.1)]

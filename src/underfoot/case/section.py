@@ -26,9 +26,10 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
-from underfoot.core import InputError, SourcedValue, to_si, unknown_name
+from underfoot.core import InputError, SourcedValue, unknown_name
 from underfoot.core.leaves import INHERITED, Leaf
 from underfoot.core.registry import all_offers, loaded, offered, offers
+from underfoot.core.units import spread_to_si
 
 from .quantity import Quantity, default_of, refusal
 
@@ -116,8 +117,7 @@ class Section(BaseModel):
         if written is not None:
             unit = unit_of(field)
             try:
-                plain = isinstance(written, float | int) and unit == "1"
-                uncertainty = float(written) if plain else to_si(written, unit, where="")
+                uncertainty = spread_to_si(written, origin.leaf.given, unit, where="")
                 if uncertainty < 0:
                     raise InputError(f"{written} is negative", allowed="0 or more")
             except InputError as error:

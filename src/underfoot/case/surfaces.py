@@ -28,6 +28,8 @@ Cutoff = Annotated[float, Quantity("m", 1e-6, 0.1)]
 _mm, _um = 1e-3, 1e-6
 RQ_PER_RA = math.sqrt(math.pi / 2)
 """Rq over Ra of Gaussian heights, 1.253."""
+RZ_SPREAD = (4.0, 8.0)
+"""Rz over Rq of profiles (95 %); of steel of EN ISO 13287 in the catalogue 6."""
 SOLE_RQ, FLOOR_RQ = (1.25e-6, 10e-6), (0.3e-6, 4e-6)
 """Rq (m) of soles (Ra 1 to 8 um) and of smooth to matt floors, where none is given (assumed)."""
 BEYOND_DEVIATION = math.log(2) / 1.96
@@ -96,16 +98,28 @@ class SurfaceRoughness(Section):
 
     @property
     def rq_or_estimate(self) -> float | None:
-        """Rq as given, else 1.25 Ra (Gaussian heights: sqrt(pi/2) = 1.253), m; None if unknown."""
+        """Rq (m) as given, else 1.25 Ra (Gaussian heights: sqrt(pi/2) = 1.253), else Rz / 5.7.
+
+        None if none of them is known.
+        """
         if self.rq is not None:
             return self.rq
-        return None if self.ra is None else RQ_PER_RA * self.ra
+        if self.ra is not None:
+            return RQ_PER_RA * self.ra
+        return None if self.rz is None else self.rz / math.sqrt(math.prod(RZ_SPREAD))
 
     @property
     def rq_uncertainty(self) -> float | None:
-        """Standard deviation of ``rq_or_estimate``, m; None when not given."""
+        """Standard deviation of ``rq_or_estimate``, m; None when not given.
+
+        That of Rz / 5.7 holds that it may be Rz / 8 to Rz / 4 (95 %).
+        """
         if self.rq is not None:
             return self.sourced("rq").uncertainty
+        if self.ra is None and self.rz is not None:
+            form = math.log(RZ_SPREAD[1] / RZ_SPREAD[0]) / (2 * 1.96)
+            read = (self.sourced("rz").uncertainty or 0.0) / self.rz
+            return math.hypot(form, read) * (self.rq_or_estimate or 0.0)
         spread = self.sourced("ra").uncertainty
         return spread and RQ_PER_RA * spread
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match, to_si
 from underfoot.core.files import checksum
+from underfoot.core.units import refuse_percent
 
 from .section import origin_of
 
@@ -172,8 +173,10 @@ def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> A
     if key is None:
         return None
     written, factor = sheet.units.get(key, ""), 1.0
-    if written and unit != "1":
+    if written == "%" or (written and unit != "1"):
         try:
+            if unit == "1":
+                refuse_percent(written, where=where)
             factor = to_si(f"1 {written}", unit, where=where)
         except InputError as error:
             what = f'{sheet.name}: "{written}" is no unit of {where.rpartition(", ")[2]}'

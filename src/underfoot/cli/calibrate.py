@@ -60,6 +60,10 @@ def law(
             raise InputError(
                 f'"{text}" is no condition', where="--where", allowed="CONDITION=VALUE"
             )
+        if name.strip() in chosen:
+            raise InputError(
+                f"{name.strip()} is chosen twice", where="--where", allowed="one value of each"
+            )
         chosen[name.strip()] = value.strip()
     load = None if pressure is None else to_si(pressure, "Pa", where="--pressure")
     if load is not None and not load > 0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Never
 
 from .errors import InputError, unknown_name
-from .units import si_unit, to_si
+from .units import si_unit, spread_to_si, to_si
 from .values import SourcedValue
 
 INHERITED = ("source", "assumed", "verified", "note")
@@ -52,7 +52,9 @@ class Leaf:
             to_si(self.given, unit, where=where),
             unit,
             source=self.source + ("" if self.verified else " (from memory, not verified)"),
-            uncertainty=None if spread is None else to_si(spread, unit, where=where),
+            uncertainty=None
+            if spread is None
+            else spread_to_si(spread, self.given, unit, where=where),
             assumed=self.assumed,
             note="; ".join(part for part in (self.note, self.erratum) if part),
         )

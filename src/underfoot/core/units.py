@@ -164,6 +164,51 @@ def to_si(given: object, unit: str, *, where: str, usual: str = "", comma: bool 
     return _finite(value, given, where)
 
 
+def spread_to_si(given: object, of: object, unit: str, *, where: str) -> float:
+    """Return a standard deviation as written beside a value, in the SI unit ``unit``.
+
+    Degrees of temperature are differences (2 degC is 2 K). Percent are shares of a value in
+    percent, else a share of what is asked: 10 % of 68 is no 0.1.
+
+    Parameters:
+        given: Text, or a number.
+        of: The value as written.
+        unit: The SI unit that is wanted.
+        where: Named in errors.
+
+    Raises:
+        InputError: As ``to_si``; percent beside a value without.
+
+    >>> spread_to_si("3.6 degF", "68 degF", "K", where="temperature")
+    2.0
+    """
+    if unit == "1" and "%" not in str(of):
+        refuse_percent(given, where=where)
+    value = to_si(given, unit, where=where)
+    if unit != "K" or not isinstance(given, str):
+        return value
+    name = _split(given, where, False, "2 K")[1]
+    return round(value - to_si(f"0 {name}", unit, where=where), 9)
+
+
+def refuse_percent(given: object, *, where: str) -> None:
+    """Refuse a standard deviation in percent beside a plain number: of the value, or hundredths?
+
+    Parameters:
+        given: As written.
+        where: Named in the error.
+
+    Raises:
+        InputError: It is in percent.
+    """
+    if "%" in str(given):
+        raise InputError(
+            f"{given} can be of the value or in its unit",
+            where=where,
+            allowed="the standard deviation in the unit of the value",
+        )
+
+
 def display(value: float, unit: str, digits: int = 3) -> str:
     """Return an SI value as short text in a unit people read, for example ``"219 cP"``.
 

@@ -17,6 +17,7 @@ from underfoot.case.section import quantity_of
 from underfoot.core import InputError, RangeError, display, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.units import spread_to_si
 
 TAIL = 1e-3
 """Share of a distribution beyond either end that a study leaves out."""
@@ -175,7 +176,11 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
         if centre <= 0:
             raise RangeError(f"{given[kind]}", where=f".{kind}", allowed="above 0")
     else:
-        spread = to_si(second, unit, where=place) - (centre if kind == "from" else 0.0)
+        spread = (
+            to_si(second, unit, where=place) - centre
+            if kind == "from"
+            else spread_to_si(second, given[kind], unit, where=place)
+        )
         if spread <= 0:
             raise RangeError(f"{second}", where=place, allowed="above 0, from < to")
     distribution = Distribution(path, "uniform" if kind == "from" else kind, centre, spread)

@@ -19,6 +19,7 @@ from underfoot.case.errors import placed, translated
 from underfoot.compute.positions import run_cost
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, catalogue_folders
+from underfoot.core.units import spread_to_si
 from underfoot.shoe.geometry import CELLS_REFUSED
 
 from .computing import MEASURES
@@ -252,7 +253,9 @@ def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Readin
             remedy="Write cof = 0.24, sd = 0.02",
         )
     unit = UNITS[outputs[0]]
-    value, sd = (to_si(table[key], unit, where=f".{key}") for key in (outputs[0], "sd"))
+    given = table[outputs[0]]
+    value = to_si(given, unit, where=f".{outputs[0]}")
+    sd = spread_to_si(table["sd"], given, unit, where=".sd")
     if sd <= 0:
         raise InputError(f"{table['sd']}", where=".sd", allowed="above 0")
     return Condition(str(table.get("name", name)), changes), Reading(outputs[0], unit, value, sd)

@@ -576,7 +576,10 @@ def chosen(
     ]
     if smooth:
         fluids = dict.fromkeys(place.fluids(), 1.0)
-        one = PlaceFloor("quarry tile", ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
+        unused = "quarry tile"
+        while unused in floor_rq:  # what is known of a floor of the place is none of the new one's
+            unused += ", new"
+        one = PlaceFloor(unused, ROUGHER_FLOOR, 1.0, 0.0, True, fluids, ())
         cells = solver.cells(present, [one], False)
         tiled = states[present.name][False] | {
             (floor.name, fluid): cells[one.name, fluid]

@@ -27,7 +27,7 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from underfoot.case.surfaces import FLOOR_RQ
+from underfoot.case.surfaces import FLOOR_RQ, RZ_SPREAD
 from underfoot.core import InputError, RangeError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Entry, catalogue
@@ -40,9 +40,6 @@ from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OV
 
 from .joint import JointDraws, Reading, interval
 
-RZ_OVER_RQ = 6.0
-"""Rz over Rq of a profile, about (steel of EN ISO 13287 in the catalogue); 4 to 8 are drawn."""
-RZ_SPREAD = (4.0, 8.0)
 ANY_FLOOR_RQ = (0.2e-6, 15e-6)
 """Rq (m), polished to safety floors, over which a floor is drawn that was read and not measured
 (assumed): the reading tells which it is."""

@@ -17,7 +17,7 @@ from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
 from .joint import Reading
-from .machines import RZ_OVER_RQ, RZ_SPREAD, machine
+from .machines import machine
 
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
 """``ANY_FLOOR_RQ`` as a case writes it."""
@@ -233,10 +233,9 @@ def _check_cases(place: Place) -> None:
     wanted = [(first, floor, each) for floor in place.floors for each in floor.fluids]
     wanted += [(shoe, place.floors[0], fluid) for shoe in place.shoes[1:]]
     for shoe, floor, each in wanted:
-        if each == "dry":
-            continue
         try:
-            place.case(shoe, floor, each, shoe.worn_region is not None)
+            wet = fluid if each == "dry" else each
+            place.case(shoe, floor, wet, shoe.worn_region is not None)
         except InputError as error:
             section, _, rest = (error.where or "").partition(".")
             rest = f".{rest}" if rest else ""
@@ -330,10 +329,10 @@ def _floor(
         )
     section: dict[str, Any] = {key: entry[key] for key in ("from", "roughness") if key in entry}
     if "rz" in entry:
-        rz = to_si(entry["rz"], "m", where=f"{where}.rz")
-        rq, spread = rz / RZ_OVER_RQ, rz * (1 / RZ_SPREAD[0] - 1 / RZ_SPREAD[1]) / 4
-        rq_text = {"value": f"{1e6 * rq:.4g} um", "uncertainty": f"{1e6 * spread:.4g} um"}
-        section["roughness"] = {**section.get("roughness", {}), "rq": rq_text}
+        if "roughness" in entry:
+            remedy = "Give the one that was measured"
+            raise InputError("stands beside roughness", where=f"{where}.rz", remedy=remedy)
+        section["roughness"] = {"rz": entry["rz"]}
         assumed.append(f"{where}.roughness: Rq is Rz over 4 to 8")
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
@@ -384,6 +383,12 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
                 allowed="above 0, below 20 mm in all its months",
             )
     region = _worn_region(entry, where) if "worn_region" in entry else None
+    if "wear" in entry and (rate or region):
+        raise InputError(
+            "stands beside wear_per_month or worn_region",
+            where=f"{where}.wear",
+            remedy="Give the tread that is left (tread.depth), and its wear from then on",
+        )
     readings = []
     for number, each in enumerate(entry.get("reading", []), start=1):
         at = f"{where}.reading {number}"
@@ -392,14 +397,16 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
         if test not in slip_tests():
             raise unknown_name("test", test, slip_tests(), where=f"{at}.test")
         cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
-        readings.append(
-            ShoeReading(test, Reading(cof, str(each.get("kind", "value")), each.get("sd")))
-        )
-    known = shoe_class(entry["class"], f"{where}.class") if "class" in entry else None
+        sd = _number(each, "sd", at, 0.0, (1e-6, 2.0)) if "sd" in each else None
+        readings.append(ShoeReading(test, Reading(cof, str(each.get("kind", "value")), sd)))
+    known = shoe_class(str(entry["class"]), f"{where}.class") if "class" in entry else None
+    present = entry.get("present", False)
+    if not isinstance(present, bool):
+        raise InputError(f"{present!r}", where=f"{where}.present", allowed="true or false")
     return PlaceShoe(
         name,
         section,
-        bool(entry.get("present", False)),
+        present,
         _number(entry, "price", where, 0.0, (0.0, 1e5)) if "price" in entry else None,
         months,
         rate * (months or 0.0),

@@ -267,7 +267,7 @@ def read_map(
 
     A matrix needs ``spacing`` (m), or the size that Gwyddion writes above it; its lines run along
     x. Three columns have to form a full grid, whose cells may be oblong. Units come from the
-    heading unless given: the first for x and y, the last for z.
+    heading unless given: the last for z; of two the first for x and y.
 
     Parameters:
         path: Text file.
@@ -286,8 +286,9 @@ def read_map(
     to_height = _factor(height_unit, units[-1:] if size is None else [size[2]], data, "height_unit")
     spacing_y = None
     if data.rows.shape[1] == 3 and data.rows.shape[0] > 3 and size is None:
-        to_length = _factor(length_unit, units[:1], data, "length unit")
-        heights, (spacing, spacing_y) = _grid(data, to_length)
+        along = _factor(length_unit, units[:1], data, "length unit")
+        across = _factor(length_unit, units[1:2], data, "length unit") if len(units) > 2 else along
+        heights, (spacing, spacing_y) = _grid(data, (along, across))
     elif data.rows.shape[1] < 2:
         raise DataError(
             "one column only", where=data.where, remedy="A profile is read with read_profile"
@@ -375,12 +376,16 @@ def _is_even(values: np.ndarray) -> bool:
     return mean != 0.0 and bool((np.abs(steps - mean) < 1e-3 * abs(mean)).all())
 
 
-def _grid(data: TextNumbers, to_length: float) -> tuple[np.ndarray, tuple[float, float | None]]:
+def _grid(
+    data: TextNumbers, to_lengths: tuple[float, float]
+) -> tuple[np.ndarray, tuple[float, float | None]]:
     x, y, z = data.rows.T
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(y))):
         raise DataError("positions are missing", where=data.where)
     places, spacings = [], []
-    for name, values, decimals in (("x", x, data.decimals[0]), ("y", y, data.decimals[1])):
+    for name, values, decimals, to_length in zip(
+        "xy", (x, y), data.decimals[:2], to_lengths, strict=True
+    ):
         rounding = 0.5 * 10.0**-decimals
         levels = np.unique(values)
         jumps = np.diff(levels)
