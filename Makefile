@@ -14,7 +14,7 @@ AGAIN := --last-failed --last-failed-no-failures none
 unexport PYTHONDONTWRITEBYTECODE
 SEED := $(or $(SEED),$(shell od -An -N4 -tu4 /dev/urandom | tr -d " "))
 
-.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files mutants neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
+.PHONY: run app check test test-quick test-slow test-studies fuzz fuzz-files mutants ways neighbours test-install chromium bundle bundle-check bench validate docs manual clean help
 
 run: $(READY)  ## the main job: a worn work shoe on a floor with glycerol
 	$(BIN)/underfoot run examples/work_shoe_untreaded_glycerol.toml --out out/work_shoe_untreaded_glycerol --overwrite
@@ -42,6 +42,9 @@ fuzz-files: $(READY)  ## 100,000 damaged files through every reader; COUNT=N for
 
 mutants: $(READY)  ## 20 seeded faults a room, and those that quick tests let pass; ROOM="slip shoe" for some
 	PYTHONPATH=tests $(BIN)/python tests/mutants.py $(ROOM) --count $(or $(COUNT),20) --seed $(SEED)
+
+ways: $(READY)  ## stays, files, climbs and returns of eight values on their way; WAY=trial for each stay of one
+	$(BIN)/python tests/ways.py $(WAY)
 
 neighbours:  ## what other programs do with the rows of docs/reference/other_programs.md; WRITE=--write
 	python3 -m venv out/neighbours && out/neighbours/bin/pip install -q -r benchmarks/neighbours/requirements.txt

@@ -1,7 +1,8 @@
 """Film and COF of ten soles by layers and by finite elements, on three grids, sliding steadily.
 
 ``python -m benchmarks.compliances [SOLE ...]``: one position of the tread at the shoe's own
-angle; half an hour of CPU for all.
+angle; half an hour of CPU for all. ``squares`` in place of a sole: film and COF of plain heels by
+layers, with long waves put right on squares of other sides.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from typing import Any
 
 from underfoot import Case, run
 from underfoot.core import UnderfootError
+from underfoot.sole_contact import long_waves
 
 MODELS = "layered", "finite_element"
 GRIDS = ("1 mm", "0.6 mm", "0.4 mm")
+SIDES = (6e-3, 5e-3, 4.375e-3, 3.5e-3, 2.9e-3)  # m
 FILM_WITHIN, COF_WITHIN, LOAD_LEAST = 0.03, 0.02, 2.0  # relative, relative, N
 PLAIN = "work_shoe_untreaded"
 SLOW: dict[str, Any] = {"speed": "0.3 m/s"}
@@ -86,8 +89,23 @@ def numbers(sole: str, grid: str, model: str) -> tuple[float, float]:
     return result.value("cof"), result.value("fluid_load")
 
 
+def squares() -> None:
+    """Print what the side of a square, which no input sets, does to plain heels on 1 mm."""
+    usual = long_waves.SIDE, long_waves.MOST_SQUARES
+    print("| sole | side, mm | COF | film, N |")
+    print("|---|---|---|---|")
+    for sole in ("plain", "facet 9 deg at 7"):
+        for side in SIDES:
+            long_waves.SIDE, long_waves.MOST_SQUARES = side, 2000
+            cof, film = numbers(sole, GRIDS[0], MODELS[0])
+            print(f"| {sole} | {1e3 * side:.2f} | {cof:.4f} | {film:.1f} |", flush=True)
+    long_waves.SIDE, long_waves.MOST_SQUARES = usual
+
+
 def main(chosen: Sequence[str] = ()) -> None:
     """Print one line for each sole and grid; ``chosen``: names of soles, all where empty."""
+    if "squares" in chosen:
+        return squares()
     print("| sole | grid | COF by layers, elements | film, N | agree |")
     print("|---|---|---|---|---|")
     for sole in chosen or SOLES:

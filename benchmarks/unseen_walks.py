@@ -18,9 +18,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from benchmarks.walk_screen import MOVED, finished, recordings
+from underfoot.core.constants import GRAVITY
 from underfoot.trials import Marker, Trial, required_frictions, walkway_of
 from underfoot.trials.recording.plates import plate_contacts
-from underfoot.trials.walking.walkway import GRAVITY
 
 SEED, DRAWS = 4711, 3
 USUAL = 1.3  # m/s
@@ -53,7 +53,8 @@ def slow(trial: Trial, speed: float, rng: np.random.Generator, step: float = 1.0
     forces, pushed = [], []  # (time, time, change of the normal force over body weight)
     for plate in trial.plates:
         normal, shape = plate.force @ up, np.ones(len(plate.force))
-        for start, stop in plate_contacts(plate, up):
+        for contact in plate_contacts(plate, up):
+            start, stop = contact.start, contact.stop
             here, share = normal[start:stop], np.linspace(0.0, 1.0, stop - start)
             edge = np.clip(np.minimum(share, 1.0 - share) / _EDGE, 0.0, 1.0)  # own impact and end
             drawn = np.interp(share, np.linspace(0.0, 1.0, 101), known[rng.integers(len(known))])

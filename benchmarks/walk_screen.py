@@ -35,7 +35,7 @@ from underfoot.trials import (
     walkway_of,
 )
 from underfoot.trials.walking.likelihood import UNLIKELY, Reference, references
-from underfoot.trials.walking.plausibility import walking_speed
+from underfoot.trials.walking.step import Step
 from underfoot.trials.walking.step_features import VERTICAL, _shapes, step_features
 
 REPOSITORY = Path(__file__).parents[1]
@@ -149,10 +149,10 @@ def features_of(trial: Trial) -> list[dict[str, float]]:
     with patch("underfoot.trials.walking.likelihood.references", tuple):
         steps = required_frictions(walk)
     found = []
-    for step in steps:
-        speed = walking_speed(walk, step.stance)
-        if step.measurement.value is not None and speed is not None:
-            found.append(step_features(walk, step.stance) | {_SPEED: speed})
+    for friction in steps:
+        step = Step(walk, friction.stance)
+        if friction.measurement.value is not None and step.speed is not None:
+            found.append(step_features(step) | {_SPEED: step.speed})
     return found
 
 

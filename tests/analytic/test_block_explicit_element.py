@@ -83,8 +83,9 @@ def test_element_loops_without_any_cache_folder_work_and_say_so(tmp_path, monkey
     (tmp_path / "__pycache__").write_text("a file where the folder should be")
     monkeypatch.setattr(loops, "HERE", tmp_path)
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "__pycache__"))
-    with pytest.warns(RuntimeWarning, match="no cache folder can be written"):
+    with pytest.warns(RuntimeWarning, match="no cache folder can be written") as told:
         made = loops.element_loops.__wrapped__()
+    assert told[0].filename == __file__  # who asked for them
     monkeypatch.setattr("underfoot.block.assembly.element_loops", lambda: made)
     assembly = block_at_rest()
     turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) - np.eye(3)

@@ -1,15 +1,20 @@
 """Steps of the micro models with a value of their own; no block is solved."""
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
-from underfoot.block.assembly import impact_friction
+from underfoot.block._kernels import names
+from underfoot.block.assembly import critical_time_step, impact_friction
 from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
-from underfoot.block.march import loaded_state, saved_state
+from underfoot.block.march import COLUMNS, BlockMarch, loaded_state, saved_state
+from underfoot.block.mesh import block_mesh
 from underfoot.block.one_term_fit import fit_single_exponential
 from underfoot.block.prony_march import prony_step
 from underfoot.block.result import EDGE_EXCESS, EnergyLedger, edge_excess_area
-from underfoot.core import DataError
+from underfoot.core import ConvergenceError, DataError, silent
 from underfoot.material import single_exponential_spectrum
 from underfoot.surface import HeightMap
 
@@ -143,3 +148,69 @@ def test_a_step_of_any_length_has_the_mean_of_its_decay(step):
     mean = 1 - x / 2 + x**2 / 6 - x**3 / 24
     assert found.mean_decay == pytest.approx(mean, rel=1e-6)
     assert found.stiffening == pytest.approx(1 - fractions @ (1 - mean), rel=1e-6)
+
+
+@pytest.mark.parametrize("form", ["cosine", "triangular", "wave", "map"])
+def test_a_floor_comes_again_after_each_of_its_waves(form):
+    floor, (x, y) = FLOORS[form], np.random.default_rng(2).uniform(0.0, 0.4e-3, (2, 40))
+    along, across = (0.8e-3, 0.6e-3) if form == "map" else (WAVE, WAVE)
+    here = floor.height_and_slope(x, y)
+    for turns in (-3, 1, 2):
+        there_too = floor.height_and_slope(x + turns * along, y - turns * across)
+        for value, again in zip(here, there_too, strict=True):
+            np.testing.assert_allclose(again, value, atol=1e-9 * np.abs(value).max())
+
+
+def test_the_summit_of_a_checkerboard_stands_where_it_was_put():
+    floor = FLOORS["cosine"]
+    height, *slopes = floor.height_and_slope(0.07e-3, 0.02e-3)
+    assert height == pytest.approx(10e-6)
+    assert slopes == pytest.approx([0.0, 0.0], abs=1e-12)
+    for x, y in ((WAVE / 2, 0.0), (0.0, WAVE / 2)):
+        assert floor.height(0.07e-3 + x, 0.02e-3 + y) == pytest.approx(-10e-6)
+
+
+def test_the_longest_step_of_a_cube_is_the_time_that_a_wave_takes_through_it():
+    """At rest, and of cubes squeezed to half their height the way through the thin side."""
+    given = {"size": (40e-6, 30e-6, 20e-6), "elements": (4, 3, 2), "bottom_layer": None}
+    mesh = block_mesh(MicroBlock(**given, roughness_layers=2))
+    modulus, density = 4e9, 1000.0  # 2,000 m/s
+    step = critical_time_step(mesh.largest_gradient_square(), modulus, density)
+    assert step == pytest.approx(10e-6 / 2000.0)
+    squeezed = np.zeros_like(mesh.nodes)
+    squeezed[2] = -0.5 * mesh.nodes[2]
+    step = critical_time_step(mesh.largest_gradient_square(squeezed), modulus, density)
+    assert step == pytest.approx(5e-6 / 2000.0)
+
+
+@pytest.mark.parametrize(
+    ("before", "row", "least", "trouble"),
+    [
+        ({}, {"floor_work": 3.0, "kinetic": 2.0, "strain": 3.9}, 0.5, ""),
+        ({}, {"floor_work": 3.0, "kinetic": 2.0, "strain": 4.1}, 0.5, "makes energy"),
+        ({}, {"floor_work": -1.0, "top_work": 2.0, "hourglass": 3.0, "contact": 2.9}, 0.5, ""),
+        ({}, {"floor_work": -1.0, "top_work": 2.0, "contact": 6.1}, 0.5, "makes energy"),
+        # what the load gave before counts where the top has come back since
+        ({"top_work": 3.0}, {"strain": 5.9}, 0.5, ""),
+        ({"top_work": 3.0, "kinetic": 9.0}, {"strain": 6.1}, 0.5, "makes energy"),
+        ({}, {"normal": np.nan}, 0.5, "unstable"),
+        ({}, {}, 0.0, "inside out"),
+    ],
+)
+def test_a_march_stops_where_it_makes_energy_or_turns_an_element(
+    before, row, least, trouble, tmp_path
+):
+    def row_of(parts):
+        return np.array([parts.get(name, 0.0) for name in COLUMNS])
+
+    state = np.zeros(64)
+    state[names.LEAST_J] = least
+    march = BlockMarch(
+        cast(Any, SimpleNamespace(state=state)), cast(Any, None), 1.0, WAVE, 20, 1e6, "key", silent,
+        output=tmp_path, rows=[row_of(before)] * bool(before),
+    )  # fmt: skip
+    if not trouble:
+        march._check(row_of(row))
+    else:
+        with pytest.raises(ConvergenceError, match=trouble):
+            march._check(row_of(row))

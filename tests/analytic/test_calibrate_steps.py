@@ -7,13 +7,19 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.calibrate import Parameter, calibrated
+from underfoot.calibrate import Parameter, calibrated, pair_readings
 from underfoot.calibrate.compound import _beside, _fit_warnings, relaxation_of
 from underfoot.calibrate.law_file import TrialReadings, law_table
-from underfoot.calibrate.pair_readings import PairCalibration, PairReading, calibrated_pair
+from underfoot.calibrate.pair_readings import (
+    PairCalibration,
+    PairReading,
+    calibrated_pair,
+    read_pair_readings,
+)
 from underfoot.calibrate.stribeck_curve import StribeckCurve
 from underfoot.case import load
 from underfoot.core import InputError
+from underfoot.friction import packaged_pair_draws
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TRUTH = 0.4, 0.3, 0.1
@@ -154,3 +160,74 @@ def test_a_sweep_and_a_hold_are_compared_where_both_were_read():
     sweep = fit_to(1e3, slowest=1.0)  # 1 ms to 1 s
     assert "share no time" in _beside(sweep, fit_to(0.1, slowest=0.01))  # 10 s to 100 s
     assert "share no time" not in _beside(sweep, fit_to(10.0, slowest=0.01))  # 0.1 s to 100 s
+
+
+def test_the_share_of_adhesion_has_a_name_from_nine_tenths_and_from_one_tenth():
+    shares = np.array([1.0, 0.9, 0.89, 0.1, 0.09, 0.0])
+    curve = StribeckCurve(
+        label="water", law="made up", viscosity=1e-3, speed=shares, parts={}, interval=None,
+        deviation=None, adhesion_left=shares, regimes=None, points=None, pair="", notes=(),
+    )  # fmt: skip
+    assert curve.states == ("boundary",) * 2 + ("part blocked",) * 2 + ("blocked",) * 2
+
+
+def test_errors_that_readings_made_smaller_are_named_the_most_first():
+    rows = np.array([[0.1, 0.2, 0.4]])
+    reading = PairReading(cast(Any, SimpleNamespace(name="a case")), 0.21)
+
+    def taken(*errors):
+        made = PairCalibration((reading,), cast(Any, None), rows, rows, errors, 100.0)
+        assert all(name in made.headline()[1] for name, *_ in made._taken())
+        return [name for name, *_ in made._taken()]
+
+    little, much, none = ("little", 0.3, 0.28), ("much", 0.3, 0.2), ("none", 0.5, 0.49)
+    assert taken(little, much, none) == ["much", "little"]
+    assert taken(much, little, none) == ["much", "little"]
+    assert taken(("wide", 0.5, 0.4), ("narrow", 0.2, 0.05), none) == ["wide", "narrow"]
+    assert taken(none, ("less", 0.2, 0.199)) == ["none"]  # the most where none is a 20th smaller
+
+
+@pytest.mark.parametrize(
+    ("lines", "wrong"),
+    [
+        ("cof = 0.24", ""),
+        ('cof = 0.24\nsd = 0.02\nkind = "lower"', ""),
+        ("sd = 0.02", "cof"),
+        ("cof = 0.0", "cof"),
+        ("cof = true", "cof"),
+        ('cof = 0.24\nsd = "0.02"', "sd"),
+        ('cof = 0.24\nkind = "low"', "kind"),
+        ("cof = 0.24\nsds = 0.02", "sds"),
+    ],
+)
+def test_a_reading_needs_its_cof_and_may_have_its_scatter(tmp_path, lines, wrong):
+    case = EXAMPLES / "work_shoe_untreaded_glycerol.toml"
+    path = tmp_path / "readings.toml"
+    path.write_text(f'[[reading]]\ncase = "{case.as_posix()}"\n{lines}\n')
+    if wrong:
+        with pytest.raises(InputError, match=wrong):
+            read_pair_readings(path)
+        return
+    (reading,) = read_pair_readings(path)
+    more = "lower" in lines
+    assert (reading.cof, reading.sd, reading.kind) == (
+        (0.24, 0.02, "lower") if more else (0.24, None, "value")
+    )
+
+
+def test_each_reading_takes_its_part_of_the_work_one_after_the_other(monkeypatch):
+    case = load(EXAMPLES / "work_shoe_untreaded_glycerol.toml").replace("friction.model", "pair")
+    every, told = packaged_pair_draws(), []
+
+    def whole_cof(case, law, quick, progress):
+        for fraction in (0.0, 1.0):
+            progress("solving", fraction)
+        return np.full(law.draws.count, 0.24)
+
+    monkeypatch.setattr(pair_readings, "_whole_cof", whole_cof)
+    calibrated_pair(
+        [PairReading(case, cof) for cof in (0.23, 0.25)],
+        draws=every.rows(np.arange(0, every.count, 40)),
+        progress=cast(Any, lambda stage, fraction, *_: told.append(fraction)),
+    )
+    assert told == pytest.approx([0.0, 0.5, 0.5, 1.0])

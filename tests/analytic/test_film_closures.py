@@ -1,5 +1,6 @@
 """Closed forms of the film: soft EHL, squeeze times, tapered wedge, flow factors, regimes."""
 
+import itertools
 import math
 
 import numpy as np
@@ -186,6 +187,21 @@ def test_shear_factor_is_continuous_and_fades(gamma):
     before, after = patir_cheng_shear_factor([4.9999e-6, 5.0001e-6], 1e-6, anisotropy=gamma)
     assert after == pytest.approx(before, rel=2e-3)
     assert patir_cheng_shear_factor(1e-4, 1e-6, anisotropy=gamma) < 1e-9
+
+
+def test_shear_factor_by_the_table_and_between_its_rows():
+    """At H = 1 A1 exp(alpha3 - alpha2), at H = 8 A2 exp(-2); between rows linear in ln gamma."""
+    near = {1 / 9: 0.9665, 1 / 6: 0.9361, 1 / 3: 0.8954, 1: 0.7956, 3: 0.5459, 6: 0.4698, 9: 0.3757}
+    far = {1 / 9: 0.2512, 1 / 6: 0.2374, 1 / 3: 0.2113, 1: 0.1524, 3: 0.0752, 6: 0.0525, 9: 0.0399}
+    for gap, table in ((1e-6, near), (8e-6, far)):
+
+        def factor(gamma, gap=gap):
+            return float(patir_cheng_shear_factor(gap, 1e-6, anisotropy=gamma))
+
+        assert [factor(gamma) for gamma in table] == pytest.approx([*table.values()], abs=1e-4)
+        for low, high in itertools.pairwise(table):
+            middle = factor(math.sqrt(low * high))
+            assert middle == pytest.approx((factor(low) + factor(high)) / 2)
 
 
 def test_shear_flow_of_two_walls():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from underfoot.core import InputError, SourcedValue
+from underfoot.core import InputError, SourcedValue, breaches
 from underfoot.fluid import AdhesionBlocking
 from underfoot.friction import (
     AdhesionBlockingLaw,
@@ -25,6 +25,7 @@ from underfoot.friction import (
     stribeck_cof,
     viscous_decay,
 )
+from underfoot.friction.law import PIN_PRESSURE, PIN_RANGES
 
 
 def sourced(value, deviation=None, **marks):
@@ -321,3 +322,22 @@ def test_every_law_presents_itself_in_short():
     assert frame.loc["cof_boundary", "standard deviation"] == 0.03
     assert frame.loc["viscosity", "value"] == 0.2
     assert list(laws[3].to_frame()["COF"]) == [0.5, 0.4, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("pressure", "speed", "breached"),
+    [
+        (0.5, 0.5, set()),
+        (1e5, 0.5, set()),
+        (PIN_PRESSURE, 0.05, set()),
+        (PIN_PRESSURE, 1.0, set()),
+        (1.01 * PIN_PRESSURE, 0.5, {"contact pressure"}),
+        (1e5, 0.04, {"sliding speed"}),
+        (1e5, 1.1, {"sliding speed"}),
+    ],
+)
+def test_what_the_pin_was_not_tested_on_is_more_pressure_and_other_speeds(
+    pressure, speed, breached
+):
+    values = {"contact pressure": pressure, "sliding speed": speed, "film thickness": 1e-6}
+    assert {each.quantity for each in breaches("law", PIN_RANGES, values)} == breached

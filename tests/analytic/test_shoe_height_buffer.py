@@ -44,3 +44,18 @@ def test_two_planes_are_seen_where_they_lie_and_how_they_face():
     assert lowest[over] == pytest.approx(expected[over], abs=1e-5)
     assert highest[over] == pytest.approx(expected[over] + 3, abs=1e-5)
     assert np.array_equal(facing, np.where(over, -1, 0))
+
+
+def test_a_triangle_beyond_the_map_fills_it_and_no_cell_beside_it():
+    """In Python, which knows the ends of an array, as compiled: z = 1 + 0.2 x - 0.1 y."""
+    corners = np.array([[-99.0, -99.0], [99.0, -99.0], [0.0, 99.0]])
+    heights = 1 + corners @ [0.2, -0.1]
+    triangles = np.column_stack([corners, heights])[None].astype(np.float32)
+    given = (triangles, np.eye(3), FIRST, SPACING, SHAPE)
+    kernel = getattr(height_buffer, "py_func", height_buffer)
+    for one, other in zip(kernel(*given), height_buffer(*given), strict=True):
+        assert one.shape == SHAPE
+        np.testing.assert_allclose(one, other)
+    x, y = (first + SPACING * np.arange(n) for first, n in zip(FIRST, SHAPE, strict=True))
+    expected = 1 + 0.2 * x[:, None] - 0.1 * y
+    np.testing.assert_allclose(kernel(*given)[0], expected, atol=1e-5)

@@ -48,7 +48,15 @@ def test_rounded_rim_takes_what_a_fillet_takes():
     "tread",
     [
         Tread("chevrons", 5e-3, 2.4e-3, 2.5e-3, angle=math.radians(30), arm_length=12e-3),
-        Tread("bars", 9e-3, 3e-3, 2e-3, angle=0.5, sipes=Sipes(1e-3, 1e-3, 6e-3, angle=0.5)),
+        Tread(
+            "bars",
+            9e-3,
+            3e-3,
+            2e-3,
+            angle=0.5,
+            offset=(2e-3, 1e-3),
+            sipes=Sipes(1e-3, 1e-3, 6e-3, angle=0.5),
+        ),
         Tread("circles", 12e-3, 3e-3, 2.5e-3),
         pytest.param(
             Tread("waves", 8e-3, 4e-3, 2.5e-3, wave_length=20e-3, wave_height=6e-3),

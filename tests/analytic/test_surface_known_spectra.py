@@ -5,7 +5,8 @@ import pytest
 
 from underfoot.surface import HeightMap, IsotropicSpectrum, ProfileSpectrum, isotropic_from_profile
 from underfoot.surface.lay import lines_across
-from underfoot.surface.scan import _power_law, height_cautions, unlikely_height
+from underfoot.surface.scan import height_cautions, unlikely_height
+from underfoot.surface.spectrum import power_law
 
 HURST, STEP = 0.7, 2 * np.pi / 4e-3
 RINGS = STEP * np.arange(1, 257)
@@ -25,7 +26,7 @@ def drawn(kind, seed, turn=0.0):
 @pytest.mark.parametrize("kind", [ProfileSpectrum, IsotropicSpectrum])
 def test_the_error_of_a_hurst_exponent_is_that_of_repeated_surfaces(kind):
     shown = drawn(IsotropicSpectrum, 0)
-    fits = [_power_law(drawn(kind, seed), shown)[0] for seed in range(300)]
+    fits = [power_law(drawn(kind, seed), shown)[0] for seed in range(300)]
     values = np.array([one.value for one in fits])
     errors = np.array([one.uncertainty for one in fits])
     assert values.mean() == pytest.approx(HURST, abs=3 * values.std() / np.sqrt(300) + 0.01)
@@ -36,7 +37,7 @@ def test_the_error_of_a_hurst_exponent_is_that_of_repeated_surfaces(kind):
 @pytest.mark.parametrize("kind", [ProfileSpectrum, IsotropicSpectrum])
 def test_a_roll_off_is_found_where_the_waves_begin_to_fall(kind):
     turn = RINGS[11]
-    found = [_power_law(drawn(kind, seed, turn), drawn(IsotropicSpectrum, 0)) for seed in range(40)]
+    found = [power_law(drawn(kind, seed, turn), drawn(IsotropicSpectrum, 0)) for seed in range(40)]
     lengths = np.array([roll_off for _, roll_off, _ in found], dtype=float)
     assert np.median(lengths) == pytest.approx(2 * np.pi / turn, rel=0.25)
     assert np.median([hurst.value for hurst, *_ in found]) == pytest.approx(HURST, abs=0.05)

@@ -86,7 +86,7 @@ def test_a_pendulum_survey(tmp_path):
     assert samples[0]["COF from PTV"] == pytest.approx(3 * 35.4 / (330 - 35.4))
     assert any("Guidelines 2005" in note for note in tables["samples"].notes)
     assert all(f.verdict == "accepted" for f in analysis.files)
-    said = analysis.files[0].measurements[0]["conventions"]
+    said = analysis.files[0].measurements[0].conventions
     assert said["left out"].endswith("before those that count: 50, 45, 40")
     unverified = [text for text in analysis.methods if "Not verified" in text]
     assert len(unverified) == 1
@@ -103,7 +103,7 @@ def pendulum(tmp_path, rows, heads="surface,slider,condition,direction,run,PTV")
 def test_all_five_readings_of_a_report_count(tmp_path):
     analysis, _ = pendulum(tmp_path, [f"tile,96,wet,1,,{v}" for v in (34, 36, 35, 35, 36)])
     (one,) = analysis.files
-    assert one.measurements[0]["n"] == 5
+    assert one.measurements[0].n == 5
     assert one.main["ptv"] == pytest.approx(35.2)
     assert one.verdict == "accepted"
 
@@ -151,9 +151,7 @@ def test_check_surfaces_of_the_pendulum(tmp_path, reading, slider, verdict):
     analysis, _ = pendulum(tmp_path, rows)
     (one,) = analysis.files
     assert one.verdict == verdict
-    assert (
-        f"slider {slider}" in one.measurements[0]["conventions"]["check surfaces"] or slider == "55"
-    )
+    assert f"slider {slider}" in one.measurements[0].conventions["check surfaces"] or slider == "55"
 
 
 def test_a_check_of_the_other_slider_says_nothing(tmp_path):
@@ -212,7 +210,7 @@ def test_zero_and_conditioning_runs(tmp_path):
     analysis, _ = study(tmp_path, "ansi_a326_3")
     (one,) = analysis.files
     assert one.main["cof"] == pytest.approx(0.41)
-    assert one.measurements[0]["conventions"]["left out"] == "1 conditioning, 2 zero runs"
+    assert one.measurements[0].conventions["left out"] == "1 conditioning, 2 zero runs"
     (tmp_path / "x.csv").write_text("run,surface,PTV\nzero,a,3\n,a,40\n,a,41\n")
     analysis, _ = study(tmp_path, "en_16165_pendulum")
     assert "the zero run reads 3.0" in " ".join(analysis.files[0].reasons)

@@ -64,7 +64,7 @@ def test_another_person_shows_in_more_than_three_in_ten_distances_of_markers(mov
     for name in names[:moved]:
         bodies[-1][name] *= 1.3
     files = [
-        SimpleNamespace(file=f"{k}.c3d", curves={"person": body}, conditions={"person": "S1"})
+        SimpleNamespace(file=f"{k}.c3d", body=body, conditions={"person": "S1"})
         for k, body in enumerate(bodies)
     ]
     doubts = list(_bodies_measured(cast(Any, files), "person"))

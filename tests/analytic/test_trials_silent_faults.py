@@ -9,7 +9,7 @@ import pytest
 
 from underfoot.trials import Marker, finished_plate, read_trial, required_frictions, walkway_of
 from underfoot.trials.recording.protocols import protocol
-from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.file_result import FileResult, StepResult
 from underfoot.trials.study.study_guard import study_doubts
 from underfoot.trials.walking.likelihood import Reference, references, unseen_gain
 from underfoot.trials.walking.plausibility import rcof_flags
@@ -88,7 +88,7 @@ def study(gain):
     for i in range(10):
         own = rng.normal(0.2, 0.02)
         steps = tuple(
-            {"plate": plate, "rcof": own * factor * rng.normal(1.0, 0.05), "peak_force": 700.0}
+            StepResult(plate=plate, rcof=own * factor * rng.normal(1.0, 0.05), peak_force=700.0)
             for plate, factor in (("plate 1", gain), ("plate 2", 1.0))
         )
         files.append(FileResult(f"{i}.c3d", steps=steps))

@@ -44,7 +44,7 @@ def test_slips_are_found_with_speed_and_start(slips):
         facts = truth[one.file]
         true_speed = float(facts["peak_slipping_speed"])
         assert one.main["slip"] == float(true_speed > 0.2)
-        numbers = {(m["item"], m["name"]): m["value"] for m in one.measurements}
+        numbers = {(m.item, m.name): m.value for m in one.measurements}
         start = numbers["slip on plate 2", "slip start"]
         assert start == pytest.approx(float(facts["slip_start"]), abs=0.025)
         if true_speed > 0.2:
@@ -65,10 +65,10 @@ def test_peak_pressures_of_the_sensors(slips):
     truth = _truth(folder)
     for one in analysis.files:
         for m in one.measurements:
-            if m["name"] == "peak pressure" and m["item"].startswith("sensor P"):
-                expected = float(truth[one.file]["peak_pressure_" + m["item"].split()[1]])
+            if m.name == "peak pressure" and m.item.startswith("sensor P"):
+                expected = float(truth[one.file]["peak_pressure_" + m.item.split()[1]])
                 # The largest of some thousand noisy samples lies 3 to 4 sd of 240 Pa high.
-                assert m["value"] == pytest.approx(expected, abs=1200.0)
+                assert m.value == pytest.approx(expected, abs=1200.0)
 
 
 @pytest.mark.parametrize("speed", [0.3, 1.0, 2.4])

@@ -201,7 +201,11 @@ def slips(count, trials):
 def test_the_score_interval_of_two_shares(first, second, low, high):
     found = share_difference(slips(*first), slips(*second))
     assert (found.low, found.high) == pytest.approx((low, high), abs=1e-4)
+    assert found.difference == pytest.approx(first[0] / first[1] - second[0] / second[1])
+    assert (found.slips, found.trials) == ((first[0], second[0]), (first[1], second[1]))
     turned = share_difference(slips(*second), slips(*first))
+    assert turned.difference == pytest.approx(-found.difference)
+    assert turned.p == pytest.approx(found.p)
     assert (turned.low, turned.high) == pytest.approx((-found.high, -found.low), abs=1e-9)
 
 

@@ -107,8 +107,8 @@ def test_factor_and_uncertainty_reach_the_cof(tmp_path):
     twice = analyse_folder(tmp_path, protocol(log.protocol), processes=1).files[0]
     assert twice.main["cof"] == pytest.approx(2.0 * plain.main["cof"], rel=2e-3)
     m = plain.measurements[0]
-    assert m["uncertainty"] >= m["value"] * 0.002 * np.sqrt(2.0)
-    assert "certificate K-117 of 2026-01-15" in m["conventions"]["calibration"]
+    assert m.uncertainty >= m.value * 0.002 * np.sqrt(2.0)
+    assert "certificate K-117 of 2026-01-15" in m.conventions["calibration"]
 
 
 def test_without_a_record_the_study_says_so_once(tmp_path):
@@ -118,7 +118,7 @@ def test_without_a_record_the_study_says_so_once(tmp_path):
     analysis = analyse_folder(tmp_path, protocol(log.protocol), processes=1)
     told = [doubt for doubt in analysis.doubts if "calibration record" in doubt.message]
     assert len(told) == 1
-    assert "no record" in analysis.files[0].measurements[0]["conventions"]["calibration"]
+    assert "no record" in analysis.files[0].measurements[0].conventions["calibration"]
 
 
 @pytest.mark.parametrize(

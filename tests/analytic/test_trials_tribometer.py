@@ -84,6 +84,26 @@ def test_reduced_radius():
         reduced_radius(x, rng.normal(0, 2e-6, 400))
 
 
+@pytest.mark.parametrize("ratio", [-3.0, -2.1, -1.9, 0.5, 1.9, 2.1, 3.0])
+def test_a_pin_is_round_where_its_curvature_is_two_of_its_errors(ratio):
+    """Of places 2 mm apart and a scatter that is no parabola: error of B by the least squares."""
+    x = 2e-3 * np.arange(12.0)
+    known = np.vander((x - x.mean()) / 1e-3, 3)
+    scatter = 1e-6 * np.cos(np.pi * np.arange(12))
+    scatter -= known @ np.linalg.lstsq(known, scatter, rcond=None)[0]
+    error = np.sqrt(scatter @ scatter / 9 * np.linalg.inv(known.T @ known)[0, 0]) * 1e6
+    height = ratio * error * x**2 - 0.02 * x + 1e-3 + scatter
+    if abs(ratio) < 2:
+        with pytest.raises(DataError, match="no curvature"):
+            reduced_radius(x, height)
+        return
+    told = reduced_radius(x, height)
+    assert told.curvature == pytest.approx(abs(ratio) * error)
+    assert told.radius == pytest.approx(1 / (2 * abs(ratio) * error))
+    assert told.standard_error == pytest.approx(told.radius / abs(ratio))
+    assert told.residual_rms == pytest.approx(scatter.std())
+
+
 @pytest.mark.parametrize("method", ["isotonic", "spline"])
 def test_master_curve_is_recovered(method):
     rng = np.random.default_rng(4)

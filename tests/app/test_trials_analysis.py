@@ -63,7 +63,7 @@ def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
     from underfoot.trials.study import Table
 
     rows = (("=1+1", 1.5, None, ""), ("plain", float("nan"), 3, "-x"))
-    table = Table("odd: name/1", "A title", ("text", "number", "count", "more"), rows, ("note",))
+    table = Table.of("odd: name/1", "A title", ("text", "number", "count", "more"), rows, "note")
     write_spreadsheet([table, table], ["How it was done."], tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
     assert len(book.sheetnames) == 3
@@ -95,10 +95,12 @@ def test_an_interrupted_analysis_goes_on(tester, tmp_path, monkeypatch):
     assert len(analysis.files) == 9
     assert len(made) == 9 - kept
     # A changed file, or a damaged store, is analysed again.
-    (next(store.glob("*.json"))).write_text("{")
-    made.clear()
-    analyse_folder(tester, protocol("report_g4"), store=store, processes=1)
-    assert len(made) == 1
+    for damaged in ("{", '[{"file": "without its rows"}]'):
+        (next(store.glob("*.json"))).write_text(damaged)
+        made.clear()
+        again = analyse_folder(tester, protocol("report_g4"), store=store, processes=1)
+        assert len(made) == 1
+        assert [one.main for one in again.files] == [one.main for one in analysis.files]
 
 
 def test_one_bad_file_never_stops_the_rest(tester, tmp_path):
@@ -277,7 +279,7 @@ def test_methods_are_true_for_each_file(tmp_path):
     analysis = analyse_folder(tmp_path, protocol("level_walking"), processes=1)
     text = " ".join(analysis.methods)
     assert "more than 20 N of normal force" in text
-    used = sum(step["verdict"] != "rejected" for one in analysis.files for step in one.steps)
+    used = sum(step.verdict != "rejected" for one in analysis.files for step in one.steps)
     every = sum(len(one.steps) for one in analysis.files)
     assert f"Of {every} contacts {used} were used" in text
     assert "ends after the record (1)" in text
@@ -285,10 +287,10 @@ def test_methods_are_true_for_each_file(tmp_path):
     # Made unlike by hand: both ways are told, with their counts, and no majority speaks for all.
     one = analysis.files[0]
     other = [
-        {**m, "conventions": {**m["conventions"], "baseline": "not subtracted"}}
+        replace(m, conventions={**m.conventions, "baseline": "not subtracted"})
         for m in one.measurements
     ]
-    files = [replace(one, measurements=tuple(other)), *analysis.files[1:]]
+    files = [replace(one, numbers=tuple(other)), *analysis.files[1:]]
     paragraphs = methods_paragraphs(files, analysis.protocol, analysis.study, "1")
     assert "subtracted (3 of 5: walk1.trc); not subtracted (2 of 5: HC030A05.c3d)" in " ".join(
         paragraphs

@@ -1,6 +1,8 @@
 """Edits by hand act on the step they name, are logged with the number, or end the run."""
 
+import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from underfoot.trials import Edit, read_trial, required_frictions, stances, walk
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.simulator import simulated_folder
 from underfoot.trials.study import analyse_folder
+from underfoot.trials.study.file_result import FileResult, Number, Sample
 from underfoot.trials.walking.events import EditError
 
 DATA = Path(__file__).parents[1] / "data" / "trials"
@@ -34,12 +37,12 @@ def test_a_moved_contact_moves_the_number_and_both_are_logged(walks):
     after = _edited(walks, "HC030A05.c3d,3.1 s,contact,3.080 s,seen in the video\n")
     one = after.files[0]
     (row,) = one.edits
-    assert (row["step"], row["what"]) == ("step 1 on plate 2", "contact")
-    assert (row["before"], row["after"]) == ("3.0280 s", "3.0800 s")
-    assert row["number before"] == pytest.approx(0.216, abs=5e-4)
-    assert row["number after"] == one.steps[0]["rcof"]
+    assert (row.step, row.what) == ("step 1 on plate 2", "contact")
+    assert (row.before, row.after) == ("3.0280 s", "3.0800 s")
+    assert row.number_before == pytest.approx(0.216, abs=5e-4)
+    assert row.number_after == one.steps[0].rcof
     assert one.main["rcof"] != before.main["rcof"]
-    assert one.steps[1]["rcof"] == before.steps[1]["rcof"]
+    assert one.steps[1].rcof == before.steps[1].rcof
     (table,) = (table for table in after.tables if table.name == "edits")
     assert table.rows[0][-1] == "seen in the video"
 
@@ -47,9 +50,9 @@ def test_a_moved_contact_moves_the_number_and_both_are_logged(walks):
 def test_a_step_is_excluded_with_its_reason(walks):
     one = _edited(walks, "HC030A05.c3d,2,exclude,,targeted the plate\n").files[0]
     assert one.main["rcof"] == pytest.approx(0.2159, abs=1e-4)
-    assert one.steps[1]["reason"] == "excluded by hand: targeted the plate"
-    assert one.edits[0]["number before"] == pytest.approx(0.2523, abs=1e-4)
-    assert one.edits[0]["number after"] is None
+    assert one.steps[1].reason == "excluded by hand: targeted the plate"
+    assert one.edits[0].number_before == pytest.approx(0.2523, abs=1e-4)
+    assert one.edits[0].number_after is None
 
 
 def test_side_and_toe_off_are_set():
@@ -68,8 +71,6 @@ def test_side_and_toe_off_are_set():
 
 
 def test_one_foot_on_two_plates_is_given_to_one_of_them():
-    from dataclasses import replace
-
     trial = read_trial(WALK)
     second = trial.plates[1]
     both = replace(
@@ -121,10 +122,10 @@ def test_edits_of_a_slip_act_and_log_its_speed(tmp_path):
     after = _edited(tmp_path, "slip_003.c3d,2,contact,2500 ms,marker lost\n", "report_g6")
     assert after.files[0] == before.files[0]
     (row,) = after.files[2].edits
-    assert row["quantity"] == "peak slipping speed"
-    assert row["number before"] == before.files[2].main["peak_slipping_speed"]
-    assert row["number after"] == after.files[2].main["peak_slipping_speed"]
-    assert row["number before"] != row["number after"]
+    assert row.quantity == "peak slipping speed"
+    assert row.number_before == before.files[2].main["peak_slipping_speed"]
+    assert row.number_after == after.files[2].main["peak_slipping_speed"]
+    assert row.number_before != row.number_after
 
 
 def test_where_there_are_no_steps_a_run_can_be_excluded(tmp_path):
@@ -132,7 +133,7 @@ def test_where_there_are_no_steps_a_run_can_be_excluded(tmp_path):
     one = _edited(tmp_path, "work_none_scan_1.csv,1,exclude,,belt slipped\n", "report_g4")
     named = {result.file: result for result in one.files}["work_none_scan_1.csv"]
     assert named.verdict == "refused"
-    assert named.edits[0]["why"] == "belt slipped"
+    assert named.edits[0].why == "belt slipped"
     with pytest.raises(EditError, match="has no steps"):
         _edited(tmp_path, "work_none_scan_1.csv,1,contact,1 s,x\n", "report_g4")
 
@@ -143,3 +144,19 @@ def test_edits_do_not_touch_the_forces():
     assert edited.edits[0].why == "video"
     assert trial.edits == ()
     assert np.array_equal(edited.plates[0].force, trial.plates[0].force)
+
+
+def test_a_stored_result_is_what_it_was(walks):
+    """Numbers, steps and edits come back as the rows that they were, whatever JSON knows."""
+    one = _edited(walks, "HC030A05.c3d,2,exclude,,targeted the plate\n").files[0]
+    boards = ((8.7, 9.1, 0.1), (17.3, 17.6, 0.0))
+    one = replace(one, curves={}, sample=Sample((14.1, 14.5), "ramp", boards))
+    again = FileResult.from_dict(json.loads(json.dumps(one.as_dict(), default=list)))
+    assert again == one
+    assert (again.main, again.facts) == (one.main, one.facts)
+    assert again.main["rcof"] == again.numbers[-1].value
+    assert {type(row) for row in again.numbers} == {Number}
+    assert [row.as_dict() for row in again.numbers] == [row.as_dict() for row in one.numbers]
+    assert again.steps[1].by_hand == ("exclude",)
+    assert again.edits[0].why == "targeted the plate"
+    assert again.sample.boards == boards

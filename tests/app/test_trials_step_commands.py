@@ -32,8 +32,8 @@ def test_edit_shows_both_numbers_and_analyse_uses_it(tmp_path):
         "HC030A05.c3d,1,contact,3.080 s,seen in the video",
     ]
     one = analyse_folder(tmp_path, protocol("level_walking"), processes=1).files[0]
-    assert one.edits[0]["number before"] == pytest.approx(0.2159, abs=1e-4)
-    assert one.edits[0]["number after"] == one.steps[0]["rcof"]
+    assert one.edits[0].number_before == pytest.approx(0.2159, abs=1e-4)
+    assert one.edits[0].number_after == one.steps[0].rcof
     again = _run("edit", file, "--step", 1, "--contact", "3.1 s", "--reason", "other")
     assert again.exit_code == 2
     assert len((tmp_path / "edits.csv").read_text().splitlines()) == 2

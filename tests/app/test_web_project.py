@@ -168,6 +168,20 @@ def test_lines_of_other_programs_in_the_history_are_left_out(project):
     assert again.text("one") == project.text("one")
 
 
+@pytest.mark.parametrize("action", ["undo", "redo"])
+def test_steps_beyond_the_ends_of_a_history_stop_there(project, action):
+    """Two branches merged may hold more steps back or forward than there are states."""
+    project.change("one", {"motion.speed": "0.5 m/s"})
+    with (project.folder / "history.jsonl").open("a") as stream:
+        stream.write(3 * (json.dumps({"variant": "one", "action": action}) + "\n"))
+    if action == "undo":
+        project.path("one").write_text(TEXT)
+    again = Project(project.folder)
+    assert (again.can_undo("one"), again.can_redo("one")) == (action == "redo", action == "undo")
+    (again.redo if action == "undo" else again.undo)("one")
+    assert speed(again) == (0.5 if action == "undo" else 0.7)
+
+
 def test_a_result_is_of_the_inputs_that_it_was_computed_from(project):
     folder = project.result_folder("one")
     folder.mkdir()

@@ -91,7 +91,7 @@ def test_an_edit_is_tried_before_it_is_written(walks):
     before = work_trials.trial_view(asked, WALK)
     change = {"step": 1, "what": "contact", "value": "3.0800 s"}
     tried = work_trials.trial_view(asked, WALK, change=change)
-    assert tried["edits"][0]["number after"] == tried["steps"][0]["rcof"]
+    assert tried["edits"][0]["number_after"] == tried["steps"][0]["rcof"]
     assert tried["steps"][0]["rcof"] != before["steps"][0]["rcof"]
     assert tried["plot"]["events"][0] == {
         **before["plot"]["events"][0],

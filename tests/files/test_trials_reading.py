@@ -554,15 +554,15 @@ def test_components_of_single_precision_are_those_of_double():
 
 
 def test_standing_is_found_across_the_parts_of_a_long_record(monkeypatch):
-    from underfoot.trials.walking import walkway
+    from underfoot.trials.walking import body_weight
 
     samples = 5000
     normal = np.full(samples, 700.0) + 40.0 * np.sin(np.arange(samples))
     normal[2000:2700] = 690.0  # 0.7 s of standing, over the end of a part
     force = np.column_stack((np.zeros((samples, 2)), normal))
     trial = Trial("a", plates=(Plate("plate 1", force, 1000.0),))
-    whole = walkway.body_weight(trial)
-    monkeypatch.setattr(walkway, "_AT_ONCE", 1900)
-    parts = walkway.body_weight(trial)
+    whole = body_weight.body_weight(trial)
+    monkeypatch.setattr(body_weight, "_AT_ONCE", 1900)
+    parts = body_weight.body_weight(trial)
     assert whole.newtons == pytest.approx(690.0, abs=3.0)  # the edge may swing by 1.5 %
     assert parts.newtons == pytest.approx(whole.newtons, rel=1e-9)

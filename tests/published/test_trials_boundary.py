@@ -1,9 +1,14 @@
 """Eq. 22-26 against R 4.2.2."""
 
+from dataclasses import replace
+
 import pytest
 
 from underfoot.core import DataError
+from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study.boundary import alpha_beta, friction_split
+from underfoot.trials.study.file_result import FileResult, Number
+from underfoot.trials.study.study import study_of
 
 _DRY = [10, 12, 15, 18, 20, 25]
 _WET = {
@@ -62,3 +67,43 @@ def test_split_adds_errors_in_squares():
 def test_one_dry_adhesion_has_no_slope():
     with pytest.raises(DataError, match="no slope"):
         alpha_beta(["a", "a", "b", "b", "b"], [1, 1, 1, 2, 3], [1, 2, 3, 4, 5])
+
+
+def test_a_study_of_boundary_lubrication_has_a_table_of_parts_and_one_of_fluids():
+    """Each fluid leaves what its friction is beyond that of the oil, of both shoes."""
+    forces = {
+        "x": {"dry": 10.0, "sae_75w140": 4.0, "water": 7.0, "brine": 5.0},
+        "y": {"dry": 6.0, "sae_75w140": 2.0, "water": 4.0, "brine": 3.0},
+        "z": {"dry": 9.0, "sae_75w140": 1.0, "water": 2.5, "brine": 3.0},
+    }
+    files = [
+        FileResult(
+            f"{shoe} {fluid} {turn}",
+            numbers=(Number("friction_force", force + turn, main="friction_force"),),
+            conditions={"shoe": shoe, "floor": "tile", "fluid": fluid},
+        )
+        for shoe, by_fluid in forces.items()
+        for fluid, force in by_fluid.items()
+        for turn in (-0.1, 0.1)
+    ]
+    incomplete = replace(files[0], conditions={**files[0].conditions, "floor": "wood"})
+    made = study_of([*files, incomplete], protocol("report_g3"))
+    tables = {table.name: table for table in made.tables}
+    assert {"friction_split", "alpha_beta", "fluid_range"} <= {*tables}
+    assert all(table.title and table.title != name for name, table in tables.items())
+    parts = {(row[0], row[2]): (row[3], row[5]) for row in tables["friction_split"].rows}
+    fitted = [(row[0], row[-1]) for row in tables["alpha_beta"].rows]
+    assert sorted(fitted) == [("brine", 3), ("water", 3)]
+    for shoe, by_fluid in forces.items():
+        oiled = by_fluid["sae_75w140"]
+        assert parts[shoe, "dry"] == (pytest.approx(by_fluid["dry"]), 2)
+        assert parts[shoe, "hysteresis"] == (pytest.approx(oiled), 2)
+        assert parts[shoe, "adhesion"][0] == pytest.approx(by_fluid["dry"] - oiled)
+        for fluid in ("water", "brine"):
+            left = parts[shoe, f"adhesion with {fluid}"][0]
+            assert left == pytest.approx(by_fluid[fluid] - oiled)
+    ranges = {row[0]: row[1:] for row in tables["fluid_range"].rows}
+    assert ranges["x"] == (pytest.approx(1), "brine", pytest.approx(3), "water", pytest.approx(2))
+    assert ranges["y"] == (pytest.approx(1), "brine", pytest.approx(2), "water", pytest.approx(1))
+    assert ranges["z"][1::2] == ("water", "brine")
+    assert any("x on wood" in note for note in made.notes)

@@ -4,7 +4,7 @@ from itertools import combinations_with_replacement, permutations, product
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import special, stats
 
 from underfoot.core import DataError, InputError
 from underfoot.trials.statistics import (
@@ -257,6 +257,14 @@ def test_roc_area_beside_scikit_learn_and_delong():
     area, variance = delong(y, x)
     assert alone.area == pytest.approx(roc_auc_score(y, x), abs=1e-9)
     assert [alone.area, alone.error] == pytest.approx([area, np.sqrt(variance)], abs=1e-9)
+    # its interval is even in ln(A / (1 - A))
+    reach = stats.norm.ppf(0.975) * np.sqrt(variance) / (area * (1 - area))
+    ends = special.expit(special.logit(area) + reach * np.array([-1, 1]))
+    assert [alone.low, alone.high] == pytest.approx(ends)
+    turned = roc_area(y, -x)
+    assert [turned.area, turned.low, turned.high] == pytest.approx(
+        [1 - alone.area, 1 - alone.high, 1 - alone.low]
+    )
     assert together.area == alone.area
     assert together.error != pytest.approx(alone.error, rel=1e-3)
     told = slip_prediction(y, x, who)
@@ -266,7 +274,12 @@ def test_roc_area_beside_scikit_learn_and_delong():
     assert told.calibration_slope == pytest.approx(1, abs=0.35)
     nothing = slip_prediction(y, np.random.default_rng(0).normal(size=len(y)), who)
     assert nothing.brier > 0.99 * nothing.constant
-    assert roc_area([0, 0, 0, 1, 1, 1], [1, 2, 3, 4, 5, 6]).low < 0.5
+    # three of either that are told apart: 1 - 0.025^(1/3) of them might not have been
+    apart = roc_area([0, 0, 0, 1, 1, 1], [1, 2, 3, 4, 5, 6])
+    assert (apart.area, apart.high) == (1.0, 1.0)
+    assert apart.low == pytest.approx(0.025 ** (1 / 3))
+    swapped = roc_area([1, 1, 1, 0, 0, 0], [1, 2, 3, 4, 5, 6])
+    assert (swapped.area, swapped.low, swapped.high) == (0.0, 0.0, pytest.approx(1 - apart.low))
     with pytest.raises(DataError, match="both"):
         roc_area([1, 1, 1], [1, 2, 3])
 

@@ -2,7 +2,9 @@
 
 import asyncio
 import json
+import os
 import re
+import tomllib
 from contextlib import nullcontext
 from functools import partial
 from importlib import import_module
@@ -15,7 +17,7 @@ import xarray as xr
 from nicegui import ui
 from nicegui.testing.user_simulation import user_simulation
 
-from underfoot.app import trials_plots, work, work_sole
+from underfoot.app import trials_plots, work, work_sole, work_studies
 from underfoot.app.jobs import (
     DONE,
     FAILED,
@@ -27,15 +29,26 @@ from underfoot.app.jobs import (
     Lane,
     Task,
 )
-from underfoot.app.pages import PAGES, answer, design, measured_file, studies, trials
+from underfoot.app.pages import (
+    PAGES,
+    answer,
+    design,
+    measured_file,
+    place,
+    sole_file,
+    studies,
+    trials,
+)
 from underfoot.app.pages.trials_trial import TrialView
 from underfoot.app.project import Project
-from underfoot.app.session import Exchange, Session
+from underfoot.app.session import Exchange, Session, problem_parts
 from underfoot.app.text import LANGUAGES, Text
 from underfoot.app.trials_study import STANDARD, Study
 from underfoot.app.variant_bar import new_variant
 from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
+from underfoot.core.page import Section
+from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope
 
 RUN = "underfoot.app.work:computed"
@@ -207,14 +220,15 @@ def test_a_step_is_drawn_with_the_ratio_of_its_own_contact():
     plate = SimpleNamespace(start=0.0, end=9.0, rate=1000.0, envelope=lambda *_: seen)
     signals = SimpleNamespace(force={"P": plate}, heel_speed={})
     ratios = [
-        {"step": f"step {k} on P", "ratio": [k / 10.0] * 2, "normal": [600.0, 10.0],
+        {"number": k, "ratio": [k / 10.0] * 2, "normal": [600.0, 10.0],
          "time": np.array([0.0, 0.1]), "peak": k / 10.0, "peak_time": 0.02, "gate": 0.01}
         for k in (1, 2, 3)
     ]  # fmt: skip
-    entry = {"contact": 1.0, "toe_off": 1.6, "plate": "P", "by_hand": {}, "number": 2}
-    entry |= {"verdict": "accepted", "side": "left"}
+    step = StepResult(
+        number=2, contact=1.0, toe_off=1.6, plate="P", verdict="accepted", side="left"
+    )
     record = SimpleNamespace(curves={"steps": ratios})
-    drawn = trials_plots.step_plot(cast(Any, record), entry, cast(Any, signals))
+    drawn = trials_plots.step_plot(cast(Any, record), step, cast(Any, signals))
     assert [each["value"] for each in drawn["events"] if each["id"] == "rcof"] == [0.2]
     assert len(drawn["panels"]) == 2
 
@@ -434,3 +448,157 @@ def test_a_preview_shows_pressures_of_contact_and_film_on_the_sole_as_it_is_turn
     own = np.degrees(session.project.case(name).value("motion.shoe_angle"))
     assert asked == pytest.approx([17 - own if turned else 0.0] * 2)
     assert (shown["cof"], shown["error"]) == (0.25, 0.01)
+
+
+@pytest.mark.parametrize("keeps", [True, False])
+def test_sliders_of_a_design_keep_what_they_are_moved_to_and_those_of_an_answer_try_it(
+    tmp_path, monkeypatch, keeps
+):
+    session, calls = session_of(tmp_path), []
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    monkeypatch.setattr(ui, "run_javascript", calls.append)
+
+    def tried():
+        page = SimpleNamespace(
+            session=session, text=session.text, case=session.project.case(name),
+            _moved=None, _rested=None, view=ui.element(),
+        )  # fmt: skip
+        answer._Answer._live(cast(Any, page))
+
+    shown(partial(design.build, session) if keeps else tried, list)
+    (live,) = (call for call in calls if call.startswith("askLive("))
+    assert live.endswith(", true)" if keeps else ", false)")
+
+
+def test_the_bar_of_a_file_that_is_read_begins_empty_and_goes_when_it_is_stopped(
+    tmp_path, monkeypatch
+):
+    session, asked = session_of(tmp_path), []
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    ended = asyncio.Event()
+    session.jobs.reading = cast(Any, SimpleNamespace(stop=ended.set))
+
+    async def ask(function, *args, heard, **_):
+        asked.append(heard)
+        await ended.wait()
+        raise Cancelled("stopped")
+
+    monkeypatch.setattr(session, "ask", ask)
+    inspection: Any = None
+
+    def build():
+        nonlocal inspection
+        page = ui.element()
+        inspection = sole_file._Inspection(
+            session, name, "soles/a.stl", cast(Any, None), lambda: None, page
+        )
+
+    async def look(elements):
+        await until(lambda: asked)
+        values = [inspection.bar.value]
+        asked[0](SimpleNamespace(stage="Faces", fraction=0.25))
+        values += [inspection.bar.value, inspection.stage.text, inspection.busy]
+        ended.set()
+        again = session.text("sole_file.again")
+        await until(lambda: again in words_of(elements))
+        bars = [each for each in elements if isinstance(each, ui.linear_progress)]
+        return values, bars, inspection.busy
+
+    assert shown(build, look) == ([0.0, 0.25, "Faces", True], [], False)
+
+
+PLACE = {
+    "heading": "Shoes of the ward", "headline": ["B slips least"], "cautions": ["One floor"],
+    "picture": "data:image/png;base64,", "tables": [], "remarks": {"Assumed": ["dry floors"]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("stored", [None, "before", "after"])
+def test_a_place_shows_its_answer_where_there_is_one_and_that_its_file_has_changed(
+    tmp_path, stored
+):
+    session = session_of(tmp_path, place="ward")
+    file = tmp_path / "places" / "ward.toml"
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("")
+    if stored:
+        answered = file.parent / "ward" / "shown.json"
+        answered.parent.mkdir()
+        answered.write_text(json.dumps(PLACE))
+        os.utime(answered, (1e9, 1e9))
+        changed = 1e9 + (10 if stored == "before" else -10)
+        os.utime(file, (changed, changed))
+    lines = shown(partial(place.build, session), words_of)
+    text = session.text
+    assert (text("place.compute") in lines) is (stored is None)
+    assert (text("place.again") in lines) is (stored is not None)
+    for line in ("B slips least", "One floor", "dry floors"):
+        assert (line in lines) is (stored is not None)
+    assert (text("start.changed") in lines) is (stored == "before")
+
+
+def test_a_section_of_a_study_is_written_as_a_table_or_as_a_value(tmp_path):
+    """A part of a section leaves its other keys; a key of None goes."""
+    written = 'base = "a.toml"\n[method]\nkind = "sweep"\nbudget = 5\n'
+
+    def kept_as(section, value, **part):
+        texts = []
+
+        async def write(text):
+            texts.append(text)
+
+        page: Any = SimpleNamespace(written=lambda: written, _write=write)
+        asyncio.run(studies._Study.keep(page, section, value, **part))
+        return tomllib.loads(texts[0])
+
+    method = {"kind": "sweep", "budget": 5}
+    base = {"base": "a.toml", "method": method}
+    assert kept_as("base", "b.toml") == base | {"base": "b.toml"}
+    assert kept_as("base", ["b.toml"]) == base | {"base": ["b.toml"]}
+    part = kept_as("method", {"budget": None, "batch": 3}, part=True)
+    assert part["method"] == {"kind": "sweep", "batch": 3}
+    speed = {"motion.speed": {"from": "0.3 m/s", "to": "0.7 m/s"}, "shoe.wear.depth": ["1 mm"]}
+    assert kept_as("vary", speed) == base | {"vary": speed}
+    assert kept_as("method", {"kind": "lhs"})["method"] == {"kind": "lhs"}
+
+
+def test_an_error_is_told_with_its_place_and_work_that_was_stopped_is_none(tmp_path):
+    session = session_of(tmp_path)
+    error = InputError("no such floor", where="floor.from", remedy="Take a known one")
+    session.tell(error)  # before there is a place for it
+
+    def build():
+        session.problems = ui.element()
+        session.tell(Cancelled("stopped"))
+        session.tell(error)
+
+    told = [each for each in shown(build, words_of) if each]
+    assert told == [text for _, text in problem_parts(error)]
+    assert [kind for kind, _ in problem_parts(error)] == ["where", "what", "remedy"]
+
+
+def test_results_of_a_study_are_those_of_its_end_or_of_its_live_page(monkeypatch):
+    study = SimpleNamespace(result=lambda: "ready")
+    live = SimpleNamespace(cost_table=lambda: "cost", cautions=lambda: ("so far", "more"))
+    sheets = {"ready": ["plots", "table", "notes"], "live": ["plots", "so many"]}
+    parts = {
+        name: [Section(title, intro=f"of {name}") for title in titles]
+        for name, titles in sheets.items()
+    }
+    fakes = {
+        "Study": SimpleNamespace(load=lambda *_: study), "shown": lambda result: result,
+        "figures": lambda _: {"front": lambda: "figure"}, "png": lambda figure: f"png of {figure}",
+        "sections": lambda result, pictures: [parts[result]], "live_study": lambda _: live,
+        "live_sections": lambda _: parts["live"],
+        "page_part": lambda part: [(each.title, each.intro) for each in part],
+    }  # fmt: skip
+    for name, fake in fakes.items():
+        monkeypatch.setattr(work_studies, name, fake)
+    whole: Any = work_studies.results("study.toml", "study", progress=silent)
+    assert whole == [
+        [("plots", "of ready")], [("table", "of ready"), ("notes", "of ready")],
+    ]  # fmt: skip
+    running: Any = work_studies.results("study.toml", "study", False, progress=silent)
+    assert running == [
+        [("Cost", ""), ("plots", "so far of live")], [("so many", "of live")],
+    ]  # fmt: skip

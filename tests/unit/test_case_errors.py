@@ -1,5 +1,7 @@
 """Bad case files: every problem at once, each with its line, what is allowed and a remedy."""
 
+import math
+
 import pytest
 
 from underfoot.case import Case, CaseError, assumptions
@@ -143,9 +145,10 @@ def test_a_shoe_without_a_catalogue_entry_says_what_is_missing():
     assert "neither hardness nor modulus" in str(caught.value)
 
 
-def test_a_missing_roughness_takes_a_middle_and_says_so():
+def test_a_roughness_by_rz_alone_counts_and_says_how():
     case = Case.from_mapping({**GOOD, "floor": {"roughness": {"rz": "30 um"}}})
-    assert any("floor.roughness: not given" in line for line in assumptions(case))
+    assert case.floor.roughness.rq_or_estimate == pytest.approx(30e-6 / math.sqrt(8 * 4))
+    assert any("floor.roughness: rq = 5.3 um (Rz over 5.7" in line for line in assumptions(case))
 
 
 BAD_FILE = """\

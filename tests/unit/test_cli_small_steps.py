@@ -19,6 +19,7 @@ from underfoot.cli.output import (
     print_table,
 )
 from underfoot.cli.trials_analyse import analyse
+from underfoot.core import InputError
 from underfoot.core.presentation import Table
 from underfoot.trials.study.file_result import FileResult
 
@@ -136,3 +137,17 @@ def test_a_record_has_a_line_for_each_column_that_says_something():
     assert [line.split() for line in printed(console).splitlines()] == [
         ["first"], ["value", "1.5"], ["second"], ["remark", "long"],
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "given", [{"details": -1}, {"processes": 0}, {"details": -1, "processes": 2}, {"processes": -2}]
+)
+def test_no_analysis_has_fewer_than_no_details_or_than_one_process(tmp_path, given):
+    with pytest.raises(InputError, match="--details, --processes"):
+        analyse(tmp_path, protocol="level_walking", out=tmp_path / "out", **given)
+
+
+def test_a_title_in_brackets_is_printed_as_it_is(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    print_table(Table("Pressure [bold] [/] [kPa]", ("a", "b"), [["1", "2"]]))
+    assert capsys.readouterr().out.splitlines()[0] == "Pressure [bold] [/] [kPa]"

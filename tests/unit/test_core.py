@@ -6,14 +6,19 @@ import pytest
 from underfoot.core import (
     Breach,
     Cache,
+    ConvergenceError,
+    DataError,
     InputError,
+    MissingExtraError,
     Range,
+    RangeError,
     SourcedValue,
     Status,
     breaches,
     content_hash,
     unknown_name,
 )
+from underfoot.core.errors import Cancelled
 from underfoot.core.files import whole_folder
 from underfoot.core.status import worst
 from underfoot.trials import Belt, Ramp
@@ -145,3 +150,11 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
     ):
         with pytest.warns(FutureWarning, match=r"\.words is .* now; the old name goes in 0.4"):
             assert old() == new
+
+
+def test_each_kind_of_error_ends_a_command_with_its_own_code():
+    codes = {
+        InputError("a"): 2, RangeError("a"): 2, DataError("a"): 3, ConvergenceError("a"): 4,
+        MissingExtraError("a", "b", "c"): 5, Cancelled("a"): 130,
+    }  # fmt: skip
+    assert [error.exit_code for error in codes] == list(codes.values())

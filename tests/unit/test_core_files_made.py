@@ -1,5 +1,6 @@
 """Folders of results are made with all that they lie in; what can't be shown whole is counted."""
 
+import shutil
 from types import SimpleNamespace
 
 import pytest
@@ -32,3 +33,19 @@ def test_remarks_that_are_left_out_are_counted(lines, capsys):
     whole = capsys.readouterr().out
     assert whole.count("number") == lines
     assert "more" not in whole
+
+
+@pytest.mark.parametrize("gone", [False, True])
+def test_what_went_wrong_in_a_folder_is_told_though_the_folder_was_taken_away(tmp_path, gone):
+    path = tmp_path / "made"
+
+    def fails():
+        with whole_folder(path) as staging:
+            (staging / "one.txt").write_text("1")
+            if gone:
+                shutil.rmtree(staging)
+            raise ValueError("the cause")
+
+    with pytest.raises(ValueError, match="the cause"):
+        fails()
+    assert list(tmp_path.iterdir()) == []

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from underfoot.core import InputError, display, to_si
-from underfoot.core.units import spread_to_si
+from underfoot.core.units import metres, spread_to_si
 
 
 @pytest.mark.parametrize(
@@ -120,3 +120,11 @@ def test_inches_and_pounds_on_request(monkeypatch):
     for value, unit in values:
         text = display(value, unit, 8).replace("mil", "thou")
         assert to_si(text, unit, where="x") == pytest.approx(value, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("length", "text"),
+    [(3.125e-5, "31.25 um"), (1 / 3e3, "333.3 um"), (0.123456, "123.5 mm"), (2.0, "2 m")],
+)
+def test_a_length_has_four_digits_in_the_unit_that_fits_it(length, text):
+    assert metres(length) == text

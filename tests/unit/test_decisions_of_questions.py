@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
+from underfoot.core import SourcedValue
 from underfoot.places.choice import BINS, _of_bins
 from underfoot.places.evidence import ScoredReading, score
 from underfoot.places.place import _task
-from underfoot.questions.changes import possible_changes
+from underfoot.questions import effects
+from underfoot.questions.changes import Change, possible_changes
 from underfoot.questions.contact import mirrored
-from underfoot.questions.effects import MOST_ERROR, _continued
+from underfoot.questions.effects import MOST_ERROR, _continued, change_effects
 from underfoot.questions.sensitivity import OPEN_INPUTS, _at
 from underfoot.surface import HeightMap
 
@@ -103,3 +105,48 @@ def test_a_preview_stands_for_a_change_where_its_error_is_small(error, uncertain
     change = SimpleNamespace(values={"a": 1})
     result = _continued(cast(Any, march), cast(Any, change), lugs)
     assert (result is seen) == taken
+
+
+@pytest.mark.parametrize("lugs", [False, True])
+def test_a_run_beside_a_march_goes_on_from_what_the_march_misses(monkeypatch, lugs):
+    """March 0.20 and 100 N at the position of 0.25 and 160 N, all positions 0.30 and 200 N.
+
+    Without lugs a run starts from 0.24 and 125 N, by the ratio of all to one: with 50 N 0.4 of the
+    film is left, and of 0.06 and 75 N that are missed. With lugs a run of another rubber starts
+    from the march itself: 0.5 of 0.10 and 100 N.
+    """
+
+    def scalars(cof, load):
+        return {"cof": SourcedValue(cof, "1"), "fluid_load": SourcedValue(load, "N")}
+
+    def at_one(value):
+        return SimpleNamespace(attrs={"as_described": value})
+
+    case = Case.load("examples/work_shoe_untreaded_glycerol.toml")
+    data = {"position_cof": at_one(0.25), "position_fluid_load": at_one(160.0)}
+    present = SimpleNamespace(
+        scalars=scalars(0.30, 200.0), data=data, value={"cof": 0.30, "fluid_load": 200.0}.get
+    )
+    march = SimpleNamespace(
+        values={"cof": 0.20, "fluid_load": 100.0}, cof=SourcedValue(0.20, "1"), cof_draws=None
+    )
+    ran = []
+
+    def run(cases, **_):
+        ran.extend(cases)
+        made = SimpleNamespace(usable=True, scalars=scalars(0.15, 50.0), maps={})
+        failed = SimpleNamespace(usable=False, status="not converged")
+        return [made, failed][: len(cases)]
+
+    monkeypatch.setattr(effects, "_march", lambda *_: march)
+    monkeypatch.setattr(effects, "treaded", lambda _: lugs)
+    monkeypatch.setattr(effects, "outcomes", run)
+    rubbers = [
+        Change(f"rubber {a}", f"take {a}", "maker", {"shoe.material.shore_a": a})
+        for a in (50.0, 60.0)
+    ]
+    told, none = change_effects(case, cast(Any, present), rubbers)
+    assert [one.value("shoe.material.shore_a") for one in ran] == [50.0, 60.0]
+    expected = (0.15 + 0.5 * 0.10, 50 + 0.5 * 100) if lugs else (0.15 + 0.4 * 0.06, 50 + 0.4 * 75)
+    assert (told.number("cof"), told.number("fluid_load")) == pytest.approx(expected)
+    assert (none.computed, none.reason) == (False, "not converged")

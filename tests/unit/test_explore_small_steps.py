@@ -9,8 +9,9 @@ import pytest
 from underfoot.core import InputError
 from underfoot.explore import proposals
 from underfoot.explore.computing import crashed
-from underfoot.explore.inputs import read_joint_draws
+from underfoot.explore.inputs import Choice, Range, read_joint_draws
 from underfoot.explore.record import Ending, Job
+from underfoot.explore.surrogate import featured
 
 HEAD = "# a posterior\ncontaminant.viscosity,motion.speed\n"
 
@@ -96,3 +97,18 @@ def test_what_comes_next_follows_from_the_kind_and_from_what_is_left(
     else:
         assert asked == [then]
         assert jobs == [(run + k, (0.5,), 3, False) for k in range(then[1])]
+
+
+def test_a_name_has_a_column_a_value_and_a_number_its_share_of_the_range():
+    dimensions = (
+        Range("shoe.tread.depth", 1e-3, 4e-3),
+        Choice("shoe.tread.pattern", ("grid", "bars", "none")),
+        Choice("shoe.material.shore_a", (50.0, 55.0, 70.0)),
+    )
+    points = np.array([[0.2, 0.1, 0.1], [0.7, 0.5, 0.5], [1.0, 1.0, 1.0]])
+    np.testing.assert_allclose(
+        featured(dimensions, points),
+        [[0.2, 1, 0, 0, 0.0], [0.7, 0, 1, 0, 0.25], [1.0, 0, 0, 1, 1.0]],
+    )
+    alone = Choice("shoe.material.shore_a", (60.0,))
+    np.testing.assert_array_equal(featured((alone,), np.array([[0.5]])), [[0.0]])

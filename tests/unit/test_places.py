@@ -25,7 +25,7 @@ from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
 from underfoot.places.choice import chosen, slip_share
-from underfoot.places.evidence import floor_likeness, learned, machine_scores, score
+from underfoot.places.evidence import evidence, floor_likeness, learned, machine_scores, score
 from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import (
     FLUIDS,
@@ -778,3 +778,111 @@ def test_a_friction_that_people_need_is_assumed_only_where_it_was_not_given():
     told = asked(rcof_mean=0.23, task=[walk, carry | {"rcof": 0.3}])
     assert not assumes(told)
     assert [task.rcof for task in told.tasks] == [0.23, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("known", "worn"),
+    [
+        ({}, {"depth": 0.0}),
+        (
+            {"wear_per_month": "0.25 mm", "months": 4},
+            {"depth": 1e-3, "angle": math.radians(7), "mode": "plane"},
+        ),
+        (
+            {"worn_region": ["20 mm", "12 mm"]},
+            {"mode": "patch", "patch_length": 20e-3, "patch_width": 12e-3},
+        ),
+    ],
+)
+def test_a_shoe_of_a_place_is_new_and_as_worn_as_its_file_says(known, worn):
+    table = small_place()
+    table["shoe"][1] |= known
+    place = place_of(table)
+    new, old = (
+        place.case(place.shoes[1], place.floors[0], "water", worn=when) for when in (False, True)
+    )
+    assert new.value("shoe.wear.depth") == 0.0
+    assert new.origins["shoe.wear.depth"].kind == "default"
+    for name, value in worn.items():
+        assert old.value(f"shoe.wear.{name}") == (value if name == "mode" else pytest.approx(value))
+    if "worn_region" in known:  # it is through its tread
+        assert old.value("shoe.wear.depth") == pytest.approx(new.value("shoe.tread.depth"))
+
+
+@pytest.mark.parametrize(
+    ("rest", "taken"), [(0.096, True), (0.104, True), (0.094, False), (0.106, False)]
+)
+def test_shares_add_to_one_within_half_a_percent(rest, taken):
+    table = small_place() | {"fluids": {"dry": 0.9, "water": rest}}
+    if taken:
+        assert place_of(table).wet_share == pytest.approx(rest)
+    else:
+        with pytest.raises(InputError, match="add to"):
+            place_of(table)
+
+
+@pytest.mark.parametrize(("share", "left"), [(0.5, 390.0), (0.025, 4000.0)])
+def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share, left):
+    """100 of 4,000 draws have ``share`` of the weight: 1 / (s^2 / 100 + (1 - s)^2 / 3900)."""
+    joint = JointDraws(count=4000)
+    weight = np.repeat([share / 100, (1 - share) / 3900], [100, 3900])
+    unlike = np.unique(joint.constants.constants.kappa_0).size
+    joint.learn(np.log(weight), "hall")
+    assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
+    joint.learn(np.zeros(4000), "hall")  # what tells nothing
+    assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
+
+
+def test_steps_in_a_fluid_are_those_of_each_floor_by_its_area():
+    """Three parts of a hall with 0.2 of its steps wet and one of a stair with 0.6."""
+    table = small_place() | {"people": {"steps_per_day": 5000, "rcof_sd": 0.05}}
+    del table["fluids"]
+    hall = table["floor"][0] | {"area": 300, "fluids": {"dry": 0.8, "water": 0.2}}
+    stair = hall | {"name": "stair", "area": 100}
+    stair["fluids"] = {"water": 0.1, "dry": 0.4, "glycerol_90pct": 0.5}
+    place = place_of(table | {"floor": [hall, stair]})
+    assert [floor.share for floor in place.floors] == [0.75, 0.25]
+    assert place.wet_share == pytest.approx(0.3)
+    assert place.wet_steps == pytest.approx(1500)
+    assert place.fluids() == ("glycerol_90pct", "water")
+    assert (place.rcof_sd, place.steps, place.reported) == (0.05, 5000, None)
+    assert not any("steps_per_day" in each for each in place.assumed)
+    usual = place_of(small_place())
+    assert (usual.rcof_sd, usual.steps, usual.tasks[0].rcof) == (0.03, 8000, 0.2)
+    assert any("steps_per_day" in each for each in usual.assumed)
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high"),
+    [
+        ("rcof_mean", 0.05, 0.6),
+        ("rcof_sd", 0.001, 0.2),
+        ("steps_per_day", 1, 100_000),
+        ("reported_slips", 0, 1_000_000),
+    ],
+)
+def test_numbers_of_people_are_taken_from_end_to_end(key, low, high):
+    for value in (low, high):
+        place = place_of(small_place() | {"people": {key: value}})
+        told = {
+            "rcof_mean": place.tasks[0].rcof,
+            "rcof_sd": place.rcof_sd,
+            "steps_per_day": place.steps,
+            "reported_slips": place.reported,
+        }
+        assert told[key] == value
+    for value in (low - 1e-4, 1.001 * high):
+        with pytest.raises(RangeError, match=f"people.{key}"):
+            place_of(small_place() | {"people": {key: value}})
+
+
+def test_a_printed_reading_is_of_a_floor_of_its_source_by_a_machine_with_its_fluid():
+    told = evidence()
+    assert {one.machine.name for one in told} <= set(machines())
+    for one in told:
+        assert one.floor.partition(", ")[2]
+        assert one.floor not in one.source  # of several floors that one source reads
+        for bound in one.bounds:
+            assert bound.fluid == one.machine.fluid_of_standard()
+        assert one.ends[0] <= one.ends[1]
+        assert 0 < one.rq[0] <= one.rq[1] < 1e-3

@@ -9,6 +9,7 @@ import pytest
 
 import underfoot.shoe.worn as shapes
 from underfoot.compute import sole
+from underfoot.questions import wear
 from underfoot.questions.wear import PARTS, _assumptions, measures_between
 
 
@@ -39,3 +40,16 @@ def test_wear_by_walking_is_worn_at_an_angle_and_half_its_range_to_either_side()
     case = SimpleNamespace(shoe=SimpleNamespace(wear=wear))
     shape, *_ = _assumptions(cast(Any, case), "archard", [])
     assert "at 7, 10 and 13 deg" in shape
+
+
+@pytest.mark.parametrize("mode", ["plane", "walk", "patch"])
+def test_a_shape_that_is_known_is_measured_in_even_parts_of_each_step(monkeypatch, mode):
+    def worn(case, of, steps, deepest):
+        return [(case, of, deepest, number / steps) for number in range(steps + 1)]
+
+    monkeypatch.setattr(wear, "worn_cases", worn)
+    monkeypatch.setattr(wear, "_measures", lambda case: case)
+    cases = cast(Any, ["new", 1, 2])
+    found = measures_between(cast(Any, "case"), cases, mode, 3e-3)
+    assert [one[:3] for one in found] == [("case", mode, 3e-3)] * (2 * PARTS + 1)
+    np.testing.assert_allclose([one[3] for one in found], np.linspace(0, 1, 2 * PARTS + 1))

@@ -1,5 +1,6 @@
 """Steps of soles by their values: faces, lugs that take a fillet, ends, numbers, components."""
 
+from itertools import permutations
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -7,9 +8,14 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError, InputError
+from underfoot.shoe._kernels.arcs import biarc
+from underfoot.shoe._kernels.covering_discs import channel_width
 from underfoot.shoe._kernels.elements import _number
+from underfoot.shoe.files import edges
 from underfoot.shoe.files.mesh import _check
 from underfoot.shoe.files.threemf import _Object, _Package, _Volume
+from underfoot.shoe.files.view import without_copies
+from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.parametric import solid
 from underfoot.shoe.parametric.sole import ShoeOutline
 from underfoot.shoe.tread_measures import LUG_REACH, _without_ends
@@ -120,3 +126,114 @@ def test_a_slicer_tells_of_a_component_by_its_number_or_its_turn(parts, told, ki
     )
     bodies = list(reader._bodies(("p", "9"), np.eye(4), (), "model", True, volumes))
     assert [body.kind for body in bodies] == kinds
+
+
+@pytest.mark.parametrize(
+    ("cells", "ends"), [(3.5, (0.0, 3.5)), (4.5, (-1.0, 5.5)), (20.0, (-1.0, 21.0))]
+)
+def test_a_line_of_a_lug_of_more_than_four_cells_runs_on_to_the_rim(monkeypatch, cells, ends):
+    """By 2 mm beyond one cell of 1 mm before its end, on either side."""
+    at = 1e-3 * np.linspace(0.0, cells, 15)
+    points = np.stack([at, np.full(15, 3e-3)], axis=1)
+    lines = np.stack([points[:-1], points[1:]], axis=1)
+    surface = SimpleNamespace(spacing=1e-3, inside=np.ones((4, 4), bool))
+    land = SimpleNamespace(land=np.zeros((4, 4), bool))
+    every = np.ones(len(lines), bool)
+    monkeypatch.setattr(edges, "section_lines", lambda *_: [lines])
+    monkeypatch.setattr(edges, "drawn_surface", lambda _: land)
+    monkeypatch.setattr(edges, "_beside", lambda *_: (every, ~every, every))
+    none = cast(Any, None)
+    made = edges.lug_lines(none, none, none, cast(Any, surface), 1e-3)
+    assert (made[..., 0].min(), made[..., 0].max()) == pytest.approx(1e-3 * np.array(ends))
+    np.testing.assert_allclose(made[..., 1], 3e-3)
+    np.testing.assert_allclose(made[1:, 0], made[:-1, 1])  # one way without a gap
+
+
+def test_a_line_around_a_lug_is_left_as_it_is(monkeypatch):
+    turn = np.linspace(0.0, 2 * np.pi, 33)
+    points = 8e-3 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    lines = np.stack([points[:-1], points[1:]], axis=1)
+    surface = SimpleNamespace(spacing=1e-3, inside=np.ones((4, 4), bool))
+    every = np.ones(len(lines), bool)
+    monkeypatch.setattr(edges, "section_lines", lambda *_: [lines])
+    monkeypatch.setattr(edges, "drawn_surface", lambda _: SimpleNamespace(land=~surface.inside))
+    monkeypatch.setattr(edges, "_beside", lambda *_: (every, ~every, every))
+    none = cast(Any, None)
+    made = edges.lug_lines(none, none, none, cast(Any, surface), 1e-3)
+    assert len(made) == len(lines)
+    assert np.linalg.norm(made, axis=2) == pytest.approx(8e-3, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("edge", "rise"),
+    [
+        ({"edge_radius": 1e-3}, 1e-3 * (1 - np.sqrt(1 - np.array([0, 0, 0.5, 1.0]) ** 2))),
+        ({"edge_chamfer": 1e-3}, 1e-3 * np.array([0, 0, 0.5, 1.0])),
+        ({}, np.zeros(4)),
+    ],
+    ids=["rounded", "chamfered", "sharp"],
+)
+def test_the_land_rises_towards_the_edge_of_its_lug_alone(edge, rise):
+    """Places 5, 1, 1/2 and 0 mm within a lug and one in the channel, 3 mm deep."""
+    inside = 1e-3 * np.array([5.0, 1.0, 0.5, 0.0, -1.0])
+    tread = SimpleNamespace(
+        **{"edge_radius": 0.0, "edge_chamfer": 0.0} | edge,
+        depth=3e-3,
+        sipes=None,
+        channel_distance=lambda x, y: -inside,
+    )
+    flat = np.full(5, 2e-4)
+    heel = SimpleNamespace(
+        tread=tread, arc_channel=None, unworn_height=lambda *_: flat, land_height=lambda *_: flat
+    )
+    height, land, lug = cut_heel(cast(Any, heel), flat, flat)
+    np.testing.assert_allclose(height, 2e-4 + np.append(rise, 3e-3))
+    assert land.tolist() == [True] * 4 + [False]
+    np.testing.assert_allclose(lug, 3e-3)
+
+
+def test_a_channel_has_its_width_and_what_is_none_has_no_width():
+    region = np.zeros((20, 12), bool)
+    region[4:7] = True
+    region[10:15] = True
+    width = channel_width(region, 0.5e-3)
+    expected = np.zeros(20)
+    expected[4:7], expected[10:15] = 1.5e-3, 2.5e-3
+    np.testing.assert_allclose(width[:, 4:8], np.repeat(expected[:, None], 4, axis=1))
+    assert not width[~region].any()
+
+
+@pytest.mark.parametrize(
+    ("end", "turned"),
+    [
+        ((40.0, 10.0), 0.0),  # the middle is half way wherever both go on alike
+        ((0.0, 30.0), 0.0),
+        ((40.0, 10.0), 1e-7),
+        ((40.0, 10.0), 0.8),
+        ((30.0, -5.0), -1.2),
+    ],
+)
+def test_two_arcs_lead_from_one_direction_to_another_without_a_kink(end, turned):
+    start, begin = np.array([0.0, 0.0]), np.array([1.0, 0.0])
+    last = np.array([np.cos(turned), np.sin(turned)])
+    arcs = biarc(start, begin, 1e-3 * np.array(end), last)
+    ways = []
+    for x0, y0, x1, y1, cx, cy, radius in arcs:
+        for x, y in ((x0, y0), (x1, y1)):
+            assert np.hypot(x - cx, y - cy) == pytest.approx(abs(radius))
+            ways.append(np.array([cy - y, x - cx]) / radius)
+    one, two = arcs
+    np.testing.assert_allclose([*one[:2], *two[2:4]], [0, 0, *1e-3 * np.array(end)], atol=1e-12)
+    np.testing.assert_allclose(one[2:4], two[:2], atol=1e-12)
+    for way, expected in zip(ways, (begin, ways[2], ways[2], last), strict=True):
+        np.testing.assert_allclose(way, expected, atol=1e-6)
+    if turned == 0.0:
+        np.testing.assert_allclose(one[2:4], 0.5e-3 * np.array(end))
+
+
+def test_a_triangle_is_the_same_whichever_corner_comes_first():
+    corners = np.array([[0, 0, 0], [3, 0.5, 1], [1, 2, -1]], np.float32)
+    orders = list(permutations(range(3)))
+    other = corners + np.array([0, 0, 1e-4], np.float32)
+    soup = np.concatenate([[corners[list(order)] for order in orders], [other, other[::-1]]])
+    np.testing.assert_array_equal(without_copies(soup), [soup[0], other])

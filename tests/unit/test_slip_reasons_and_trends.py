@@ -76,3 +76,41 @@ def test_changes_of_a_sole_are_as_large_as_they_say(monkeypatch):
     assert changes["softer_compound"].values == {"shoe.material.shore_a": hardness - 15}
     rq = case.shoe.roughness.rq_or_estimate
     assert changes["abraded_sole"].values["shoe.roughness.rq"] == pytest.approx(2 * rq)
+
+
+@pytest.mark.parametrize(
+    ("rate", "missing", "has"),
+    [(100.0, (), True), (100.0, (0.4,), False), (100.0, (0.55,), False), (5.0, (), False)],
+    ids=["seen", "lost while flat", "lost later", "too slow"],
+)
+def test_a_foot_turns_from_where_it_lies_flat(monkeypatch, rate, missing, has):
+    """From 20 to 0 deg in the first 0.18 s of a stance of 0.6 s; its markers' line falls by 5 deg.
+
+    At 5 pictures a second there is none in 0.3 to 0.5 of the stance, which is flat.
+    """
+    seen = np.arange(0.92, 1.82, 1 / rate)
+    turned = np.radians(20.0) * np.clip(1 - (seen - 1.0) / 0.18, 0.0, None)
+    at = turned - np.radians(5.0)
+    at[[np.abs(seen - 1.0 - when).argmin() for when in missing]] = np.nan
+    walking, up = np.array([0.6, 0.8, 0.0]), np.array([0.0, 0.0, 1.0])
+    heel_at = np.outer(seen, walking)
+    heel, toe = (
+        SimpleNamespace(time=seen, positions=positions)
+        for positions in (
+            heel_at,
+            heel_at + 0.2 * (np.outer(np.cos(at), walking) + np.outer(np.sin(at), up)),
+        )
+    )
+    stance = SimpleNamespace(contact=1.0, duration=0.6, walking=walking)
+    walk = SimpleNamespace(up=up)
+    monkeypatch.setattr(recorded, "_heel_and_toe", lambda *_: (heel, toe))
+    time = np.arange(0.0, 0.6, 0.05)
+    angle = recorded._foot_angle(cast(Any, walk), cast(Any, stance), time)
+    if not has:
+        assert angle is None
+        return
+    expected = np.interp(time + 1.0, seen, turned)
+    np.testing.assert_allclose(angle, expected, atol=1e-9)
+    for pair in ((None, toe), (heel, None)):
+        monkeypatch.setattr(recorded, "_heel_and_toe", lambda *_, pair=pair: pair)
+        assert recorded._foot_angle(cast(Any, walk), cast(Any, stance), time) is None

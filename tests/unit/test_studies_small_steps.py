@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
+from underfoot.core import ConvergenceError
+from underfoot.studies import corpus, g2, g3, g4, g5
 from underfoot.studies.calibration import profile_figure
 from underfoot.studies.corpus import Side, _effects
 from underfoot.studies.corpus_cases import _nested
+from underfoot.studies.runner import Options
 from underfoot.studies.validation import _strip_load
 from underfoot.studies.verdict import Quantity, grid_value
 
@@ -96,3 +99,135 @@ def test_a_profile_is_drawn_over_its_parameter_and_no_higher_than_a_thousand():
     assert [(*one.x, one.label) for one in ends] == [(1.5, "end of 95 %"), (2.0, "default")]
     np.testing.assert_array_equal(drawn.x, [1, 2, 3])
     np.testing.assert_array_equal(drawn.y, [4, 0, 1e3])
+
+
+def pair(place, low, high):
+    """Return a reading of a source, ln COF of ``low`` and ``high`` about a middle."""
+    return SimpleNamespace(
+        source=place, reading=SimpleNamespace(low=math.exp(low), high=math.exp(high))
+    )
+
+
+def test_a_source_counts_once_and_what_lies_at_an_end_lies_inside():
+    """Of a, three of four readings are in -1 to 1, ends among them; b has one, below its interval.
+
+    Rows: known, foretold, median, low, high. Middles of ln COF are 0, 1, 0.5, 3 and -2.
+    """
+    a = [pair("a", m - 0.1, m + 0.1) for m in (0.0, 1.0, 0.5, 3.0)]
+    conditions = [*a, pair("b", -2.1, -1.9)]
+    after = [(0, k, 0.5, -1.0, 1.0 + 1e-9) for k in (1, 2, 3, 0)] + [(0, 4, 0.5, -1.0, 2.0)]
+    left = SimpleNamespace(draws=np.zeros((3, 5)), conditions=conditions, after=np.array(after))
+    table, quantities = corpus._after(cast(Any, [left]))
+    rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
+    assert [(row["source"], row["pairs of readings"]) for row in rows] == [("a", 4.0), ("b", 1.0)]
+    assert [row["inside 95 %"] for row in rows] == [0.75, 0.0]
+    squares = np.array([1.0, 0.25, 9.0, 0.0])
+    assert rows[0]["rms of ln COF, before"] == pytest.approx(math.sqrt(squares.mean()))
+    assert rows[0]["the same as the reading"] == pytest.approx(math.sqrt(squares.mean()))
+    assert rows[0]["after"] == pytest.approx(math.sqrt((0.25 + 0.0 + 6.25 + 0.25) / 4))
+    assert rows[0]["95 % interval, factor"] == pytest.approx(math.exp(2.0))
+    assert rows[1]["95 % interval, factor"] == pytest.approx(math.exp(3.0))
+    assert quantities["after.inside_95"].values[0] == pytest.approx((0.75 + 0.0) / 2)
+
+
+def test_the_errors_of_mechanisms_are_two_bars_to_a_line_the_first_on_top():
+    def errors(name, *two):
+        fluids = [SimpleNamespace(error=error) for error in two]
+        return SimpleNamespace(fluids=fluids, mechanism=SimpleNamespace(label=name))
+
+    tests = {"a": errors("A", 0.1, 0.2), "b": errors("B", 0.3, 0.4)}
+    (panel,) = g2._error_figure(cast(Any, SimpleNamespace(tests=tests))).panels
+    assert list(panel.y_ticks) == ["B", "A"]
+    measured, alone = panel.layers
+    assert measured.x == [0.3, 0.1]
+    assert alone.x == [0.4, 0.2]
+    for upper, lower in zip(measured.y, alone.y, strict=True):
+        assert upper > lower
+        assert round(upper) == round(lower)  # at the line's place, side by side
+        assert upper - lower >= measured.width
+
+
+def test_what_one_input_does_stands_at_its_name_the_largest_on_top():
+    def outcome(load, peak):
+        return SimpleNamespace(number={g4.LOAD: load, g4.PEAK: peak}.get)
+
+    ranked = [
+        SimpleNamespace(path=path, low=outcome(load, 1e3), high=outcome(2 * load, 2e3))
+        for path, load in (("shoe.tread.lug_width", 9.0), ("motion.speed", 4.0), ("fluid", 1.0))
+    ]
+    varied = SimpleNamespace(nominal=outcome(5.0, 1.5e3), ranked=lambda _: ranked)
+    figure = g4.inputs_figure(cast(Any, SimpleNamespace(name="c")), cast(Any, varied), count=2)
+    for panel, values, nominal in zip(
+        figure.panels, ([4, 9, 8, 18], [1, 1, 2, 2]), (5.0, 1.5), strict=True
+    ):
+        assert list(panel.y_ticks) == ["speed", "lug width"]
+        level, low, high = panel.layers
+        assert level.x == [nominal]
+        assert (low.label, high.label) == ("low end", "high end")
+        assert low.x + high.x == pytest.approx(values)
+        assert low.y == high.y == [0, 1]
+
+
+def test_the_pairs_of_the_report_are_the_ends_where_all_others_lie_between():
+    """Four draws: so; the first below one other; the last above one other; one other below it."""
+    pairs = [("polyurethane", "marble"), ("x", "marble"), ("x", "vinyl"), ("hard rubber", "vinyl")]
+    draws = [[9, 5.5, 9, 9], [5, 5, 5, 5], [6, 6, 6, 3], [1, 1, 5.5, 4]]
+    splits = {
+        name: SimpleNamespace(
+            hysteresis=10 * g3.TIE * np.array(drawn), medians=(0.0, float(drawn[0]), {})
+        )
+        for name, drawn in zip(pairs, draws, strict=True)
+    }
+    told = g3._ends_of_the_pairs(cast(Any, splits), "hysteresis")
+    assert list(told.values) == [9.0, 6.0, 5.0, 1.0]
+    assert told.chance == 0.25
+
+
+def test_a_film_is_compared_by_its_share_at_the_ends_of_what_varies():
+    """1 % of a film is left a millisecond a second: by viscosity, by time, by speed."""
+    thick, middle, thin = g5.CURVES
+    kept = {
+        (thin, 0.5): (10, 5), (middle, 0.5): (40, 24), (thick, 0.5): (80, 70),
+        (middle, g5.HELD_SPEEDS[0]): (5, 1), (middle, g5.HELD_SPEEDS[-1]): (85, 80),
+    }  # fmt: skip
+    films = [
+        g5.HeldFilm(v, s, np.array([0.0, 0.05, 0.2, g5.HELD_FOR]), np.array([100, 90, early, late]))
+        for (v, s), (early, late) in kept.items()
+    ]
+    told = {name: each.values[0] for name, each in g5._wedge_squeeze_quantities(films).items()}
+    assert told == pytest.approx(
+        {"film.viscosity": 0.70, "film.dwell": 0.24 - 0.90, "film.speed": 0.80}
+    )
+
+
+@pytest.mark.parametrize("processes", [1, 2, None])
+def test_full_slips_are_computed_side_by_side_where_processes_may_be_started(
+    monkeypatch, processes
+):
+    """Then they are 0.8 of the work; with one process each population is a fourth of all."""
+    filled, seen, solved = [], [], []
+
+    def side_by_side(_, function, cases, keys, **__):
+        assert function is g5.fill_cache
+        assert keys == [case.hash for case in cases]
+        filled.extend(case.hash for case in cases)
+        return iter(cases)
+
+    def slips(case, *, progress):
+        solved.append(case.hash)
+        progress("slips", 1.0)
+        if len(solved) == len(g5.GRIDS) * len(g5.COUNTS):
+            raise ConvergenceError("enough", where="test")
+
+    monkeypatch.setattr(g5, "cached_arrays", side_by_side)
+    monkeypatch.setattr(g5, "slips", slips)
+    options = Options(processes=processes, progress=lambda _, share, *__: seen.append(share))
+    with pytest.raises(ConvergenceError, match="enough"):
+        g5.compute(options)
+    assert len(set(solved)) == 4
+    if processes == 1:
+        assert filled == []
+        assert seen == pytest.approx([0.25, 0.5, 0.75, 1.0])
+    else:
+        assert filled == solved
+        assert seen == pytest.approx([0.2, 0.4, 0.6, 0.8, 0.84, 0.88, 0.92, 0.96])

@@ -7,7 +7,7 @@ import pytest
 
 from underfoot import load
 from underfoot.compute.sole import drawn_map
-from underfoot.report.surface_mesh import _noded, surface_mesh
+from underfoot.report.surface_mesh import _along_edge, _noded, surface_mesh
 from underfoot.shoe import Facet, Heel, Rocker, Tread, heel_map, heel_surface
 
 FINE = 0.3e-3
@@ -147,3 +147,17 @@ def test_lines_are_cut_where_they_meet():
     parts = {tuple(sorted(map(tuple, places[line].tolist()))) for line in lines}
     straight = [((x, 0.0), (x + 1.0, 0.0)) for x in (0.0, 1.0, 2.0)]
     assert parts == {*straight, ((2.0, -1.0), (2.0, 0.0)), ((2.0, 0.0), (2.0, 1.0))}
+
+
+@pytest.mark.parametrize("before", [4, 5, 6, 9])
+@pytest.mark.parametrize("after", [4, 5, 6, 9])
+def test_a_corner_that_was_cut_off_moves_to_where_its_sides_meet(before, after):
+    """However few places lie on a side: two that are trusted tell its direction."""
+    places = np.array(
+        [[-n, 0.0] for n in range(before, 0, -1)]
+        + [[-0.2, 0.2]]
+        + [[0.0, n] for n in range(1, after + 1)]
+    )
+    lines = _along_edge(places, list(range(len(places))), 0.1)
+    assert lines.tolist() == [[0, before], [before, before + after]]
+    assert places[before] == pytest.approx([0.0, 0.0], abs=1e-12)

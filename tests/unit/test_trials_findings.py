@@ -252,8 +252,8 @@ def test_rcof_of_persons_not_of_steps_and_means(tmp_path):
     people: dict[str, list[float]] = {}
     for one in analysis.files:
         for step in one.steps:
-            if step["rcof"] is not None:
-                people.setdefault(one.conditions["subject"], []).append(step["rcof"])
+            if step.rcof is not None:
+                people.setdefault(one.conditions["subject"], []).append(step.rcof)
     means = [np.mean(values) for values in people.values()]
     mean, sd, words = measured_rcof(path)
     assert len(means) == 2
@@ -306,7 +306,7 @@ def test_a_protocol_takes_every_definition(tmp_path):
     def rcof(lines: str) -> list[float]:
         (folder / "mine.toml").write_text(head + lines)
         found = analyse_folder(tmp_path, protocol("mine", [folder]), processes=1)
-        return [step["rcof"] for step in found.files[0].steps]
+        return [step.rcof for step in found.files[0].steps]
 
     trial = read_trial(tmp_path / "HC030A05.c3d")
     for name, lines in (

@@ -9,10 +9,11 @@ import pytest
 from scipy.io import savemat
 
 from trial_exports import fscan
-from underfoot.trials import Marker, read_trial, stances
+from underfoot.trials import read_trial, stances
+from underfoot.trials.walking import step_features
 from underfoot.trials.walking.plausibility import LATE, _marker_flags
 from underfoot.trials.walking.processed import dead_time
-from underfoot.trials.walking.step_features import step_features
+from underfoot.trials.walking.step import Step
 from underfoot.trials.walking.walkway import walkway_of
 
 WALK = Path(__file__).parents[1] / "data" / "trials" / "biomechzoo" / "HC030A05.c3d"
@@ -34,24 +35,26 @@ def test_slow_feet_may_land_as_slowly(walk, late, duration, told):
     """0.06 s between heel and force; twice as much in a stance of twice 0.65 s, never less."""
     stance = stances(walk)[0]
     landed = next(
-        flag.measured for flag in _marker_flags(
+        flag.measured for flag in _marker_flags(Step(
             walk, replace(stance, contact=stance.contact + 0.2, toe_off=stance.contact + 0.8)
-        ) if flag.name == LATE.name
+        )) if flag.name == LATE.name
     )  # fmt: skip
     contact = stance.contact + 0.2 - landed + late
     shifted = replace(stance, contact=contact, toe_off=contact + duration)
-    flags = [flag for flag in _marker_flags(walk, shifted) if flag.name == LATE.name]
+    flags = [flag for flag in _marker_flags(Step(walk, shifted)) if flag.name == LATE.name]
     assert [flag.measured for flag in flags] == ([pytest.approx(late)] if told else [])
 
 
 def test_a_step_s_features_need_no_more_of_the_markers_than_is_looked_at(walk, monkeypatch):
     """0.3 s on both sides let the filter settle; more of the record changes nothing."""
     contacts = stances(walk)
-    near = [step_features(walk, stance) for stance in contacts]
-    monkeypatch.setattr(Marker, "frames", lambda *given, **more: slice(None))
+    near = [step_features.step_features(Step(walk, stance)) for stance in contacts]
+    monkeypatch.setattr(step_features, "frames_between", lambda *given, **more: slice(None))
     for stance, features in zip(contacts, near, strict=True):
         assert "slope of the force line" in features
-        assert features == pytest.approx(step_features(walk, stance), rel=0, abs=1e-4)
+        assert features == pytest.approx(
+            step_features.step_features(Step(walk, stance)), rel=0, abs=1e-4
+        )
 
 
 @pytest.mark.parametrize(("share", "told"), [(1.0, True), (0.9, True), (0.89, False)])

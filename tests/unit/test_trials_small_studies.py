@@ -12,7 +12,7 @@ from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size
 from underfoot.trials.study import analyse_folder
-from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import study_doubts
 from underfoot.trials.study.study_tests import comparison_findings
@@ -26,9 +26,9 @@ def files_of(rows):
     return [
         FileResult(
             f"f{n:03d}.c3d",
-            main={"rcof": rcof + rng.normal(0, scatter)},
+            numbers=(Number("rcof", rcof + rng.normal(0, scatter), main="rcof"),),
             conditions=conditions,
-            steps=({"rcof": rcof, "walking_speed": 1.3, "contact": 0.1, "peak_force": 700.0},),
+            steps=(StepResult(rcof=rcof, walking_speed=1.3, contact=0.1, peak_force=700.0),),
         )
         for n, (conditions, rcof, scatter) in enumerate(rows)
     ]
@@ -111,7 +111,8 @@ def test_a_column_of_one_value_is_named_on_the_page():
         ("level_walking", "rcof"),
     ):
         files = [
-            FileResult(f"{i}.csv", main={response: 0.2 + 0.01 * i, "slip": 0.0},
+            FileResult(f"{i}.csv", numbers=(Number(response, 0.2 + 0.01 * i, main=response),
+                                            Number("slip", 0.0, main="slip")),
                        conditions={"outsole": "a", "order": "a", "shoe": "a"})
             for i in range(4)
         ]  # fmt: skip

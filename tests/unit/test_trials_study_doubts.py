@@ -8,7 +8,7 @@ from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import drift
 from underfoot.trials.study import analyse_folder
 from underfoot.trials.study.conditions import conditions_of
-from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.person_measures import FORCE, HEIGHT
 from underfoot.trials.study.study import study_of
 from underfoot.trials.study.study_guard import (
@@ -40,14 +40,14 @@ def study(change=lambda conditions, speed: (conditions, speed), seed=1, bodies=N
                 sizes = np.array([600, 1.0, 0.2, 0.25, 0.3]) * np.exp(body)
                 sizes *= np.exp(rng.normal(0, [0.02, 0.004, 0.004, 0.004, 0.004]))
                 names = (FORCE, HEIGHT, "A to B (m)", "A to C (m)", "B to D (m)")
-                step = {"rcof": rcof, "walking_speed": speed, "contact": 0.1, "peak_force": 700.0}
+                step = StepResult(rcof=rcof, walking_speed=speed, contact=0.1, peak_force=700.0)
                 files.append(
                     FileResult(
                         f"S{person:02d}_{place:02d}.c3d",
-                        main={"rcof": rcof},
+                        numbers=(Number("rcof", rcof, main="rcof"),),
                         conditions=conditions,
                         steps=(step,),
-                        curves={"person": dict(zip(names, map(float, sizes), strict=True))},
+                        body=dict(zip(names, map(float, sizes), strict=True)),
                     )
                 )
     return files
@@ -146,7 +146,7 @@ def small_study(persons, measures, trials, seed, twins=False, plates=False):
                 FileResult(
                     f"{person}_{trial}.c3d",
                     conditions={"subject": f"S{person}"},
-                    curves={"person": dict(zip(names[:measures], measured.tolist(), strict=False))},
+                    body=dict(zip(names[:measures], measured.tolist(), strict=False)),
                 )
             )
     return files
@@ -337,7 +337,11 @@ def test_boards_correct_the_angles_of_their_walkers(tmp_path):
 def test_readings_that_rise_or_fall_are_said(values, told):
     assert (drift(values) is not None) == told
     files = [
-        FileResult(f"run_{i}.csv", main={"cof": value}, conditions={"shoe": "A", "floor": "tile"})
+        FileResult(
+            f"run_{i}.csv",
+            numbers=(Number("cof", value, main="cof"),),
+            conditions={"shoe": "A", "floor": "tile"},
+        )
         for i, value in enumerate(values)
     ]
     said = [str(one) for one in study_doubts(files[::-1], protocol("en_iso_13287"))]
@@ -352,8 +356,9 @@ def test_scatter_is_no_drift():
 def test_one_recording_under_many_names_is_one_doubt():
     """Of 48 files of the same bytes each pair was a doubt of its own."""
     names = [f"f{n:02d}.c3d" for n in range(12)]
-    numbers = {"peak": 700.123, "mean": 500.456, "rcof": 0.1987}
-    same = [[FileResult(name, "abc", facts=numbers, conditions={"shoe": str(n % 2)})]
+    values = {"peak": 700.123, "mean": 500.456, "rcof": 0.1987}
+    numbers = tuple(Number(name, value, fact=name) for name, value in values.items())
+    same = [[FileResult(name, "abc", numbers=numbers, conditions={"shoe": str(n % 2)})]
             for n, name in enumerate(names)]  # fmt: skip
     files, doubts = guarded_files(same)
     (doubt,) = doubts
@@ -362,7 +367,7 @@ def test_one_recording_under_many_names_is_one_doubt():
     assert {one.verdict for one in files} == {"refused"}
     assert max(len(one.reasons[0]) for one in files) < 120
     # numbers join what bytes don't: one group, of the weaker kind
-    joined = [*same[:2], [FileResult("x.c3d", "other", facts=numbers, conditions={"shoe": "0"})]]
+    joined = [*same[:2], [FileResult("x.c3d", "other", numbers=numbers, conditions={"shoe": "0"})]]
     (doubt,) = guarded_files(joined)[1]
     assert doubt.files == ("f00.c3d", "f01.c3d", "x.c3d")
     assert "the same numbers" in doubt.message
@@ -372,7 +377,7 @@ def test_half_of_the_persons_in_a_shoe_is_no_crowd():
     """Two persons with thirty conditions: the others have "0.5 with each"."""
     cells = [(n % 2, n % 15) for n in range(24)]
     files = [
-        FileResult(f"{n}.c3d", main={"rcof": 0.2},
+        FileResult(f"{n}.c3d", numbers=(Number("rcof", 0.2, main="rcof"),),
                    conditions={"subject": f"S{who}", "shoe": f"shoe {shoe}"})
         for n, (who, shoe) in enumerate(cells)
     ]  # fmt: skip

@@ -16,6 +16,7 @@ import numpy as np
 from underfoot.trials.pages.figures import Sheet, Tile
 from underfoot.trials.recording.signals import CONTACT_FORCE
 from underfoot.trials.study import FileResult
+from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope, RecordSignals
 
 WIDTH = 900
@@ -74,17 +75,15 @@ def record_plot(record: FileResult, signals: RecordSignals) -> dict[str, Any]:
     return {"begin": begin, "end": end, "panels": [_panel("force", loads)], "bands": bands}
 
 
-def step_plot(
-    record: FileResult, entry: Mapping[str, Any], signals: RecordSignals
-) -> dict[str, Any]:
+def step_plot(record: FileResult, step: StepResult, signals: RecordSignals) -> dict[str, Any]:
     """Return load, ratio and heel speed around a step, with its events."""
-    contact, toe_off, plate = entry["contact"], entry["toe_off"], signals.force[entry["plate"]]
+    contact, toe_off, plate = step.contact, step.toe_off, signals.force[step.plate]
     begin, end = max(contact - BEFORE, plate.start), min(toe_off + AFTER, plate.end)
     seen = {name: each.envelope(begin, end, WIDTH) for name, each in signals.force.items()}
     loads = [
         _line(name, each)
         for name, each in seen.items()
-        if name == entry["plate"] or max(each.high, default=0.0) > CONTACT_FORCE
+        if name == step.plate or max(each.high, default=0.0) > CONTACT_FORCE
     ]
     panels = [_panel("force", loads)]
     least = 2.0 / plate.rate
@@ -92,11 +91,10 @@ def step_plot(
         {"id": "contact", "time": contact, "least": plate.start, "most": toe_off - least},
         {"id": "toe off", "time": toe_off, "least": contact + least, "most": plate.end},
     ]
-    if "exclude" in entry["by_hand"]:  # its marks show where it was; they are not moved
+    if "exclude" in step.by_hand:  # its marks show where it was; they are not moved
         events = [{"id": each["id"], "time": each["time"]} for each in events]
-    label = f"step {entry['number']} on {entry['plate']}"
     curves = (each for kind in RATIOS for each in record.curves.get(kind, ()))
-    for curve in (each for each in curves if each["step"] == label):
+    for curve in (each for each in curves if each["number"] == step.number):
         loaded = [
             ratio if load is not None and load > LOADED else None
             for ratio, load in zip(curve["ratio"], curve["normal"], strict=True)
@@ -111,11 +109,11 @@ def step_plot(
     speeds = [_line(s, each.envelope(begin, end, WIDTH)) for s, each in signals.heel_speed.items()]
     if speeds:
         panels.append(_panel("speed", speeds))
-    if "slip_start" in entry and speeds and record.curves.get("heel"):
+    if step.judged_for_slip and speeds and record.curves.get("heel"):
         events += _slip_events(record.curves["heel"][0], contact, len(panels) - 1)
     return {
         "begin": begin, "end": end, "panels": panels, "events": events,
-        "bands": [_band(entry)], "spacing": 1.0 / plate.rate,
+        "bands": [_band(step)], "spacing": 1.0 / plate.rate,
     }  # fmt: skip
 
 
@@ -144,9 +142,9 @@ def run_plot(record: FileResult) -> dict[str, Any] | None:
     return {"begin": time[0], "end": time[-1], "panels": panels, "events": ends, "bands": []}
 
 
-def _band(step: Mapping[str, Any]) -> dict[str, Any]:
-    ends = {"begin": step["contact"], "end": step["toe_off"]}
-    return {"id": step["number"], "verdict": step["verdict"], **ends}
+def _band(step: StepResult) -> dict[str, Any]:
+    ends = {"begin": step.contact, "end": step.toe_off}
+    return {"id": step.number, "verdict": step.verdict, **ends}
 
 
 def _panel(name: str, lines: list[dict[str, Any]], most: float = math.inf) -> dict[str, Any]:

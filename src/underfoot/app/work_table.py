@@ -81,7 +81,7 @@ def written(entries: Entries, title: str, kind: str, *, progress: Progress) -> s
             known = row["state"] == "current"
             line += [row.get(name), *ends] if known else [None, None, None]
         lines.append(tuple(line))
-    table = Table("variants", title, tuple(columns), tuple(lines))
+    table = Table.of("variants", title, columns, lines)
     file = Path(mkdtemp(prefix="underfoot-")) / f"{title}.{kind}"
     if kind == "csv":
         file.write_text(csv_text(table), encoding="utf-8")

@@ -37,6 +37,7 @@ from underfoot.trials.study.edit_table import (
     with_edit_row,
     write_edit_text,
 )
+from underfoot.trials.study.file_result import parts
 from underfoot.trials.study.folder import recording_trials
 from underfoot.trials.study.record_signals import record_signals
 from underfoot.trials.study.tables import quantity_name, scaled, shown_unit
@@ -170,8 +171,8 @@ def trial_view(
             texts = {"before": before, "after": after}
     return {
         **_summary(one),
-        "steps": [dict(each) for each in one.steps],
-        "edits": [dict(each) for each in one.edits],
+        "steps": [*map(parts, one.steps)],
+        "edits": [*map(parts, one.edits)],
         "kind": study.protocol.kind,
         "run": _run_number(recording.name, one.file),
         **_plots(study, recording, one, step),
@@ -245,7 +246,7 @@ def _number(edit: Edit, record: FileResult) -> int:
     if isinstance(edit.step, int) or not record.steps:
         return int(edit.step)
     at = edit.step
-    return int(min(record.steps, key=lambda step: abs(step["contact"] - at))["number"])
+    return min(record.steps, key=lambda step: abs(step.contact - at)).number
 
 
 def _cards(analysis: FolderAnalysis) -> list[dict[str, Any]]:
@@ -305,10 +306,10 @@ def _plots(
     trial = trials[_run_number(recording.name, record.file) - 1]
     signals = record_signals(trial, study.protocol, profile)
     order = {"accepted": 1, "caution": 1}
-    first = min(record.steps, key=lambda s: 0 if "slip_start" in s else order.get(s["verdict"], 2))
-    entry = next((each for each in record.steps if each["number"] == step), first)
+    first = min(record.steps, key=lambda s: 0 if s.judged_for_slip else order.get(s.verdict, 2))
+    shown = next((each for each in record.steps if each.number == step), first)
     return {
         "whole": record_plot(record, signals),
-        "chosen": entry["number"],
-        "plot": step_plot(record, entry, signals),
+        "chosen": shown.number,
+        "plot": step_plot(record, shown, signals),
     }

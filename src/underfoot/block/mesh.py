@@ -97,7 +97,7 @@ def block_mesh(block: MicroBlock) -> BlockMesh:
             allowed="at most 3/4 of the layers that it fades out over",
             remedy="Raise roughness_layers or bottom_layer",
         )
-    fade = np.clip(1.0 - planes / depth, 0.0, None)
+    fade = np.maximum(1.0 - planes / depth, 0.0)
     z = planes[:, None, None] - fade[:, None, None] * heights
     nodes = np.stack([np.broadcast_to(xx, z.shape), np.broadcast_to(yy, z.shape), z])
     numbers = np.arange(z.size).reshape(z.shape)

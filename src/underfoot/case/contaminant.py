@@ -15,8 +15,6 @@ from .section import Option
 Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
 Temperature = Annotated[float, Quantity("K", 250.0, 450.0)]
 
-FREEZES_AND_BOILS = (273.15, 373.15)
-"""K, between which Cheng's formula holds."""
 SLOPE = 0.01
 """Share of a spread over which the slope of the viscosity is taken."""
 
@@ -87,16 +85,15 @@ class GlycerolWater(ContaminantSection):
 
     def build(self) -> SourcedValue:
         from underfoot.fluid import glycerol_water, glycerol_water_viscosity
+        from underfoot.fluid.cheng_2008 import RANGES
 
         at = {"fraction": self.glycerol_fraction, "temperature": self.temperature}
         viscosity = glycerol_water(*at.values(), basis=self.fraction_basis).viscosity
-        spreads, (coldest, hottest) = [viscosity.uncertainty or 0.0], FREEZES_AND_BOILS
-        for name, field, low, high in (
-            ("fraction", "glycerol_fraction", 0.0, 1.0),
-            ("temperature", "temperature", coldest, hottest),
-        ):
+        spreads = [viscosity.uncertainty or 0.0]
+        for name, field in (("fraction", "glycerol_fraction"), ("temperature", "temperature")):
             if spread := self.sourced(field).uncertainty:
-                ends = np.clip((at[name] - SLOPE * spread, at[name] + SLOPE * spread), low, high)
+                near = at[name] - SLOPE * spread, at[name] + SLOPE * spread
+                ends = np.clip(near, RANGES[name].low, RANGES[name].high)
                 values = glycerol_water_viscosity(**{**at, name: ends}, basis=self.fraction_basis)
                 spreads.append(spread * float(np.ptp(values) / np.ptp(ends)))
         return replace(viscosity, uncertainty=math.hypot(*spreads))

@@ -82,7 +82,7 @@ class Group(TyperGroup):
         if item is None:
             return None
         if not isinstance(item, typer.Typer):
-            function, item = item, typer.Typer(pretty_exceptions_enable=False, add_completion=False)
+            function, item = item, typer.Typer(add_completion=False)
             item.command(name, cls=Command)(guarded(function))
         command = get_command(item)
         command.name = name

@@ -15,7 +15,6 @@ outsole_app = typer.Typer(
     name="outsole",
     help="Inspect outsole files (CAD, meshes, scans) and make parametric ones.",
     no_args_is_help=True,
-    pretty_exceptions_enable=False,
 )
 Direction = Annotated[
     str, typer.Option(metavar="+x|-x|+y|-y|+z|-z|flip", help="In the file's axes; auto finds it.")

@@ -22,7 +22,6 @@ studies_app = typer.Typer(
     name="studies",
     help="Published studies run again: computed numbers beside the printed ones.",
     no_args_is_help=True,
-    pretty_exceptions_enable=False,
 )
 
 

@@ -19,7 +19,6 @@ study_app = typer.Typer(
     name="study",
     help="Design studies: sweep, sensitivity, robust optimisation; resumed where they stopped.",
     no_args_is_help=True,
-    pretty_exceptions_enable=False,
 )
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file or folder.")]
 Folder = Annotated[

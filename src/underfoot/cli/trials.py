@@ -21,7 +21,6 @@ trials_app = typer.Typer(
     cls=Group,
     help="Measurement files: from recordings to the numbers the field publishes.",
     no_args_is_help=True,
-    pretty_exceptions_enable=False,
 )
 
 

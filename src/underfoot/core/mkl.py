@@ -93,8 +93,7 @@ def pardiso_schur_complement(
     system.options[35] = 1  # the complement, dense, in the place of the solution
     answer = np.zeros((retained.size, retained.size))
     system.call(_ANALYSE_AND_FACTORISE, np.zeros(system.retained.size), answer)
-    one_side = not np.tril(answer, -1).any()
-    return np.triu(answer) + np.triu(answer, 1).T if one_side else answer
+    return np.triu(answer) + np.triu(answer, 1).T  # whether MKL filled one side or both
 
 
 class _System:

@@ -182,13 +182,24 @@ def spread_to_si(given: object, of: object, unit: str, *, where: str) -> float:
     >>> spread_to_si("3.6 degF", "68 degF", "K", where="temperature")
     2.0
     """
-    if unit == "1" and "%" not in str(of):
+    if unit == "1" and not _in_percent(of):
         refuse_percent(given, where=where)
     value = to_si(given, unit, where=where)
     if unit != "K" or not isinstance(given, str):
         return value
     name = _split(given, where, False, "2 K")[1]
     return round(value - to_si(f"0 {name}", unit, where=where), 9)
+
+
+def _in_percent(given: object) -> bool:
+    """Return whether a value is written in percent, or is this unit."""
+    if not isinstance(given, str):
+        return False
+    try:
+        parts = split_quantity(given)
+    except InputError:  # whoever reads the number says what is wrong with it
+        return False
+    return (given if parts is None else parts[1]).strip() == "%"
 
 
 def refuse_percent(given: object, *, where: str) -> None:
@@ -201,7 +212,7 @@ def refuse_percent(given: object, *, where: str) -> None:
     Raises:
         InputError: It is in percent.
     """
-    if "%" in str(given):
+    if _in_percent(given):
         raise InputError(
             f"{given} can be of the value or in its unit",
             where=where,

@@ -373,13 +373,15 @@ class Pattern:
         number = np.full(mask.shape, -1, dtype=np.int64)
         number.ravel()[self.cells] = np.arange(self.size)
         shifted = [number]
-        for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
+        first, last, every = slice(None, -1), slice(1, None), slice(None)
+        for inner, outer in (
+            ((first, every), (last, every)),
+            ((last, every), (first, every)),
+            ((every, first), (every, last)),
+            ((every, last), (every, first)),
+        ):
             neighbour = np.full(mask.shape, -1, dtype=np.int64)
-            inner = [slice(None), slice(None)]
-            outer = [slice(None), slice(None)]
-            inner[axis] = slice(None, -1) if step > 0 else slice(1, None)
-            outer[axis] = slice(1, None) if step > 0 else slice(None, -1)
-            neighbour[tuple(inner)] = number[tuple(outer)]
+            neighbour[inner] = number[outer]
             shifted.append(neighbour)
         self.columns = np.stack([part.ravel()[self.cells] for part in shifted])  # (5, size)
         self.beside = np.where(self.columns < 0, -1, self.columns + self.size)  # of a second block

@@ -393,7 +393,7 @@ def _grids(film: Film) -> _Grids:
             where="rim_fraction",
             allowed="1 where rim_pressure is above 0",
         )
-    bounded = np.clip(np.where(np.isfinite(gap), gap, OPEN * inner.max()), inner.min(), None)
+    bounded = np.maximum(np.where(np.isfinite(gap), gap, OPEN * inner.max()), inner.min())
     smooth = bounded**3 / (12 * film.viscosity)
     return _Grids(
         gap=bounded,

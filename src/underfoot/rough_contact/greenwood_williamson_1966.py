@@ -114,10 +114,6 @@ def greenwood_williamson_law(
 
 def _summit_integral(power: float, t: np.ndarray) -> np.ndarray:
     """Return int_t^inf (z-t)^n exp(-z^2/2)/sqrt(2 pi) dz through parabolic cylinder functions."""
-    if power == 0.0:
-        return special.ndtr(-t)
-    if power == 1.0:
-        return np.exp(-(t**2) / 2.0) / math.sqrt(2.0 * math.pi) - t * special.ndtr(-t)
     cylinder, _ = special.pbdv(-power - 1.0, t)
     factor = math.gamma(power + 1.0) / math.sqrt(2.0 * math.pi)
     return factor * np.exp(-(t**2) / 4.0) * cylinder

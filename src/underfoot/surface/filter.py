@@ -5,7 +5,7 @@ import numpy as np
 from underfoot.core import DataError, InputError
 from underfoot.core.units import metres
 
-from .heights import check_length
+from .heights import HeightMap, check_length
 from .prepare import Surface
 
 ENDS = ("drop", "regression", "periodic")
@@ -39,6 +39,24 @@ def long_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
 def short_waves(surface: Surface, cutoff: float, ends: str = "drop") -> Surface:
     """Return the part of the surface with wavelengths below ``cutoff`` (m): see ``long_waves``."""
     return _split(surface, cutoff, ends)[1]
+
+
+def within_cutoffs(flat: HeightMap, short: float, cutoff: float) -> HeightMap:
+    """Return a level map without the waves outside both cut-offs (m), where it holds them.
+
+    Half a long cut-off is left out at each end of a side that keeps as much.
+    """
+    if min(flat.size) < cutoff:
+        return flat
+    if short < cutoff / 4:
+        flat = long_waves(flat, short, "regression")
+    rough = short_waves(flat, cutoff, "regression")
+    rims = [
+        round(0.5 * cutoff / h) if n * h >= 1.5 * cutoff else 0
+        for n, h in zip(rough.shape, rough.spacings, strict=True)
+    ]
+    inner = tuple(slice(rim, n - rim) for n, rim in zip(rough.shape, rims, strict=True))
+    return rough.changed(rough.heights[inner], "cut to what the filter covers")
 
 
 def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface]:

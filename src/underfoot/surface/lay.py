@@ -97,14 +97,14 @@ def texture(surface: HeightMap) -> Texture | None:
     ratio = float(lengths[shortest] / lengths[longest])
     coherence = math.hypot(twist, lean) / float(np.mean(zx**2 + zy**2))
     direction = (steepest + 0.5 * math.pi) % math.pi
-    lays = _crossed_lays(surface)
+    lays = _crossed_lays(surface if surface.periodic else levelled(surface))
     if not lays and ratio < ISOTROPIC and coherence > COHERENT:
         lays = (direction,)
     return Texture(ratio, not reached[longest], direction, float(lengths[longest]), coherence, lays)
 
 
 def _crossed_lays(surface: HeightMap) -> tuple[float, ...]:
-    """Return the directions of two and more lays, the strongest first; () of one or none.
+    """Return the directions of two and more lays of a level map, the strongest first; () of fewer.
 
     The power of the slopes by direction, of waves that both axes resolve, over a Gauss kernel of 8
     degrees (by its Fourier terms): its peaks, with valleys between them. Waves so long that fewer
@@ -232,13 +232,25 @@ def lines_across(surface: HeightMap, across: float, count: int) -> list[Profile]
     return lines
 
 
+def lines_along_axes(surface: Profile | HeightMap, count: int) -> list[Profile]:
+    """Return the profile, or up to ``count`` evenly spaced lines along each axis of a map.
+
+    Of a map with oblong cells along the axis with the finer spacing.
+    """
+    if isinstance(surface, Profile):
+        return [surface]
+    x, y = surface.spacings
+    angles = (0.0, 0.5 * math.pi) if x == y else (0.0,) if x < y else (0.5 * math.pi,)
+    return [line for angle in angles for line in lines_across(surface, angle, count)]
+
+
 def _power(surface: HeightMap) -> tuple[Array, Array, Array]:
     """Return the squared spectrum and its wave numbers along each axis, rad/m.
 
-    Plane removed and Hann window as in ``isotropic_spectrum``.
+    Hann window as in ``isotropic_spectrum``; the plane of a surface that is not periodic was
+    removed.
     """
-    flat = surface if surface.periodic else levelled(surface, 1)
-    z = flat.heights - flat.heights.mean()
+    z = surface.heights - surface.heights.mean()
     if not surface.periodic:
         for axis, n in enumerate(z.shape):
             window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n)
@@ -251,7 +263,10 @@ def _power(surface: HeightMap) -> tuple[Array, Array, Array]:
 
 
 def directions(surface: HeightMap, wavenumber: Array) -> Directions:
-    """Return how power is shared between directions, in rings of wave numbers (rad/m, rising)."""
+    """Return how power is shared between directions, in rings of wave numbers (rad/m, rising).
+
+    ``surface``: without its plane, but for a periodic one.
+    """
     power, qx, qy = _power(surface)
     q = np.hypot(qx[:, None], qy[None, :])
     q[0, 0], power[0, 0] = 1.0, 0.0

@@ -11,6 +11,8 @@ from underfoot.core.units import metres
 from .heights import HeightMap, Heights
 
 Surface = TypeVar("Surface", bound=Heights)
+SPIKE = 10.0
+"""Robust standard deviations by which a dead point stands out of its neighbours."""
 
 
 def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarray, str]:
@@ -83,6 +85,30 @@ def levelled(surface: Surface, degree: int = 1) -> Surface:
     )
     rest = (z.ravel() - basis @ coefficients).reshape(z.shape)
     return surface.changed(rest, f"least squares {form} removed")
+
+
+def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
+    """Return a surface with dead points interpolated, which it says, and the same levelled.
+
+    Dead: a point that stands ten robust standard deviations out of its neighbours.
+    """
+    from scipy.ndimage import median_filter
+
+    flat = levelled(surface)
+    z = flat.heights
+    robust = 1.4826 * float(np.median(np.abs(z - np.median(z))))
+    dead = np.abs(z - median_filter(z, size=5, mode="nearest")) > SPIKE * robust
+    if not dead.any() or robust == 0.0:
+        return surface, flat
+    marked = np.where(dead, np.nan, surface.heights)
+    heights, _ = filled(marked)
+    count = int((~np.isfinite(marked)).sum())
+    whole = surface.changed(
+        heights,
+        f"{count} of {dead.size} points stand out of their neighbours (dead pixels) and are "
+        "interpolated",
+    )
+    return whole, levelled(whole)
 
 
 def squared(surface: HeightMap) -> HeightMap:

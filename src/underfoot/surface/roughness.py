@@ -137,8 +137,24 @@ def profile_roughness(
         RangeError: Short cut-off below what the measurement resolves.
         DataError: Profile too short.
     """
-    _check(profile, long_cutoff, short_cutoff, sections, standard)
     flat = profile if profile.periodic else levelled(profile, 1)
+    return level_roughness(
+        flat, long_cutoff, short_cutoff, sections=sections, ends=ends, standard=standard
+    )
+
+
+def level_roughness(
+    flat: Profile,
+    long_cutoff: float,
+    short_cutoff: float | None = None,
+    *,
+    sections: int = 5,
+    ends: str = "drop",
+    standard: str = STANDARDS[0],
+) -> ProfileRoughness:
+    """Return the ``profile_roughness`` of one whose line was removed, or of a periodic one."""
+    profile = flat
+    _check(profile, long_cutoff, short_cutoff, sections, standard)
     if short_cutoff is not None:
         flat = long_waves(flat, short_cutoff, ends)
     rough = short_waves(flat, long_cutoff, ends)

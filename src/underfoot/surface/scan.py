@@ -10,26 +10,26 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import digamma
 
 from underfoot.core import DataError, SourcedValue, display
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 
-from .filter import long_waves, short_waves
+from .filter import short_waves, within_cutoffs
 from .heights import HeightMap, Profile, shortest_derivable_wavelength
-from .lay import Directions, Texture, directions, lines_across, texture
-from .prepare import filled, levelled
+from .lay import Directions, Texture, directions, lines_across, lines_along_axes, texture
+from .prepare import levelled, without_spikes
 from .read import read_surface
-from .roughness import STANDARDS, profile_roughness
+from .roughness import STANDARDS, level_roughness
 from .spectrum import (
     IsotropicSpectrum,
-    ProfileSpectrum,
-    averaged,
     isotropic_from_profile,
-    isotropic_spectrum,
+    level_spectrum,
+    power_law,
     profile_spectrum,
     rises_text,
+    smooth_spectrum,
+    spectrum_by_decades,
 )
 
 CUTOFFS = (0.8e-3, 0.25e-3, 0.08e-3)
@@ -40,8 +40,6 @@ SECTIONS, LINES = 5, 32
 NO_FLOOR = 50e-9
 """Rq (m) below which a surface is no floor or sole: the smoothest steel read has 90 nm."""
 NO_ROUGHNESS = 300e-6
-SPIKE = 10.0
-"""Robust standard deviations by which a dead point stands out of its neighbours."""
 ROUNDING = 1e-6
 """Relative spread between sections that is rounding of what a file prints, not of a surface."""
 QUANTITIES = {
@@ -241,25 +239,32 @@ def read_scan(
     """
     units = {"length_unit": length_unit, "height_unit": height_unit, "spacing": spacing}
     given = {name: value for name, value in units.items() if value is not None}
-    surface = _without_spikes(read_surface(path, fill_missing=True, **given))
+    surface, flat = without_spikes(read_surface(path, fill_missing=True, **given))
     notes: list[str] = []
-    lines, found, lay, areal = _lines(surface), None, None, None
-    chosen, short = _cutoff(lines, cutoff, str(path))
-    if isinstance(surface, HeightMap):
-        rough = _behind(surface, chosen)
-        found = texture(rough)
+    lines, found, lay, areal = lines_along_axes(surface, LINES), None, None, None
+    resolved = shortest_derivable_wavelength(lines[0])
+    longest = max(line.length for line in lines)
+    chosen, short = _cutoff(longest, resolved.wavelength, cutoff, str(path))
+    if isinstance(surface, HeightMap) and isinstance(flat, HeightMap):
+        shortest = max(shortest_derivable_wavelength(surface).wavelength, SHORT_CUTOFF)
+        found = texture(within_cutoffs(flat, shortest, chosen))
         lay = found if found is not None and found.has_lay else None
         if lay is not None:
             lines = lines_across(surface, lay.across, LINES)
-            chosen, short = _cutoff(lines, cutoff, str(path))
+            resolved = shortest_derivable_wavelength(lines[0])
+            longest = max(line.length for line in lines)
+            chosen, short = _cutoff(longest, resolved.wavelength, cutoff, str(path))
             if min(surface.size) >= chosen:
-                areal = _behind(surface, chosen).rms_height
+                areal = within_cutoffs(flat, shortest, chosen).rms_height
         elif len(set(surface.spacings)) > 1:
             finer = "xy"[int(np.argmin(surface.spacings))]
             sides = " by ".join(display(side, "m") for side in surface.spacings)
             notes.append(f"cells of {sides}: numbers are of lines along {finer}, which shows more")
-    cutoff, resolved = chosen, shortest_derivable_wavelength(lines[0])
-    values, sections = _numbers(lines, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface)
+    cutoff, lines = chosen, [line for line in lines if line.length >= chosen]
+    level = [flat] if isinstance(flat, Profile) else [levelled(line) for line in lines]
+    values, sections = _numbers(
+        lines, level, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface
+    )
     if areal is not None:
         source = f"ISO 25178-2 (Sq), cut-off {display(cutoff, 'm')}"
         values["rq"] = replace(values["rq"], value=areal, source=source)
@@ -280,13 +285,15 @@ def read_scan(
             allowed=f"{display(NO_FLOOR, 'm')} to {display(NO_ROUGHNESS, 'm')}",
             remedy='Name the unit of the heights (height_unit = "mm"), or write rq yourself',
         )
-    if isinstance(surface, Profile):
-        measured = profile_spectrum(levelled(surface))
-        spectrum = _smoothed(isotropic_from_profile(measured))
+    even = surface if surface.periodic else flat
+    if isinstance(flat, Profile):
+        measured = profile_spectrum(flat)
+        spectrum = smooth_spectrum(isotropic_from_profile(measured))
     else:
-        measured = isotropic_spectrum(surface)
-        spectrum = _by_decades(measured)
-    hurst, roll_off, ends = _power_law(measured, spectrum)
+        assert isinstance(even, HeightMap)
+        measured = level_spectrum(even)
+        spectrum = spectrum_by_decades(measured)
+    hurst, roll_off, ends = power_law(measured, spectrum)
     if lay is not None:
         notes.append(
             "the spectrum is the mean over directions; hysteresis counts sliding along x of the map"
@@ -298,16 +305,17 @@ def read_scan(
     return Scan(
         *(Path(path).name, surface, cutoff, values, spectrum, hurst, roll_off, ends),
         *(tuple(notes), short, found),
-        directions(surface, spectrum.wavenumber)
-        if lay is not None and isinstance(surface, HeightMap)
+        directions(even, spectrum.wavenumber)
+        if lay is not None and isinstance(even, HeightMap)
         else None,
     )
 
 
-def _cutoff(lines: Sequence[Profile], given: float | None, where: str) -> tuple[float, str]:
-    """Return the cut-off (m) that the lines hold, and what a short scan lacks."""
-    length = max(line.length for line in lines)
-    resolved = shortest_derivable_wavelength(lines[0])
+def _cutoff(length: float, resolved: float, given: float | None, where: str) -> tuple[float, str]:
+    """Return the cut-off (m) that lines hold, and what a short scan lacks.
+
+    ``length``: of the longest line (m); ``resolved``: its shortest wave (m).
+    """
     if given is not None:
         if given > length:
             raise DataError(
@@ -318,11 +326,11 @@ def _cutoff(lines: Sequence[Profile], given: float | None, where: str) -> tuple[
                 "fits",
             )
         return given, ""
-    fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved.wavelength]
+    fitting = [one for one in CUTOFFS if one <= length and one >= 4 * resolved]
     if not fitting:
         raise DataError(
             f"a scan of {display(length, 'm')} that resolves waves of "
-            f"{display(resolved.wavelength, 'm')} holds no cut-off",
+            f"{display(resolved, 'm')} holds no cut-off",
             where=where,
             allowed=f"{', '.join(display(one, 'm') for one in CUTOFFS)}: at most the length, "
             "at least four of the shortest waves",
@@ -337,82 +345,35 @@ def _cutoff(lines: Sequence[Profile], given: float | None, where: str) -> tuple[
     )
 
 
-def _behind(surface: HeightMap, cutoff: float) -> HeightMap:
-    """Return a map without its plane and the waves outside both cut-offs, where it holds them.
-
-    Half a cut-off is left out at each end of a side that keeps as much.
-    """
-    flat, short = levelled(surface), shortest_derivable_wavelength(surface).wavelength
-    short = max(short, SHORT_CUTOFF)
-    if min(surface.size) < cutoff:
-        return flat
-    if short < cutoff / 4:
-        flat = long_waves(flat, short, "regression")
-    rough = short_waves(flat, cutoff, "regression")
-    rims = [
-        round(0.5 * cutoff / h) if n * h >= 1.5 * cutoff else 0
-        for n, h in zip(rough.shape, rough.spacings, strict=True)
-    ]
-    inner = tuple(slice(rim, n - rim) for n, rim in zip(rough.shape, rims, strict=True))
-    return rough.changed(rough.heights[inner], "cut to what the filter covers")
-
-
-def _without_spikes(surface: Profile | HeightMap) -> Profile | HeightMap:
-    """Return the surface with dead points interpolated; it says how many."""
-    from scipy.ndimage import median_filter
-
-    z = levelled(surface).heights
-    robust = 1.4826 * float(np.median(np.abs(z - np.median(z))))
-    dead = np.abs(z - median_filter(z, size=5, mode="nearest")) > SPIKE * robust
-    if not dead.any() or robust == 0.0:
-        return surface
-    marked = np.where(dead, np.nan, surface.heights)
-    heights, _ = filled(marked)
-    count = int((~np.isfinite(marked)).sum())
-    return surface.changed(
-        heights,
-        f"{count} of {dead.size} points stand out of their neighbours (dead pixels) and are "
-        "interpolated",
-    )
-
-
-def _lines(surface: Profile | HeightMap) -> list[Profile]:
-    """Return the profile, or up to 32 evenly spaced lines along each axis of a map.
-
-    Of a map with oblong cells along the axis with the finer spacing.
-    """
-    if isinstance(surface, Profile):
-        return [surface]
-    x, y = surface.spacings
-    angles = (0.0, 0.5 * math.pi) if x == y else (0.0,) if x < y else (0.5 * math.pi,)
-    return [line for angle in angles for line in lines_across(surface, angle, LINES)]
-
-
 def _numbers(
     lines: Sequence[Profile],
+    level: Sequence[Profile],
     cutoff: float,
     short: float,
     lay: Texture | None,
     surface: Profile | HeightMap,
 ) -> tuple[dict[str, SourcedValue], int]:
-    """Return the numbers over all lines that hold the cut-off, and the sections of a line.
+    """Return the numbers over all lines, which hold the cut-off, and the sections of a line.
 
+    ``level``: the same without their straight line, which those of a periodic surface keep.
     Means of the lines, of Rq and Rdq root mean squares. The standard error is the spread of Rq
     between sections over the root of those that do not overlap: lines within a cut-off of each
     other, or within twice the length of a lay, see the same surface. A spread that is no more than
     rounding is none.
     """
-    lines = [line for line in lines if line.length >= cutoff]
     shortest = min(line.length for line in lines)
     count = int((shortest - 2 * max(line.spacing for line in lines)) / cutoff) - 1
     ends, count = ("drop", min(count, SECTIONS)) if count >= 1 else ("regression", 1)
     short_cutoff = short if short < cutoff / 4 else None
     read = [
-        profile_roughness(line, cutoff, short_cutoff, sections=count, ends=ends) for line in lines
+        level_roughness(
+            line if line.periodic else flat, cutoff, short_cutoff, sections=count, ends=ends
+        )
+        for line, flat in zip(lines, level, strict=True)
     ]
     pieces = []
-    for line in lines:
-        rough = short_waves(levelled(line), cutoff, ends).heights
+    for line in level:
+        rough = short_waves(line, cutoff, ends).heights
         size = round(cutoff / line.spacing)
         pieces += [np.std(rough[n * size : (n + 1) * size]) for n in range(count)]
     beside, alike = shortest, cutoff
@@ -438,53 +399,3 @@ def _numbers(
         error = None if spread is None else mean * spread / math.sqrt(independent)
         values[name] = SourcedValue(mean, unit, source=source, uncertainty=error)
     return values, count
-
-
-def _by_decades(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
-    """Return the reliable part of a map's spectrum, averaged over a twelfth of a decade."""
-    q, density, _ = averaged(spectrum)
-    edges = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
-    return replace(spectrum, wavenumber=q, density=density, area=np.pi * np.diff(edges**2))
-
-
-def _smoothed(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
-    """Return the spectrum with q^2 C averaged over five values: one profile leaves gaps in it."""
-    power = np.pad(spectrum.wavenumber**2 * spectrum.density, 2, mode="edge")
-    mean = np.convolve(power, np.full(5, 0.2), "valid") / spectrum.wavenumber**2
-    return replace(spectrum, density=mean)
-
-
-def _power_law(
-    measured: ProfileSpectrum | IsotropicSpectrum, spectrum: IsotropicSpectrum
-) -> tuple[SourcedValue, float | None, tuple[float, float]]:
-    """Return the Hurst exponent, roll-off (m) and C (m^4) at both ends, least squares in ln C.
-
-    C = level for q below the roll-off, level (q / q_r)^(-2 (1 + H)) above, (q / q_r)^(-1 - 2 H)
-    of a profile; roll-offs within the longest half of the decades are tried, none included. Values
-    of few waves count less, and their mean logarithm is corrected.
-    """
-    q, c, count = averaged(measured)
-    log_q, log_c = np.log(q), np.log(c) - digamma(count) + np.log(count)
-    weight = np.sqrt(np.minimum(count, 30))
-    best: tuple[float, float, float, float] | None = None
-    for turn in [log_q[0], *log_q[1 : max(2, q.size // 2)]]:
-        basis = np.column_stack([np.ones(q.size), np.maximum(log_q - turn, 0.0)])
-        solved = np.linalg.lstsq(basis * weight[:, None], log_c * weight, rcond=None)[0]
-        rest = float(np.sum((weight * (log_c - basis @ solved)) ** 2))
-        if best is None or rest < 0.9 * best[0]:
-            inverse = np.linalg.inv((basis * weight[:, None]).T @ (basis * weight[:, None]))
-            error = math.sqrt(rest / max(q.size - 3, 1) * inverse[1, 1]) / 2
-            best = (rest, turn, float(solved[1]), error)
-    assert best is not None
-    _, turn, slope, error = best
-    exponent = -(slope + (1 if isinstance(measured, ProfileSpectrum) else 2)) / 2
-    bounded = min(max(exponent, 0.0), 1.0)
-    note = "of the power law that continues the spectrum"
-    if bounded != exponent:
-        note += f"; the fit gives {exponent:.2f}, which no self-affine surface has"
-    hurst = SourcedValue(bounded, "1", source="fit to the spectrum", uncertainty=error, note=note)
-    log_q = np.log(spectrum.wavenumber)
-    shape = -2 * (1 + bounded) * np.maximum(log_q - turn, 0.0)
-    away = np.log(np.maximum(spectrum.density, 1e-99)) - shape
-    ends = math.exp(np.mean(away[:5]) + shape[0]), math.exp(np.mean(away[-5:]) + shape[-1])
-    return hurst, None if turn == np.log(q[0]) else 2 * math.pi / math.exp(turn), ends

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from scipy.special import digamma
 
-from underfoot.core import InputError
+from underfoot.core import InputError, SourcedValue
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Heights, check_heights, shortest_reliable_wavelength
@@ -147,8 +148,12 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
     along the axes are kept (so that the sum is the mean square height) but not believed. Windows
     as in ``profile_spectrum``, after removing the plane.
     """
-    flat = surface if surface.periodic else levelled(surface, 1)
-    z, shape, notes = _windowed(flat.heights, window, surface.periodic, (0, 1))
+    return level_spectrum(surface if surface.periodic else levelled(surface, 1), window=window)
+
+
+def level_spectrum(surface: HeightMap, *, window: str | None = None) -> IsotropicSpectrum:
+    """Return the ``isotropic_spectrum`` of a map whose plane was removed, or of a periodic one."""
+    z, shape, notes = _windowed(surface.heights, window, surface.periodic, (0, 1))
     nx, ny = z.shape
     lx, ly = surface.size
     transform = np.abs(np.fft.fft2(z * shape)) ** 2
@@ -170,7 +175,7 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
         mean_density,
         count[used] * cell,
         _reliable(surface, min(lx, ly)),
-        (*flat.processing, *notes),
+        (*surface.processing, *notes),
     )
 
 
@@ -271,6 +276,56 @@ def averaged(
     count = np.bincount(place)
     mean_q = np.exp(np.bincount(place, np.log(q)) / count)
     return mean_q, np.bincount(place, c) / count, count
+
+
+def spectrum_by_decades(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
+    """Return the reliable part of a map's spectrum, averaged over a twelfth of a decade."""
+    q, density, _ = averaged(spectrum)
+    edges = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
+    return replace(spectrum, wavenumber=q, density=density, area=np.pi * np.diff(edges**2))
+
+
+def smooth_spectrum(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
+    """Return the spectrum with q^2 C averaged over five values: one profile leaves gaps in it."""
+    power = np.pad(spectrum.wavenumber**2 * spectrum.density, 2, mode="edge")
+    mean = np.convolve(power, np.full(5, 0.2), "valid") / spectrum.wavenumber**2
+    return replace(spectrum, density=mean)
+
+
+def power_law(
+    measured: ProfileSpectrum | IsotropicSpectrum, spectrum: IsotropicSpectrum
+) -> tuple[SourcedValue, float | None, tuple[float, float]]:
+    """Return the Hurst exponent, roll-off (m) and C (m^4) at both ends, least squares in ln C.
+
+    C = level for q below the roll-off, level (q / q_r)^(-2 (1 + H)) above, (q / q_r)^(-1 - 2 H)
+    of a profile; roll-offs within the longest half of the decades are tried, none included. Values
+    of few waves count less, and their mean logarithm is corrected.
+    """
+    q, c, count = averaged(measured)
+    log_q, log_c = np.log(q), np.log(c) - digamma(count) + np.log(count)
+    weight = np.sqrt(np.minimum(count, 30))
+    best: tuple[float, float, float, float] | None = None
+    for turn in [log_q[0], *log_q[1 : max(2, q.size // 2)]]:
+        basis = np.column_stack([np.ones(q.size), np.maximum(log_q - turn, 0.0)])
+        solved = np.linalg.lstsq(basis * weight[:, None], log_c * weight, rcond=None)[0]
+        rest = float(np.sum((weight * (log_c - basis @ solved)) ** 2))
+        if best is None or rest < 0.9 * best[0]:
+            inverse = np.linalg.inv((basis * weight[:, None]).T @ (basis * weight[:, None]))
+            error = math.sqrt(rest / max(q.size - 3, 1) * inverse[1, 1]) / 2
+            best = (rest, turn, float(solved[1]), error)
+    assert best is not None
+    _, turn, slope, error = best
+    exponent = -(slope + (1 if isinstance(measured, ProfileSpectrum) else 2)) / 2
+    bounded = min(max(exponent, 0.0), 1.0)
+    note = "of the power law that continues the spectrum"
+    if bounded != exponent:
+        note += f"; the fit gives {exponent:.2f}, which no self-affine surface has"
+    hurst = SourcedValue(bounded, "1", source="fit to the spectrum", uncertainty=error, note=note)
+    log_q = np.log(spectrum.wavenumber)
+    shape = -2 * (1 + bounded) * np.maximum(log_q - turn, 0.0)
+    away = np.log(np.maximum(spectrum.density, 1e-99)) - shape
+    ends = math.exp(np.mean(away[:5]) + shape[0]), math.exp(np.mean(away[-5:]) + shape[-1])
+    return hurst, None if turn == np.log(q[0]) else 2 * math.pi / math.exp(turn), ends
 
 
 def _abel(q: float, nodes: np.ndarray, values: np.ndarray, exponent: float) -> float:

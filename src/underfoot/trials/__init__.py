@@ -27,7 +27,8 @@ from .readers import (
     read_trial,
     read_trials,
 )
-from .recording.axes import Axes, Ramp, axes_of, axis_name, axis_vector, heel_candidates, ramp_from
+from .recording.axes import Axes, Ramp, axes_of, axis_name, axis_vector, ramp_from
+from .recording.marker_names import heel_candidates
 from .recording.measurement import Flag, Measurement, mean_of
 from .recording.plates import finished_plate
 from .recording.signals import (
@@ -51,6 +52,7 @@ from .recording.trial import (
     joined,
 )
 from .walking.belts import Belt
+from .walking.body_weight import body_mass, body_weight
 from .walking.describe import Description, described, described_file
 from .walking.events import EditError, Stance, stances
 from .walking.gait import (
@@ -80,7 +82,7 @@ from .walking.slips import (
     slip,
     slip_of,
 )
-from .walking.walkway import Walkway, body_mass, body_weight, walkway_of
+from .walking.walkway import Walkway, walkway_of
 
 __all__ = [
     "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Belt",

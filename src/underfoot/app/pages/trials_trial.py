@@ -251,9 +251,9 @@ def _step_words(step: Mapping[str, Any]) -> str:
     if step["rcof"] is not None:
         spread = step["rcof_uncertainty"]
         parts.append(f"RCOF {step['rcof']:.4f}" + (f" ± {spread:.4f}" if spread else ""))
-    if step.get("peak_slipping_speed") is not None:
+    if step["peak_slipping_speed"] is not None:
         parts.append(f"peak slipping speed {step['peak_slipping_speed']:.3f} m/s")
-    if step.get("outcome"):
+    if step["outcome"]:
         parts.append(f"{step['outcome']}, {1e3 * step['slip_distance']:.0f} mm")
     return ", ".join(parts) or step["reason"] or "–"
 
@@ -263,7 +263,7 @@ def _edit_words(entry: Mapping[str, Any]) -> str:
     event = f"{entry['what']} {entry['before']} → {entry['after']}"
     if not entry["quantity"]:
         return event
-    numbers = (entry["number before"], entry["number after"])
+    numbers = (entry["number_before"], entry["number_after"])
     before, after = ("–" if number is None else f"{number:.4f}" for number in numbers)
     name = "RCOF" if entry["quantity"] == "rcof" else f"{entry['quantity']} (m/s)"
     return f"{event}, {name} {before} → {after}"

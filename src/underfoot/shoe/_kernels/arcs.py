@@ -63,10 +63,9 @@ def biarc(start: Array, start_tangent: Array, end: Array, end_tangent: Array) ->
     v, t = end - start, start_tangent + end_tangent
     quadratic = 2 * (1 - float(start_tangent @ end_tangent))
     vv, vt = float(v @ v), float(v @ t)
+    leg = 0.0  # parallel tangents: the middle is half way, whatever the legs are
     if quadratic > 1e-12:
         leg = (-vt + math.sqrt(vt * vt + quadratic * vv)) / quadratic
-    else:
-        leg = vv / (2 * vt)
     middle = (start + end + leg * (start_tangent - end_tangent)) / 2
     first = arc(start, start_tangent, middle)
     last = arc(end, -end_tangent, middle)

@@ -103,7 +103,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
         body, count = components(mesh.triangles)
         mesh = replace(mesh, body=body, bodies=("",) * count)
     if mesh.body is None or np.ptp(mesh.body) == 0:
-        _refuse_unknown(mesh, settings, where)
+        _refuse_unknown(mesh.bodies, settings, where)
         return Found((mesh,), away, tuple(remarks))
     group = np.arange(len(mesh.bodies)) if settings.solid is not None else carried(mesh)
     keep, told = _named(_measured(mesh), group, settings, where)
@@ -213,8 +213,8 @@ def _measured(mesh: Mesh) -> _Bodies:
     return _Bodies(axes, names, low, high, area)
 
 
-def _refuse_unknown(mesh: Mesh, settings: FileSettings, where: str) -> None:
-    names = [name or "body 1" for name in mesh.bodies[:1]]
+def _refuse_unknown(bodies: tuple[str, ...], settings: FileSettings, where: str) -> None:
+    names = [name or "body 1" for name in bodies[:1]]
     if settings.solid is not None and not _matching(tuple(names), settings.solid).any():
         raise unknown_name("body", settings.solid, names, where=where)
     if settings.solid is None and names and _other(names[0]):

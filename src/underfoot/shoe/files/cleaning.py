@@ -6,7 +6,6 @@ from underfoot.core.arrays import Array, Mask
 
 from .._kernels.covering_discs import local_width
 from .._kernels.regions import carried_on, distance_to, grown, pieces, rim, without_holes
-from ..tread_measures import TreadMap
 
 LARGEST_HOLE = 1e-4
 """A hole of more area is an opening of the sole, not a gap of the scan, m^2."""
@@ -108,7 +107,7 @@ def _without_spikes(height: Array) -> tuple[Array, list[str]]:
 
 
 def without_ledges(
-    height: Array, tread: TreadMap, spacing: float, channel_depth: float
+    height: Array, land: Mask, base: Array, spacing: float, channel_depth: float
 ) -> tuple[Array, Mask, list[str]]:
     """Return the height map without ledges along the rim, which of them are channels, and remarks.
 
@@ -117,10 +116,13 @@ def without_ledges(
     channel that the rim cuts open; higher it is a side wall, a welt or a midsole that overhangs,
     which counted as plan form would spoil land ratio and widths. So is what lies deeper than the
     channels, along the rim and narrower than 12 mm.
+
+    Parameters:
+        land, base: Of the tread: what meets the floor, and the height (m) that its depth is from.
     """
     from scipy.ndimage import find_objects, maximum_filter, minimum_filter
 
-    inside, land = np.isfinite(height), tread.land
+    inside = np.isfinite(height)
     # over the last cells of the rim a body may show nothing but its far side
     sliver = np.zeros_like(inside)
     for part, step in ((land, _FAR_SIDE), (inside, max(_FAR_SIDE, 1.2 * channel_depth))):
@@ -151,7 +153,7 @@ def without_ledges(
             into = cut_open if level - other <= 1.2 * channel_depth else gone
             into[around] |= piece | (beside & (heights > (level + other) / 2))
     with np.errstate(invalid="ignore"):
-        high_up = inside & ~land & (height - tread.base > 1.2 * channel_depth + _LEDGE)
+        high_up = inside & ~land & (height - base > 1.2 * channel_depth + _LEDGE)
     high_up &= local_width(high_up, spacing) < _WIDEST_LEDGE
     numbers, _ = pieces(high_up)
     # along a ledge is as much rim as tread; channels that open at the rim have lugs on both sides

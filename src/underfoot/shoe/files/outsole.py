@@ -11,8 +11,6 @@ from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
 from underfoot.core.remark import assumed
 
-from .._kernels.components import MOST_FACES, closed_bodies
-from .._kernels.mesh_edges import overlap_lines
 from ..geometry import SoleSurface, centred
 from ..tread_measures import (
     QUIET,
@@ -33,15 +31,12 @@ from .mesh import Mesh
 from .no_sole import TALL, Shape, check_carried, check_sole, check_surface, check_tread
 from .read import read_mesh
 from .settings import DIRECTIONS, HEEL, SHARES, FileSettings, length_unit
-from .view import Soundness, View, extents, soundness, view, without_copies
+from .view import Soundness, View, extents, soundness, view, view_remarks
 
 _COARSE = 400  # cells along the sole for finding sides and plane
 _NEARLY_SQUARE = 1.3
 _MOST_TURN = math.radians(12)  # beyond it the sole stands on a stud or on its side
-_OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
 _SHEET = 0.05e-3
-_SAME_PLACE = 20e-6  # m: faces nearer than this lie on each other
-_MOST_APART = 0.02
 _PLAINLY_OFF = 2.0  # off centre across over that along: a piece is broader than long
 _LONGEST_LAG = 1.5e-3  # m: walls stand farther apart
 _POINTS_NOISE = math.sqrt(2.0)  # a height within a face weighs three points: mean sum w^2 = 1/2
@@ -145,10 +140,11 @@ def _outsole(
     unit, _ = length_unit(
         float(max(size[:2])), float(min(size[:2])), chosen=chosen.unit, in_file=stated, where=where
     )
+    lag = _lag(mesh.triangles, unit, chosen.spacing)
     axes, side_remarks, alike = _sides(mesh, axes, unit, chosen, told)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
     height, repaired = cleaned(seen.lowest, seen.spacing)
-    draft = wall_draft(mesh.triangles, seen, height)
+    whole = height
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
     part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     height = height[part]
@@ -160,7 +156,7 @@ def _outsole(
     if stated is None and chosen.unit == "auto":
         _, unit_remark = length_unit(whole_length / unit, width / unit, where=where)
     remarks += [unit_remark, *side_remarks, *level_remarks, *sound.remarks()]
-    remarks += [*_view_remarks(seen, sound, mesh, where), *repaired]
+    remarks += [*view_remarks(seen, sound, mesh, where), *repaired]
     foot, foot_remark = "", ""
     if whole_length > HEEL[1] or chosen.foot != "auto":
         foot, foot_remark = orientation.foot_of(np.isfinite(height), seen.spacing, chosen)
@@ -169,7 +165,6 @@ def _outsole(
         height, thickness = height[:, ::-1], thickness[:, ::-1]
         foot = {"left": "right", "right": "left", "": ""}[foot]
         remarks.append("Mirrored: the other shoe of the pair.")
-    lag = _lag(mesh, unit, chosen.spacing)
     low, high = extents(mesh.triangles, axes)
     shape = Shape(
         height=height,
@@ -211,15 +206,15 @@ def _outsole(
         soundness=sound,
         thickness=body if body > _SHEET else None,
         whole_length=whole_length,
-        draft=draft,
+        draft=wall_draft(mesh.triangles, seen, whole),
         edges=lug_lines(*faces, tread.level) if lugs.size and quiet else none,
         sides=rim_lines(*faces, (body + deep) / 2) if body > deep + _SHEET and quiet else none,
     )
 
 
-def _lag(mesh: Mesh, unit: float, spacing: float) -> int:
+def _lag(triangles: NDArray[np.float32], unit: float, spacing: float) -> int:
     """Return how many cells apart heights come from different corners of the mesh."""
-    sample = mesh.triangles[:: max(1, mesh.triangles.shape[0] // 20_000)]
+    sample = triangles[:: max(1, triangles.shape[0] // 20_000)]
     edges = np.linalg.norm(sample[:, 1] - sample[:, 0], axis=1)
     edges = edges[np.isfinite(edges)]
     apart = float(np.median(edges)) * unit if edges.size else 0.0
@@ -315,70 +310,6 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
     return lifted, axes, remarks
 
 
-def _view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple[str, ...]:
-    remarks: list[str] = []
-    covered = seen.covered
-    up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
-    inward = sound.closed and not sound.turned_edges and sound.volume < 0
-    if up > 0.5 and not inward:
-        remarks.append("Normals of the ground side point into the sole (inverted); tolerated.")
-    elif 0.01 < up <= 0.5 and not inward:
-        remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
-    return (*remarks, *_agreement(seen, sound, mesh, where))
-
-
-def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str]:
-    """Return a remark where bodies overlap or faces lie double.
-
-    Raises:
-        DataError: One body crosses itself, its faces lie double, or faces of its ground side are
-            missing, on more than 2 % of the lines through it: area by faces and by outline, or
-            volume by faces and by height, disagree.
-    """
-    covered = seen.covered
-    shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
-    # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
-    odd = (0.381966, 0.527864)
-    first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
-
-    triangles = without_copies(mesh.triangles) if sound.duplicates else mesh.triangles
-
-    def lines(body: NDArray[np.int32]) -> tuple[int, int, int, int, int]:
-        return overlap_lines(
-            triangles, body, seen.axes, (first[0], first[1]), _OVERLAP_PITCH,
-            (shape[0], shape[1]), _SAME_PLACE,
-        )  # fmt: skip
-
-    count = triangles.shape[0]
-    crossed, doubled, missing, odd_lines, met = lines(np.zeros(count, dtype=np.int32))
-    own = 0
-    known_sides = sound.turned_edges <= _MOST_APART * count
-    if known_sides and crossed > _MOST_APART * met and count <= MOST_FACES:
-        own, *_ = lines(closed_bodies(triangles))
-    one_sided = odd_lines > met / 2  # as a scan without its upper side
-    for many, what, cause in (
-        (own, "the surface crosses itself", "corners of its faces are mixed up"),
-        (0 if one_sided else missing, "faces of the ground side are missing",
-         "a program left out faces that it did not understand"),
-        (doubled, "faces lie double, with nothing between them",
-         "concave polygons were cut as if they were convex"),
-    ):  # fmt: skip
-        if many > _MOST_APART * met:
-            raise DataError(
-                f"{what} on {many / met:.0%} of the lines through it: its area by faces and by "
-                f"outline disagree, as where {cause}",
-                where=where,
-                allowed=f"{_MOST_APART:.0%}",
-                remedy="Export it again as STEP or, by another program, as triangles",
-            )
-    if not crossed:
-        return []
-    return [
-        f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines through the "
-        "sole; tolerated, the lowest surface counts."
-    ]
-
-
 def _region(
     height: Array, spacing: float, chosen: FileSettings, where: str
 ) -> tuple[Array, tuple[slice, slice], list[str]]:
@@ -429,7 +360,7 @@ def _surface(
     tread = tread_map(height, spacing, lag=lag)
     lugs = tread.tread_depth[tread.tread_depth > 0]
     deep = float(np.median(lugs)) if lugs.size else 0.0
-    height, cut_open, remarks = without_ledges(height, tread, spacing, deep)
+    height, cut_open, remarks = without_ledges(height, tread.land, tread.base, spacing, deep)
     if remarks or cut_open.any() or not np.isfinite(height[tread.land]).all():
         tread = tread_map(height, spacing, channels=cut_open, lag=lag)
     inside = np.isfinite(height)

@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array, Mask
 
+from .._kernels.components import MOST_FACES, closed_bodies
 from .._kernels.height_buffer import extents as _extents
 from .._kernels.height_buffer import height_buffer
-from .._kernels.mesh_edges import shared_edges, soup_keys
+from .._kernels.mesh_edges import overlap_lines, shared_edges, soup_keys
 from .mesh import Mesh
 
 _MOST_CELLS = 60_000_000
+_OVERLAP_PITCH = 2e-3  # m between the lines on which crossing material is looked for
+_SAME_PLACE = 20e-6  # m: faces nearer than this lie on each other
+_MOST_APART = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,3 +161,72 @@ def without_copies(triangles: NDArray[np.float32]) -> NDArray[np.float32]:
 def _duplicates(faces: NDArray[np.uint64]) -> int:
     faces.sort()
     return int(np.count_nonzero((faces[1:] == faces[:-1]) & (faces[1:] != 0)))
+
+
+def view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple[str, ...]:
+    """Return what is tolerated about normals and bodies of a mesh that is seen from below.
+
+    Raises:
+        DataError: The view and the mesh disagree; see ``_agreement``.
+    """
+    remarks: list[str] = []
+    covered = seen.covered
+    up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
+    inward = sound.closed and not sound.turned_edges and sound.volume < 0
+    if up > 0.5 and not inward:
+        remarks.append("Normals of the ground side point into the sole (inverted); tolerated.")
+    elif 0.01 < up <= 0.5 and not inward:
+        remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
+    return (*remarks, *_agreement(seen, sound, mesh, where))
+
+
+def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str]:
+    """Return a remark where bodies overlap or faces lie double.
+
+    Raises:
+        DataError: One body crosses itself, its faces lie double, or faces of its ground side are
+            missing, on more than 2 % of the lines through it: area by faces and by outline, or
+            volume by faces and by height, disagree.
+    """
+    covered = seen.covered
+    shape = tuple(max(1, int(n * seen.spacing / _OVERLAP_PITCH)) for n in covered.shape)
+    # off the cells' own places by odd parts, so that lines don't run along edges or diagonals
+    odd = (0.381966, 0.527864)
+    first = tuple(s + n * _OVERLAP_PITCH for s, n in zip(seen.first, odd, strict=True))
+
+    triangles = without_copies(mesh.triangles) if sound.duplicates else mesh.triangles
+
+    def lines(body: NDArray[np.int32]) -> tuple[int, int, int, int, int]:
+        return overlap_lines(
+            triangles, body, seen.axes, (first[0], first[1]), _OVERLAP_PITCH,
+            (shape[0], shape[1]), _SAME_PLACE,
+        )  # fmt: skip
+
+    count = triangles.shape[0]
+    crossed, doubled, missing, odd_lines, met = lines(np.zeros(count, dtype=np.int32))
+    own = 0
+    known_sides = sound.turned_edges <= _MOST_APART * count
+    if known_sides and crossed > _MOST_APART * met and count <= MOST_FACES:
+        own, *_ = lines(closed_bodies(triangles))
+    one_sided = odd_lines > met / 2  # as a scan without its upper side
+    for many, what, cause in (
+        (own, "the surface crosses itself", "corners of its faces are mixed up"),
+        (0 if one_sided else missing, "faces of the ground side are missing",
+         "a program left out faces that it did not understand"),
+        (doubled, "faces lie double, with nothing between them",
+         "concave polygons were cut as if they were convex"),
+    ):  # fmt: skip
+        if many > _MOST_APART * met:
+            raise DataError(
+                f"{what} on {many / met:.0%} of the lines through it: its area by faces and by "
+                f"outline disagree, as where {cause}",
+                where=where,
+                allowed=f"{_MOST_APART:.0%}",
+                remedy="Export it again as STEP or, by another program, as triangles",
+            )
+    if not crossed:
+        return []
+    return [
+        f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines through the "
+        "sole; tolerated, the lowest surface counts."
+    ]

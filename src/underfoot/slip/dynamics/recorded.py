@@ -13,11 +13,12 @@ from underfoot.core.constants import GRAVITY
 from underfoot.trials.readers import read_trial
 from underfoot.trials.recording.signals import low_passed
 from underfoot.trials.recording.trial import Marker, Trial
+from underfoot.trials.walking.body_weight import body_mass
 from underfoot.trials.walking.events import Stance
 from underfoot.trials.walking.gait import RcofDefinition, RequiredFriction, required_frictions
 from underfoot.trials.walking.gait_context import FLAT, heel_speed
 from underfoot.trials.walking.slips import HeelMotion, heel_motion
-from underfoot.trials.walking.walkway import Walkway, body_mass, of_walkway, walkway_of
+from underfoot.trials.walking.walkway import Walkway, of_walkway, walkway_of
 
 from .gait import LEAST_LOAD, GaitHistory
 
@@ -72,8 +73,9 @@ def step_history(
     own = mass or body_mass(walk.trial)
     weight = own * GRAVITY if own else float(normal.mean()) * 2 * DUTY
     since = np.arange(len(normal)) / plate.rate
-    size = np.linalg.norm(shear, axis=1) * np.where(shear @ stance.walking < 0, 1.0, -1.0)
-    ratio = np.where(normal > LEAST_LOAD * weight, size / np.maximum(normal, 1.0), 0.0)
+    size = np.linalg.norm(shear, axis=1)
+    braking = np.where(shear @ stance.walking < 0, size, -size)
+    ratio = np.where(normal > LEAST_LOAD * weight, braking / np.maximum(normal, 1.0), 0.0)
     time = np.arange(0.0, since[-1] + 0.5 / plate.rate, 1 / RATE)
     how = f"{own:g} kg" if own else f"estimated {weight:.0f} N: mean normal force x 2 x {DUTY:g}"
     return GaitHistory(
@@ -98,7 +100,7 @@ def _foot_angle(walk: Walkway, stance: Stance, time: Array) -> Array | None:
     tilt = np.arctan2(line @ walk.up, line @ stance.walking)
     share = (heel.time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
-    if not (flat.any() and np.isfinite(tilt[flat]).all()):
+    if not flat.any():
         return None
     angle = np.interp(time + stance.contact, heel.time, tilt - np.median(tilt[flat]))
     return angle if np.isfinite(angle).all() else None

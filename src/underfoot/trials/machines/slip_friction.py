@@ -10,7 +10,6 @@ from underfoot.core import DataError, InputError, unknown_name
 
 from ..recording.axes import Axes, axes_of
 from ..recording.measurement import Choice, Measurement, caution
-from ..recording.plates import baseline_words
 from ..recording.protocols import Protocol
 from ..recording.signals import LowPass, low_passed, runs
 from ..recording.tester_calibration import TesterCalibration
@@ -101,7 +100,7 @@ def available_friction(
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     cof = mean_friction(normal, shear, plate.rate, target=target, window=window)
-    choices = {"shear": SHEARS["resultant"], "filter": text, "baseline": baseline_words(plate)}
+    choices = {"shear": SHEARS["resultant"], "filter": text, "baseline": plate.baseline_text}
     return replace(cof, conventions={**cof.conventions, **choices})
 
 
@@ -231,7 +230,7 @@ def slide_friction(
         window = 1e3 * begin_after, 1e3 * (begin_after + length)
         words = Choice("{:g} to {:g} ms after sliding starts", *window)
         said = {"window": words, "sliding start": how, "shear": SHEARS["resultant"]}
-        said |= {"filter": "no filter", "baseline": baseline_words(plate)}
+        said |= {"filter": "no filter", "baseline": plate.baseline_text}
         cof = replace(cof, conventions={**cof.conventions, **said})
     else:
         raise unknown_name("window", kind, ("force", "sliding"), where="method.window_from")

@@ -71,11 +71,11 @@ def audit_page(analysis: FolderAnalysis, fingerprint: str) -> str:
     """Return the page to sign as HTML text; ``fingerprint`` is the checksum of the checksums."""
     known = {table.name: page_table(table, limit=_ALL) for table in analysis.tables}
     said = dict.fromkeys(
-        m["conventions"][key]
+        m.conventions[key]
         for one in analysis.files
         for m in one.measurements
         for key in ("calibration", "check surfaces")
-        if key in m["conventions"]
+        if key in m.conventions
     )
     return environment(__package__ or "").get_template("audit.html").render(
         analysis=analysis, lead=lead_sentence(analysis), tables=known, calibration=list(said),

@@ -12,7 +12,7 @@ import math
 import re
 import zipfile
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,13 +26,14 @@ from underfoot.core.progress import part
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
-from ..study.tables import number_columns
+from ..study.tables import Role
 from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..study import FolderAnalysis, Table
+    from ..study.tables import Column
 
 STORE = ".files"
 _MARK = "analysis.txt"
@@ -132,7 +133,6 @@ def trials_page(
             {"caption": one.caption, "source": embedded(picture), "width": width}
         )
     tables = {table.name: table for table in all_tables}
-    noted = {name for one in analysis.files for name in one.conditions}
     return environment(__package__ or "").get_template("trials.html").render(
         analysis=analysis,
         number=_counted(len(analysis.files), "files"),
@@ -140,7 +140,7 @@ def trials_page(
         first=chapters["study"][:1],
         figures={**chapters, "study": chapters["study"][1:]},
         sheets=[page.svg for page in pages],
-        files=page_table(_on_page(tables["files"], noted), limit=10_000),
+        files=page_table(_without_conditions(tables["files"]), limit=10_000),
         edits=page_table(tables["edits"]) if "edits" in tables else None,
         doubts=page_table(tables["doubts"]) if "doubts" in tables else None,
     )  # fmt: skip
@@ -167,8 +167,8 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
         "lead": lead_sentence(analysis),
         "counts": Counter(one.verdict for one in analysis.files),
         "reasons": reasons.most_common(4),
-        "summary": None if summary is None else page_table(_on_page(summary)),
-        "study": [page_table(_on_page(table)) for table in study],
+        "summary": None if summary is None else page_table(_compact(summary)),
+        "study": [page_table(_compact(table)) for table in study],
         "findings": [page_table(f.table) | {"cautions": f.cautions} for f in findings],
     }
 
@@ -202,24 +202,25 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     table = tables.get("conditions")
     # Floors and shoes on a tester are no sample of one population: no mean over all of them.
     if table is not None and (kind == "gait" or len(table.rows) == 1):
-        row = dict(zip(table.columns, table.rows[-1], strict=True))
-        column, _, *ends = next(
-            names
-            for names in map(number_columns, usable[0].main)
-            if isinstance(row.get(names[0]), float)
+        row = [*zip(table.heads, table.rows[-1], strict=True)]
+        cells = {(head.quantity, head.role): cell for head, cell in row}
+        mean = next(
+            head
+            for name in usable[0].main
+            for head, cell in row
+            if head.quantity == name and head.role is Role.MEAN and isinstance(cell, float)
         )
-        places = table.decimals.get(column, 3)
-        counted = ", ".join(
-            _counted(row[unit], unit)
-            for unit in ("persons", "files", "trials", "readings", "steps")
-            if row.get(unit)
+        places = _places(mean)
+        label = {"rcof": "Required friction (RCOF)"}.get(mean.quantity, mean.name)
+        average, spread, low, high = (
+            cells.get((mean.quantity, role)) for role in (Role.MEAN, Role.SD, Role.LOW, Role.HIGH)
         )
-        label = {"RCOF": "Required friction (RCOF)"}.get(column, column)
-        text = f"{label} {row[column]:.{places}f}"
-        low, high = map(row.get, ends)
+        text = f"{label} {average:.{places}f}"
         if isinstance(low, float) and isinstance(high, float):
-            spread = row[table.columns[table.columns.index(column) + 1]]
             text += f", SD {spread:.{places}f}, 95 % {low:.{places}f} to {high:.{places}f}"
+        counted = ", ".join(
+            _counted(cell, head.name) for head, cell in row if head.role is Role.COUNT and cell
+        )
         return f"{text} ({counted}).{carried}{tail}"
     samples = tables.get("samples")
     if samples is not None:
@@ -236,49 +237,55 @@ def _counted(number: object, things: str) -> str:
     return f"{number} {things if number != 1 else things[:-1]}"
 
 
-def _on_page(table: Table, conditions: Collection[str] = ()) -> Table:
-    """Return a table with the columns that a page has room for; files keep all."""
-    if table.name.startswith("conditions"):
-        return _compact(table)
-    if table.name == "files":
-        keep = [i for i, c in enumerate(table.columns) if c not in conditions][:9]
-        keep += [i for i, c in enumerate(table.columns) if c == "reasons" and i not in keep]
-        return table.only(keep)
-    return table
+def _places(head: Column) -> int:
+    """Return the decimals of a mean on a page."""
+    return 3 if head.decimals is None else head.decimals
+
+
+def _without_conditions(table: Table) -> Table:
+    """Return the table of files with the columns that a page has room for; files keep all."""
+    heads = [*enumerate(table.heads)]
+    keep = [i for i, head in heads if head.role is not Role.CONDITION][:9]
+    return table.only([i for i, head in heads if i in keep or head.role is Role.LONG])
 
 
 def _compact(table: Table) -> Table:
     """Return a table of several quantities with mean, SD and interval of each in one cell."""
-    places = {column: i for i, column in enumerate(table.columns)}
-    starts = sorted(places[four[0]] for four in table.spreads if places.keys() >= set(four))
+    cells = [(head.quantity, head.role) for head in table.heads]
+    starts = [
+        i
+        for i, (quantity, role) in enumerate(cells)
+        if role is Role.MEAN and (quantity, Role.HIGH) in cells
+    ]
     if len(starts) < 2:
         return table
     inside = {i + k for i in starts for k in (1, 2, 3)}
-    shown_columns = [i for i in range(len(table.columns)) if i not in inside]
+    shown = [i for i in range(len(cells)) if i not in inside]
 
     def cell(row: Sequence[Any], i: int) -> Any:
         if i not in starts:
             return row[i]
-        decimals = table.decimals.get(table.columns[i], 3)
-        texts = [f"{v:.{decimals}f}" for v in row[i : i + 4] if isinstance(v, int | float)]
+        texts = [
+            f"{v:.{_places(table.heads[i])}f}" for v in row[i : i + 4] if isinstance(v, int | float)
+        ]
         if len(texts) < 4:
             return "".join(texts[:1])
         return f"{texts[0]} ({texts[1]}), {texts[2]} to {texts[3]}"
 
-    names = (table.columns[i] + (": mean (SD), 95 %" if i in starts else "") for i in shown_columns)
-    rows = tuple(tuple(cell(row, i) for i in shown_columns) for row in table.rows)
-    return replace(table, columns=tuple(names), rows=rows)
-
-
-# Long text: below its row, over the whole width, so that no column runs out of a page.
-_LONG_TEXT = ("reasons", "reason", "cautions", "flags", "rejected because", "remark")
+    heads = (
+        replace(head, name=f"{head.name}: mean (SD), 95 %") if i in starts else head
+        for i, head in enumerate(table.heads)
+        if i in shown
+    )
+    rows = tuple(tuple(cell(row, i) for i in shown) for row in table.rows)
+    return replace(table, heads=tuple(heads), rows=rows)
 
 
 def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     """Return a table as a page shows it: filled columns, texts, long text below its row, notes."""
     rows = table.rows[:limit]
     # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
-    below = [i for i in table.filled() if table.columns[i] in _LONG_TEXT]
+    below = [i for i in table.filled() if table.heads[i].role is Role.LONG]
     filled = [i for i in table.filled() if i not in below]
     notes = list(table.notes)
     if len(table.rows) > limit:
@@ -286,7 +293,7 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     return {
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
-        "rows": [[_shown(row[i], table.columns[i], table) for i in filled] for row in rows],
+        "rows": [[_shown(row[i], table.heads[i]) for i in filled] for row in rows],
         "below": ["; ".join(str(row[i]) for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
@@ -296,19 +303,19 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     }
 
 
-def _shown(value: Any, column: str, table: Table) -> str:
+def _shown(value: Any, head: Column) -> str:
     if value is None or value == "":
         return "–"
     if isinstance(value, str):
         return value
-    if column in table.chances:
+    if head.role is Role.CHANCE:
         return p_text(value)
     if isinstance(value, int):
         return str(value)
-    if column in table.answers:
+    if head.role is Role.ANSWER:
         return "yes" if value else "no"
-    if column in table.decimals:
-        return f"{value:.{table.decimals[column]}f}"
+    if head.decimals is not None:
+        return f"{value:.{head.decimals}f}"
     if value == int(value) and abs(value) < 1e6:
         return str(int(value))
     return plain_number(value)

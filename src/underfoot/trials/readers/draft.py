@@ -10,7 +10,8 @@ from underfoot.core import DataError, nearest_match
 from underfoot.core.missing import coded
 from underfoot.core.text import decoded
 
-from ..recording.axes import found_vertical, heel_candidates, toe_candidates
+from ..recording.axes import found_vertical
+from ..recording.marker_names import heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .file_bytes import FileBytes

@@ -1,4 +1,4 @@
-"""Which way is up and forward, the slope of the walkway, which marker is a heel: overridable."""
+"""Which way is up and forward, the slope of the walkway: overridable."""
 
 import math
 import re
@@ -12,11 +12,11 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
 
-from .marker_names import HEEL, PELVIS, TOE, landmark, own_landmarks
+from .marker_names import heel_candidates, toe_candidates
 from .measurement import Choice
-from .plates import plate_normal
-from .signals import CONTACT_FORCE
-from .trial import Marker, Plate, Trial, Vertical, once_a_record
+from .plates import Contact, plate_normal
+from .signals import CONTACT_FORCE, frames_between
+from .trial import Marker, Trial, Vertical, once_a_record
 
 PLATE_FRAMES = {
     "surface": "plates that measure normal and tangential to the walking surface",
@@ -99,7 +99,6 @@ _ABOVE = 0.2  # m between the feet and the middle of a body's other markers
 WALKING_SPEED = 0.3  # m/s; slower than that nobody walks
 _ALONG = 0.7  # cosine of the angle between the way of a foot's pressure and that of the walk
 _NAMES = "xyz"
-_LOW = 0.12  # m above the lowest marker; the heel stands lower than a hand or a shin
 
 
 class DirectionSource(StrEnum):
@@ -127,7 +126,8 @@ class Axes:
     """Directions in laboratory axes and how each was found.
 
     ``up`` and ``walking`` are unit vectors (3,); ``walking`` is None when nothing tells it.
-    ``ramp`` is the slope of the walkway.
+    ``ramp`` is the slope of the walkway, ``body`` the velocity (3,) of the markers over the whole
+    recording in the floor's plane (m/s), None without markers.
     """
 
     up: np.ndarray
@@ -135,6 +135,7 @@ class Axes:
     walking: np.ndarray | None
     walking_from: str
     ramp: Ramp = LEVEL
+    body: np.ndarray | None = None
 
     @property
     def across(self) -> np.ndarray | None:
@@ -175,14 +176,14 @@ def axes_of(
         markers=trial.markers,
     )
     up, how = np.array(found.axis), found.source
-    if walking:
-        return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp)
     path = marker_velocity(trial, -np.inf, np.inf, up)
+    if walking:
+        return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp, path)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)", ramp)
+        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)", ramp, path)
     reason = "no markers" if path is None else f"markers move at {speed:.2f} m/s only"
-    return Axes(up, how, None, f"not found: {reason}", ramp)
+    return Axes(up, how, None, f"not found: {reason}", ramp, path)
 
 
 def marker_velocity(
@@ -196,20 +197,13 @@ def marker_velocity(
     markers don't count. Markers that never move (corners of plates, the frame of a treadmill) are
     no part of a body that does. None with fewer than three markers seen.
     """
-    clocks: dict[tuple[int, float, float], slice] = {}  # markers share theirs
-    velocities = []
-    for marker in moving_markers(trial.markers).values():
-        if begin == -np.inf and end == np.inf:
-            velocity = _whole_velocity(marker)
-        elif marker.times is None:
-            clock = len(marker.positions), marker.rate, marker.start
-            if clock not in clocks:
-                clocks[clock] = marker.frames(begin, end)
-            velocity = _velocity_in(marker, clocks[clock])
-        else:
-            velocity = _velocity_in(marker, marker.frames(begin, end))
-        if velocity is not None:
-            velocities.append(velocity)
+    whole = begin == -np.inf and end == np.inf
+    velocities = [
+        velocity
+        for marker in moving_markers(trial.markers).values()
+        for velocity in [_whole_velocity(marker) if whole else _velocity_in(marker, begin, end)]
+        if velocity is not None
+    ]
     if len(velocities) < 3:
         return None
     ordered = np.sort(velocities, axis=0)  # np.median takes several times as long for so few
@@ -219,10 +213,11 @@ def marker_velocity(
 
 @once_a_record
 def _whole_velocity(marker: Marker) -> np.ndarray | None:
-    return _velocity_in(marker, slice(None))
+    return _velocity_in(marker, -np.inf, np.inf)
 
 
-def _velocity_in(marker: Marker, frames: slice) -> np.ndarray | None:
+def _velocity_in(marker: Marker, begin: float, end: float) -> np.ndarray | None:
+    frames = frames_between(marker.time, begin, end)
     seen = np.flatnonzero(~marker.missing[frames])
     if len(seen) < 3:
         return None
@@ -256,29 +251,32 @@ def _span(marker: Marker) -> float:
 
 
 def walking_direction(
-    trial: Trial, plate: Plate, start: int, stop: int, up: np.ndarray, walking: str | None = None
+    trial: Trial, contact: Contact, walking: str | None, body: np.ndarray | None
 ) -> Direction:
-    """Return the walking direction during a stance and how it was found.
+    """Return the walking direction during a contact and how it was found.
+
+    ``walking``: the axis that a person set, as "+x". ``body``: that of ``Axes``.
 
     In this order: the override, the markers during the first half of the stance, the path of
     the centre of pressure (heel to toe), the shear force (braking first, then driving). Markers
     that stand still tell of a person who does, unless they walk on in the recording: they may be
     those of the foot on the plate.
     """
+    up = contact.up
     if walking:
         return Direction(_flat(axis_vector(walking, "walking"), up), DirectionSource.GIVEN, "given")
+    plate, start, stop = contact.plate, contact.start, contact.stop
     time = plate.start + np.array([start, (start + stop) / 2.0]) / plate.rate
     path = marker_velocity(trial, float(time[0]), float(time[1]), up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
         text = Choice("markers in this step", text=f"markers in this step ({speed:.2f} m/s)")
         return Direction(path / speed, DirectionSource.MARKERS, text)
-    step, swing = pressure_path(plate, start, stop, up), shear_swing(plate, start, stop, up)
+    step, swing = contact.pressure_path, contact.shear_swing
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
-    if path is not None:
-        whole = marker_velocity(trial, -np.inf, np.inf, up)
-        if whole is None or not step @ whole > _ALONG * max(length, 0.05) * WALKING_SPEED:
-            return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
+    least = _ALONG * max(length, 0.05) * WALKING_SPEED
+    if path is not None and (body is None or not step @ body > least):
+        return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
     if length > 0.05:
         text = Choice("centre of pressure, {:.0f} mm heel to toe", 1e3 * length)
         return Direction(step / length, DirectionSource.PRESSURE, text)
@@ -286,94 +284,6 @@ def walking_direction(
         text = "shear force, braking before driving"
         return Direction(swing / size, DirectionSource.SHEAR, text)
     return Direction(explanation="nothing tells it")
-
-
-def pressure_path(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
-    """Return the way (3,) of the centre of pressure from the first to the last fifth (m)."""
-    if plate.centre_of_pressure is None:
-        return np.zeros(3)
-    place = plate.centre_of_pressure[start:stop]
-    place = place[np.isfinite(place).all(axis=1)]
-    fifth = len(place) // 5
-    if fifth < 3:
-        return np.zeros(3)
-    step = place[-fifth:].mean(axis=0) - place[:fifth].mean(axis=0)
-    return step - (step @ up) * up
-
-
-def shear_swing(plate: Plate, start: int, stop: int, up: np.ndarray) -> np.ndarray:
-    """Return the mean shear (3,) of the second half of a contact less that of the first (N)."""
-    force = plate.force[start:stop]
-    force = force[np.isfinite(force).all(axis=1)]
-    half = len(force) // 2
-    if half < 3:
-        return np.zeros(3)
-    swing = force[half:].mean(axis=0) - force[:half].mean(axis=0)
-    return swing - (swing @ up) * up
-
-
-def heel_candidates(
-    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
-) -> dict[str, list[str]]:
-    """Return the markers that may be heels by side: ``left``, ``right``, ``unknown``.
-
-    ``landmarks``: a laboratory's own names with their places ("left heel"), which win; see
-    ``own_landmarks`` for the DataError. The best-seen candidates come first. Names of two or three
-    letters count with ``up`` alone, the vertical (3,), where they lie lowest.
-    """
-    return _by_side(trial, HEEL, landmarks, up)
-
-
-def toe_candidates(
-    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
-) -> dict[str, list[str]]:
-    """Return the markers that may be toes by side, as ``heel_candidates`` does."""
-    return _by_side(trial, TOE, landmarks, up)
-
-
-def pelvis_markers(trial: Trial, landmarks: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the side of each marker of the pelvis by its name: left, right or empty."""
-    own = own_landmarks(landmarks or {}, trial.markers, where=trial.name)
-    found = {name: own.get(name) or landmark(name) for name in trial.markers}
-    own_ones = {name for name, place in own.items() if place.kind == PELVIS}
-    return {
-        name: place.side
-        for name, place in found.items()
-        if place is not None and place.kind == PELVIS and (not own_ones or name in own_ones)
-    }
-
-
-def _by_side(
-    trial: Trial, kind: str, landmarks: Mapping[str, str] | None, up: np.ndarray | None
-) -> dict[str, list[str]]:
-    names_by_side: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
-    own, ranks = own_landmarks(landmarks or {}, trial.markers, where=trial.name), {}
-    given = {place.side for place in own.values() if place.kind == kind}
-    for name, marker in trial.markers.items():
-        place = own.get(name) or landmark(name)
-        if place is None or place.kind != kind or marker.missing.all():
-            continue
-        if name not in own and (place.side in given or (place.short and not _low(trial, name, up))):
-            continue
-        ranks[name] = place.short, int(marker.missing.sum())
-        names_by_side[place.side or "unknown"].append(name)
-    for names in names_by_side.values():
-        names.sort(key=ranks.__getitem__)
-    return names_by_side
-
-
-def _low(trial: Trial, name: str, up: np.ndarray | None) -> bool:
-    """Whether a marker comes as low as the lowest of them."""
-    if up is None:
-        return False
-    lowest = {key: _lowest(marker, tuple(up.tolist())) for key, marker in trial.markers.items()}
-    return lowest[name] < np.nanmin(list(lowest.values())) + _LOW
-
-
-@once_a_record
-def _lowest(marker: Marker, up: tuple[float, ...]) -> float:
-    seen = (marker.positions @ np.array(up))[~marker.missing]
-    return float(np.percentile(seen, 1)) if len(seen) else math.nan
 
 
 def found_vertical(

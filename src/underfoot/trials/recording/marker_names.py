@@ -1,4 +1,4 @@
-"""What markers are called: heels, toes and the pelvis in the usual sets, with their side.
+"""Which markers are heels, toes and the pelvis, and of which side, by what they are called.
 
 Names as their sets have them: Plug-in Gait (LHEE, LTOE, LASI, LPSI), CAST and IOR (L_FCC or LCA,
 L_FM2, L_IAS, L_IPS), Helen Hayes and Vaughan (L.Heel, V.Sacral), Rizzoli and Oxford foot (CA, LPCA,
@@ -6,17 +6,23 @@ LHLX), OpenSim and Rajagopal (R.ASIS, RCAL, RTOE), Qualisys (LHeelBack), German 
 (from the sets' own pages and recordings that name them so; from memory where none was at hand).
 """
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
+
 from underfoot.core import DataError, InputError, nearest_match, unknown_name
+
+from .trial import Marker, Trial, once_a_record
 
 HEEL, TOE, PELVIS = "heel", "toe", "pelvis"
 LANDMARKS = ("left heel", "right heel", "left toe", "right toe", "left pelvis", "right pelvis",
              "pelvis")  # fmt: skip
 """What an own name may stand for."""
+_LOW = 0.12  # m above the lowest marker; the heel stands lower than a hand or a shin
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +116,70 @@ def own_landmarks(
                 remedy="Name the marker under [landmarks] in profile.toml",
             )
     return found
+
+
+def heel_candidates(
+    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
+) -> dict[str, list[str]]:
+    """Return the markers that may be heels by side: ``left``, ``right``, ``unknown``.
+
+    ``landmarks``: a laboratory's own names with their places ("left heel"), which win; see
+    ``own_landmarks`` for the DataError. The best-seen candidates come first. Names of two or three
+    letters count with ``up`` alone, the vertical (3,), where they lie lowest.
+    """
+    return _by_side(trial, HEEL, landmarks, up)
+
+
+def toe_candidates(
+    trial: Trial, landmarks: Mapping[str, str] | None = None, up: np.ndarray | None = None
+) -> dict[str, list[str]]:
+    """Return the markers that may be toes by side, as ``heel_candidates`` does."""
+    return _by_side(trial, TOE, landmarks, up)
+
+
+def pelvis_markers(trial: Trial, landmarks: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the side of each marker of the pelvis by its name: left, right or empty."""
+    own = own_landmarks(landmarks or {}, trial.markers, where=trial.name)
+    found = {name: own.get(name) or landmark(name) for name in trial.markers}
+    own_ones = {name for name, place in own.items() if place.kind == PELVIS}
+    return {
+        name: place.side
+        for name, place in found.items()
+        if place is not None and place.kind == PELVIS and (not own_ones or name in own_ones)
+    }
+
+
+def _by_side(
+    trial: Trial, kind: str, landmarks: Mapping[str, str] | None, up: np.ndarray | None
+) -> dict[str, list[str]]:
+    names_by_side: dict[str, list[str]] = {"left": [], "right": [], "unknown": []}
+    own, ranks = own_landmarks(landmarks or {}, trial.markers, where=trial.name), {}
+    given = {place.side for place in own.values() if place.kind == kind}
+    for name, marker in trial.markers.items():
+        place = own.get(name) or landmark(name)
+        if place is None or place.kind != kind or marker.missing.all():
+            continue
+        if name not in own and (place.side in given or (place.short and not _low(trial, name, up))):
+            continue
+        ranks[name] = place.short, int(marker.missing.sum())
+        names_by_side[place.side or "unknown"].append(name)
+    for names in names_by_side.values():
+        names.sort(key=ranks.__getitem__)
+    return names_by_side
+
+
+def _low(trial: Trial, name: str, up: np.ndarray | None) -> bool:
+    """Whether a marker comes as low as the lowest of them."""
+    if up is None:
+        return False
+    lowest = {key: _lowest(marker, tuple(up.tolist())) for key, marker in trial.markers.items()}
+    return lowest[name] < np.nanmin(list(lowest.values())) + _LOW
+
+
+@once_a_record
+def _lowest(marker: Marker, up: tuple[float, ...]) -> float:
+    seen = (marker.positions @ np.array(up))[~marker.missing]
+    return float(np.percentile(seen, 1)) if len(seen) else math.nan
 
 
 def checked_landmark(place: object, where: str) -> str:

@@ -1,12 +1,13 @@
 """Force plates: from analog channels (C3D types 1-4) to the force on the foot in lab axes."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from underfoot.core import DataError
 
-from .measurement import Choice, Flag, remark
+from .measurement import Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
 from .trial import REVERSED, Plate, Trial, once_a_record
 
@@ -76,16 +77,63 @@ def ordered_corners(corners: np.ndarray, *, down: bool = True) -> tuple[np.ndarr
     return corners, False
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Contact:
+    """A stretch in which a plate is stood on: samples ``start`` to ``stop``, this one excluded.
+
+    ``up`` (3,) is the unit vector out of the floor, ``peak`` the largest force along it (N).
+    """
+
+    plate: Plate
+    start: int
+    stop: int
+    up: np.ndarray
+    peak: float = math.nan
+
+    @property
+    def pressure_path(self) -> np.ndarray:
+        """Way (3,) of the centre of pressure from the first to the last fifth (m)."""
+        if self.plate.centre_of_pressure is None:
+            return np.zeros(3)
+        place = self.plate.centre_of_pressure[self.start : self.stop]
+        place = place[np.isfinite(place).all(axis=1)]
+        fifth = len(place) // 5
+        if fifth < 3:
+            return np.zeros(3)
+        step = place[-fifth:].mean(axis=0) - place[:fifth].mean(axis=0)
+        return step - (step @ self.up) * self.up
+
+    @property
+    def shear_swing(self) -> np.ndarray:
+        """Mean shear (3,) of the second half less that of the first (N)."""
+        force = self.plate.force[self.start : self.stop]
+        force = force[np.isfinite(force).all(axis=1)]
+        half = len(force) // 2
+        if half < 3:
+            return np.zeros(3)
+        swing = force[half:].mean(axis=0) - force[:half].mean(axis=0)
+        return swing - (swing @ self.up) * self.up
+
+
 def plate_contacts(
     plate: Plate, up: np.ndarray, threshold: float = CONTACT_FORCE
-) -> tuple[tuple[int, int], ...]:
-    """Return ``contacts`` with a plate; ``up`` (3,) is the unit vector out of the floor."""
-    return _contacts(plate, tuple(up.tolist()), threshold)
+) -> tuple[Contact, ...]:
+    """Return the ``contacts`` with a plate; ``up`` (3,) is the unit vector out of the floor."""
+    return tuple(
+        Contact(plate, start, stop, up, peak)
+        for start, stop, peak in _contacts(plate, tuple(up.tolist()), threshold)
+    )
 
 
 @once_a_record
-def _contacts(plate: Plate, up: tuple[float, ...], threshold: float) -> tuple[tuple[int, int], ...]:
-    return tuple(contacts(along(plate.force, np.array(up)), plate.rate, threshold))
+def _contacts(
+    plate: Plate, up: tuple[float, ...], threshold: float
+) -> tuple[tuple[int, int, float], ...]:
+    vertical = along(plate.force, np.array(up))
+    return tuple(
+        (start, stop, float(np.nanmax(vertical[start:stop])))
+        for start, stop in contacts(vertical, plate.rate, threshold)
+    )
 
 
 def channel_forces(
@@ -222,17 +270,6 @@ def plate_named(trial: Trial, name: str) -> Plate:
         f"no plate named {name}",
         where=trial.name,
         allowed=", ".join(p.name for p in trial.plates) or "the trial has no plates",
-    )
-
-
-def baseline_words(plate: Plate) -> str:
-    """Return what was done about a plate's baseline."""
-    if plate.baseline is None:
-        return "not subtracted"
-    size = ", ".join(f"{component:.1f}" for component in plate.baseline)
-    return Choice(
-        "mean force of the unloaded plate subtracted",
-        text=f"mean of {plate.baseline_samples} unloaded samples subtracted ({size} N)",
     )
 
 

@@ -69,6 +69,15 @@ def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
     return _away_from_load(rests, max(1, round(_MARGIN * rate)))
 
 
+def frames_between(times: np.ndarray, begin: float, end: float, *, beside: int = 0) -> slice:
+    """Return which of rising ``times`` (n,) lie between two (s), both included.
+
+    ``beside``: as many more on both sides.
+    """
+    first = int(times.searchsorted(begin)) - beside
+    return slice(max(first, 0), int(times.searchsorted(end, "right")) + beside)
+
+
 def enough(mask: np.ndarray) -> bool:
     """True when the mean of the masked samples may serve as a baseline."""
     return int(mask.sum()) >= _MINIMUM_SAMPLES

@@ -13,7 +13,7 @@ import numpy as np
 from underfoot.core import DataError, InputError, nearest_match, unknown_name
 from underfoot.core.presentation import Presentable, Table
 
-from .measurement import Flag
+from .measurement import Choice, Flag
 
 _T = TypeVar("_T")
 _P = ParamSpec("_P")
@@ -87,11 +87,6 @@ class Marker:
         """True where the marker was not seen, shape (n,); not to be written to."""
         return _missing(self)
 
-    def frames(self, begin: float, end: float, *, beside: int = 0) -> slice:
-        """Return the frames between two times (s), both included, and ``beside`` on both sides."""
-        first = int(self.time.searchsorted(begin)) - beside
-        return slice(max(first, 0), int(self.time.searchsorted(end, "right")) + beside)
-
 
 @once_a_record
 def _missing(marker: Marker) -> np.ndarray:
@@ -157,6 +152,17 @@ class Plate:
     def usable(self) -> bool:
         """True when the plate has forces."""
         return not self.problem and len(self.force) > 0
+
+    @property
+    def baseline_text(self) -> str:
+        """What was done about the baseline."""
+        if self.baseline is None:
+            return "not subtracted"
+        size = ", ".join(f"{component:.1f}" for component in self.baseline)
+        return Choice(
+            "mean force of the unloaded plate subtracted",
+            text=f"mean of {self.baseline_samples} unloaded samples subtracted ({size} N)",
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -230,8 +230,7 @@ def _dry_step(
     braking = truth.rcof * stance_ratio(s)
     sideways = 0.1 * truth.rcof * np.sin(np.pi * np.clip(s, 0, 1))
     force = np.column_stack((-braking * normal, sideways * normal, normal))
-    firm = (s < 0.5) & (normal > 100.0)
-    rcof = float(np.hypot(braking[firm], sideways[firm]).max())
+    rcof = float(np.hypot(braking, sideways).max())
     x0 = heel[int(np.searchsorted(time, FIRST_CONTACT + 0.1)), 0]
     centre = np.column_stack(
         (x0 + 0.2 * np.clip(s, 0, 1), np.full(len(s), heel[0, 1]), np.zeros(len(s)))

@@ -10,7 +10,7 @@ from underfoot.core import DataError
 from ..statistics import ROUNDING, mixed_model, person_means
 from .conditions import ORDERS
 from .file_result import FileResult
-from .tables import Cell, Table, grouped, mean_and_interval
+from .tables import Cell, Column, Table, grouped, mean_and_interval, plain_columns
 
 _SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
 """p below which, relative difference of speed from which, and share of the variance of the places
@@ -20,9 +20,9 @@ in the session from which a condition goes with it; assumed."""
 def walking_speed(result: FileResult) -> float | None:
     """Return the mean speed (m/s) of the steps of a file that count, or None."""
     speeds = [
-        float(step["walking_speed"])
+        step.walking_speed
         for step in result.steps
-        if step.get("rcof") is not None and step.get("walking_speed") is not None
+        if step.rcof is not None and step.walking_speed is not None
     ]
     return float(np.mean(speeds)) if speeds else None
 
@@ -103,15 +103,17 @@ def circumstance_table(
                 100.0 * float(np.mean(means)) if means else None
             ]  # fmt: skip
         rows.append(tuple(cells))
-    columns = ("condition", "level", "walking speed (m/s)", "SD", "mean place in the session (%)")
+    heads = (
+        *(Column(name, always=True) for name in ("condition", "level")),
+        *plain_columns("walking speed (m/s)", "SD", decimals=2),
+        *plain_columns("mean place in the session (%)", decimals=0),
+    )
     note = (
         "A condition that was walked faster or slower, or always early or late, can't be told from "
         "speed, habit or fatigue. Place: 0 % the first trial of a person, 100 % the last."
     )
     title = "Speed and order by condition"
-    decimals = {columns[2]: 2, columns[3]: 2, columns[4]: 0}
-    table = Table("speed_and_order", title, columns, tuple(rows), (note,), decimals)
-    return table.only(table.filled(columns[:2]))
+    return Table.of("speed_and_order", title, heads, rows, note).without_empty()
 
 
 def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, Mapping[str, float]]:

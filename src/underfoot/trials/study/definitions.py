@@ -15,7 +15,7 @@ from ..walking.gait import DEFINITIONS, required_friction, required_frictions
 from ..walking.walkway import walkway_of
 from .conditions import profile_of, study_folder
 from .edit_table import edits_of
-from .tables import Cell, Table, mean_and_interval
+from .tables import Cell, Table, mean_and_interval, plain_columns
 
 
 def definition_tables(
@@ -42,14 +42,9 @@ def definition_tables(
         except UnderfootError as error:
             notes.append(f"{recording.name}: {error}")
         progress("reading trials", number / len(recordings))
-    steps = Table(
-        "definitions_steps",
-        "RCOF of every step under every definition",
-        ("file", "step", "verdict", *DEFINITIONS),
-        tuple(rows),
-        tuple(notes),
-        dict.fromkeys(DEFINITIONS, 4),
-    )
+    title = "RCOF of every step under every definition"
+    heads = ("file", "step", "verdict", *plain_columns(*DEFINITIONS, decimals=4))
+    steps = Table.of("definitions_steps", title, heads, rows, *notes)
     return _summary(rows), steps
 
 
@@ -82,12 +77,7 @@ def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
         )
         choices = "; ".join(definition.conventions().values())
         out.append((name, len(numbers), mean, spread, *changes, choices))
-    columns = ("definition", "steps", "mean RCOF", "SD", "mean change", "largest change", "choices")
-    return Table(
-        "definitions",
-        "RCOF under every definition",
-        columns,
-        tuple(out),
-        ("Change: step by step against the default. SD is the standard deviation between steps.",),
-        dict.fromkeys(columns[2:6], 4),
-    )
+    numbers = plain_columns("mean RCOF", "SD", "mean change", "largest change", decimals=4)
+    note = "Change: step by step against the default. SD is the standard deviation between steps."
+    heads = ("definition", "steps", *numbers, "choices")
+    return Table.of("definitions", "RCOF under every definition", heads, out, note)

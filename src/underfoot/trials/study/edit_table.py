@@ -4,7 +4,6 @@ import csv
 import io
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import Any
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
@@ -14,12 +13,10 @@ from ..readers.text import name_and_unit
 from ..recording.trial import Edit
 from ..walking.events import EditError
 from .conditions import named_file, table_columns, table_delimiter
+from .file_result import LoggedEdit, StepResult
 
 NAMES = ("edits.csv", "edits.xlsx")
 COLUMNS = ("file", "step", "edit", "value", "why")
-EDIT_COLUMNS = (
-    "step", "what", "before", "after", "quantity", "number before", "number after", "why"
-)  # fmt: skip
 
 
 def edits_of(folder: Path, labels: Sequence[str], *, others: bool = False) -> dict[str, list[Edit]]:
@@ -146,8 +143,8 @@ def with_edit_row(text: str, row: Sequence[str] = (), without: Collection[int] =
 
 
 def edit_log(
-    edits: Sequence[Edit], before: Sequence[dict[str, Any]], after: Sequence[dict[str, Any]]
-) -> list[dict[str, Any]]:
+    edits: Sequence[Edit], before: Sequence[StepResult], after: Sequence[StepResult]
+) -> list[LoggedEdit]:
     """Return one row per edit: the event and the number before and after it.
 
     ``before`` and ``after`` are the steps of a ``Draft`` without and with the edits.
@@ -155,23 +152,24 @@ def edit_log(
     rows = []
     for edit in edits:
         if isinstance(edit.step, int):
-            old = next(step for step in before if step["number"] == edit.step)
+            old = next(step for step in before if step.number == edit.step)
         else:
             at = float(edit.step)
-            old = min(before, key=lambda step: abs(step["contact"] - at))
-        new = next(step for step in after if step["number"] == old["number"])
-        quantity = "peak slipping speed" if "peak_slipping_speed" in old else "rcof"
-        key = quantity.replace(" ", "_")
+            old = min(before, key=lambda step: abs(step.contact - at))
+        new = next(step for step in after if step.number == old.number)
         events = _event(edit.what, old), _event(edit.what, new)
         # a contact that was excluded is no slip any more and has no speed
-        row = (old["item"], edit.what, *events, quantity, old[key], new.get(key), edit.why)
-        rows.append(dict(zip(EDIT_COLUMNS, row, strict=True)))
+        quantity, numbers = "rcof", (old.rcof, new.rcof)
+        if old.judged_for_slip:
+            quantity = "peak slipping speed"
+            numbers = old.peak_slipping_speed, new.peak_slipping_speed
+        rows.append(LoggedEdit(old.item, edit.what, *events, edit.why, quantity, *numbers))
     return rows
 
 
-def _event(what: str, step: dict[str, Any]) -> str:
+def _event(what: str, step: StepResult) -> str:
     if what in ("contact", "toe off"):
-        return f"{step[what.replace(' ', '_')]:.4f} s"
+        return f"{step.contact if what == 'contact' else step.toe_off:.4f} s"
     if what == "side":
-        return str(step["side"])
-    return "no step: " + step["reason"] if step["reason"] else "step"
+        return step.side
+    return f"no step: {step.reason}" if step.reason else "step"

@@ -9,8 +9,8 @@ from underfoot.core import DataError
 from ..readers.c3d_writer import c3d_bytes
 from ..recording.plates import plate_axes
 from ..recording.trial import Plate, Trial
+from ..walking.body_weight import body_mass
 from ..walking.events import Stance
-from ..walking.walkway import body_mass
 
 
 def c3d_with_events(trial: Trial, stances: Sequence[Stance]) -> bytes:

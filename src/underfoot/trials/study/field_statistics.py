@@ -11,9 +11,19 @@ from underfoot.core.presentation import p_text
 from .. import statistics
 from ..walking.gait_context import PERCENT
 from .file_result import FileResult
-from .tables import Cell, Finding, decimals_of, finding, quantity_name
+from .tables import (
+    HOLM_P,
+    P_VALUE,
+    Cell,
+    Column,
+    Finding,
+    Role,
+    decimals_of,
+    finding,
+    plain_columns,
+    quantity_name,
+)
 
-_THREE = {"value": 3, "95 % low": 3, "95 % high": 3}
 _FEWEST = 5  # persons from which curves are compared and normality is judged
 
 
@@ -76,10 +86,6 @@ def reliability_findings(
         rows.append((label, *ends, one.error, one.detectable_change, one.subjects, one.k))
     if not rows:
         return []
-    columns: tuple[str, ...] = (
-        "condition", "ICC(1,1)", "95 % low", "95 % high", "ICC(1,k)", "low", "high",
-        "SEM", "MDC95", "persons", "trials each",
-    )  # fmt: skip
     note = (
         "Repeated trials of persons, one-way random (trials have no order); k: mean of a person's "
         "trials. SEM: standard error of measurement of one trial; MDC95 = 2.77 SEM: smallest "
@@ -87,9 +93,13 @@ def reliability_findings(
     )
     title = f"Reliability of {quantity_name(response)}: intraclass correlation"
     places = decimals_of(min(float(row[7]) for row in rows))
-    decimals = dict.fromkeys(columns[1:7], 3)
-    decimals |= {"SEM": places, "MDC95": places, "trials each": 1}
-    return [finding(f"reliability_{response}", title, columns, rows, note, decimals=decimals)]
+    shares = ("ICC(1,1)", "95 % low", "95 % high", "ICC(1,k)", "low", "high")
+    heads = (
+        "condition", *plain_columns(*shares, decimals=3),
+        *plain_columns("SEM", "MDC95", decimals=places),
+        "persons", Column("trials each", decimals=1),
+    )  # fmt: skip
+    return [finding(f"reliability_{response}", title, heads, rows, note)]
 
 
 def agreement_findings(
@@ -114,10 +124,10 @@ def agreement_findings(
         ends = icc.value, icc.low, icc.high, icc.error, icc.detectable_change
         rows.append((form, *ends, icc.subjects, len(raters)))
     if rows:
-        columns = ("form", "ICC", "95 % low", "95 % high", "SEM", "MDC95", "samples", f"{by}s")
+        heads = ("form", "ICC", "95 % low", "95 % high", "SEM", "MDC95", "samples", f"{by}s")
         title = f"Agreement of {name} over each {by}: intraclass correlation"
         note = f"Of the means of each sample by {by}. A: absolute agreement; C: consistency."
-        findings.append(finding(f"icc_{by}", title, columns, rows, note))
+        findings.append(finding(f"icc_{by}", title, heads, rows, note))
     if len(raters) > 2:
         return findings
     first, second, samples = [], [], []
@@ -131,7 +141,7 @@ def agreement_findings(
         limits = statistics.bland_altman(first, second, samples)
     except DataError:
         return findings
-    columns = ("", name, "95 % low", "95 % high")
+    heads = ("", name, "95 % low", "95 % high")
     rows = [
         ("bias", limits.bias, *limits.bias_interval),
         ("lower limit of agreement", limits.lower, *limits.lower_interval),
@@ -149,7 +159,7 @@ def agreement_findings(
         if limits.slope_p < 0.05
         else ()
     )
-    return [*findings, finding(f"bland_altman_{by}", title, columns, rows, note, caution)]
+    return [*findings, finding(f"bland_altman_{by}", title, heads, rows, note, caution)]
 
 
 def equivalence_findings(
@@ -179,9 +189,10 @@ def equivalence_findings(
             rows, statistics.corrected_p([float(row[7] or 0.0) for row in rows]), strict=True
         ):
             row[7] = p
-        columns = (
-            "first", "second", "difference", "90 % low", "90 % high", "p (lower by the margin)",
-            "p (higher by the margin)", "p equivalent (Holm)", "single verdict",
+        tests = ("p (lower by the margin)", "p (higher by the margin)", "p equivalent (Holm)")
+        heads = (
+            "first", "second", "difference", "90 % low", "90 % high",
+            *(Column(test, Role.CHANCE) for test in tests), "single verdict",
         )  # fmt: skip
         title = f"Equivalence of {quantity_name(response)} by {factor} within {margin:g}"
         note = (
@@ -190,7 +201,7 @@ def equivalence_findings(
             "data are seen."
         )
         name = f"equivalence_{response}_{factor}".replace(" ", "_")
-        findings.append(finding(name, title, columns, list(map(tuple, rows)), note))
+        findings.append(finding(name, title, heads, rows, note))
     return findings
 
 
@@ -235,11 +246,10 @@ def rank_findings(
     if not rows:
         return []
     title = f"Rank tests of {quantity_name(response)}: the scatter is not normal"
-    columns = (
-        "factor", "test", "statistic", "p", "p by", "persons", "p of normality (Shapiro-Wilk)",
-    )  # fmt: skip
+    normality = Column("p of normality (Shapiro-Wilk)", Role.CHANCE)
+    heads = ("factor", "test", "statistic", P_VALUE, "p by", "persons", normality)
     note = "Read beside the tests above, which assume a normal scatter of persons' means."
-    return [finding(f"ranks_{response}", title, columns, rows, note), *found]
+    return [finding(f"ranks_{response}", title, heads, rows, note), *found]
 
 
 _HOW = {"exact": "all orders", "drawn": "100 000 random orders", "large sample": "large samples"}
@@ -249,11 +259,11 @@ def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) 
     marks = statistics.letters(pairs)
     listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
     title = f"Pairs of {quantity_name(response)} by {factor}: rank tests"
-    columns = ("first", "second", "median difference", "p (Holm)")
+    heads = ("first", "second", "median difference", HOLM_P)
     note = f"Levels that share a letter do not differ at 0.05: {listed}."
     rows = [(one.first, one.second, one.difference, one.p) for one in pairs]
     name = f"rank_pairs_{response}_{factor}".replace(" ", "_")
-    return finding(name, title, columns, rows, note)
+    return finding(name, title, heads, rows, note)
 
 
 def share_findings(files: Sequence[FileResult], key: str, person: str) -> list[Finding]:
@@ -276,25 +286,22 @@ def share_findings(files: Sequence[FileResult], key: str, person: str) -> list[F
     p = statistics.corrected_p([float(row[-2] or 0.0) for row in rows])
     for row, held in zip(rows, p, strict=True):
         row[-1] = held
-    columns = (
-        "first", "second", "share of first", "share of second", "difference", "95 % low",
-        "95 % high", "p", "p (Holm)",
-    )  # fmt: skip
+    shares = ("share of first", "share of second", "difference", "95 % low", "95 % high")
+    heads = ("first", "second", *plain_columns(*shares, decimals=3), P_VALUE, HOLM_P)
     note = (
         "Score intervals (Miettinen and Nurminen). Persons who repeat count as many trials as have "
         "the variance between persons."
     )
     title = f"Shares of slips by {key}: differences of two"
-    decimals: dict[str, int] = dict.fromkeys(columns[2:7], 3)
     name = f"shares_{key}".replace(" ", "_")
-    return [finding(name, title, columns, list(map(tuple, rows)), note, decimals=decimals)]
+    return [finding(name, title, heads, rows, note)]
 
 
 def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     """Return the p of all factors over several outcomes with Holm's and Benjamini-Hochberg's."""
     named = []
     for one in findings:
-        at = one.table.columns.index("p") if one.outcome else 0
+        at = one.table.heads.index(P_VALUE) if one.outcome else 0
         rows = one.table.rows if one.outcome else ()
         named += [(one.outcome, row[0], row[at]) for row in rows if row[at] is not None]
     if len({outcome for outcome, *_ in named}) < 2:
@@ -302,10 +309,10 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     p = [float(value) for *_, value in named if isinstance(value, float)]
     both = statistics.corrected_p(p), statistics.corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
-    columns = ("outcome", "term", "p", "p (Holm)", "p (Benjamini-Hochberg)")
+    heads = ("outcome", "term", P_VALUE, HOLM_P, Column("p (Benjamini-Hochberg)", Role.CHANCE))
     note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
     title = "Several outcomes: p corrected for their number"
-    return [finding("multiplicity", title, columns, rows, note)]
+    return [finding("multiplicity", title, heads, rows, note)]
 
 
 def prediction_finding(
@@ -334,8 +341,8 @@ def prediction_finding(
     worse = ("the prediction is no better than the share of slips alone",)
     caution = worse if told.brier >= told.constant else ()
     title = f"Prediction of slips from {quantity_name(name)}"
-    columns = ("", "value", "95 % low", "95 % high")
-    return finding(f"prediction_{name}", title, columns, rows, note, caution, decimals=_THREE)
+    heads = ("", *plain_columns("value", "95 % low", "95 % high", decimals=3))
+    return finding(f"prediction_{name}", title, heads, rows, note, caution)
 
 
 def curve_findings(
@@ -382,17 +389,16 @@ def curve_findings(
             continue
         for row, p in zip(rows, statistics.corrected_p(wholes), strict=True):
             row[-2] = p
-        columns = (
-            "first", "second", "persons", "t beyond chance", "differs at (stance)",
-            "p of the curve", "p (Holm)", "left out: no scatter at",
+        heads = (
+            "first", "second", "persons", Column("t beyond chance", decimals=2),
+            "differs at (stance)", Column("p of the curve", Role.CHANCE), HOLM_P,
+            "left out: no scatter at",
         )  # fmt: skip
         title = f"Shear / normal force over stance by {factor}: paired curves (SPM)"
         note = (
             "Paired t of persons' mean curves at each instant; one threshold for the whole curve "
             "(random field theory, two-sided, 5 %). p of the curve is that of its highest peak."
         )
-        decimals = {"t beyond chance": 2}
         key = f"curves_{factor}".replace(" ", "_")
-        table = list(map(tuple, rows))
-        findings.append(finding(key, title, columns, table, note, decimals=decimals))
+        findings.append(finding(key, title, heads, rows, note))
     return findings

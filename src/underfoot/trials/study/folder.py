@@ -17,8 +17,8 @@ from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FILE as CALIBRATION
 from ..recording.tester_calibration import read_calibration
 from ..recording.trial import Edit, Trial, file_checksum, joined
+from ..walking.body_weight import body_mass
 from ..walking.events import EditError
-from ..walking.walkway import body_mass
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
 from .edit_table import edits_of
 from .file_result import REFUSED, Draft, FileResult
@@ -29,7 +29,7 @@ from .study import Study, study_of
 from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
 from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "6"  # raised when what a file gives changes, so that stored results are made again
+_CODE = "7"  # raised when what a file gives changes, so that stored results are made again
 _OTHER_MASS = 0.1  # relative; shoes and clothes weigh less
 _DIED = "the process that analysed it ended without an answer"
 
@@ -186,7 +186,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     try:
         kept = json.loads(path.read_text(encoding="utf-8"))
         return [FileResult.from_dict(one) for one in kept]
-    except (OSError, ValueError, TypeError):
+    except (OSError, ValueError, TypeError, KeyError):
         pass
     results = _analysed(checksums[0], *job[:6])
     store.mkdir(parents=True, exist_ok=True)

@@ -76,10 +76,10 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
             else "; body weight in standing is their normal force over the cosine of the angle."
         )
     speeds = [
-        step["belt_speed"]
+        step.belt_speed
         for one in files
         for step in one.steps
-        if step.get("belt_speed") is not None and step["rcof"] is not None
+        if step.belt_speed is not None and step.rcof is not None
     ]
     if speeds:
         text += (
@@ -96,9 +96,9 @@ def _selection(files: Sequence[FileResult]) -> list[str]:
     steps = [step for one in files for step in one.steps]
     if not steps:
         return []
-    counts = Counter(str(step["verdict"]) for step in steps)
+    counts = Counter(step.verdict for step in steps)
     reasons = Counter(
-        step["kind_of_reason"] for step in steps if step["verdict"] == "rejected" and step["reason"]
+        step.kind_of_reason for step in steps if step.verdict == "rejected" and step.reason
     )
     used = counts["accepted"] + counts["caution"]
     text = (
@@ -108,7 +108,7 @@ def _selection(files: Sequence[FileResult]) -> list[str]:
     if reasons:
         listed = "; ".join(f"{reason} ({n})" for reason, n in reasons.most_common())
         text += f" and {len(steps) - used} rejected: {listed}"
-    by_hand = sum(bool(step.get("by_hand")) for step in steps)
+    by_hand = sum(bool(step.by_hand) for step in steps)
     if by_hand:
         text += f". {by_hand} were changed by hand, see the log of edits"
     return [text + "."]
@@ -175,9 +175,9 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}  # file and conventions, by name
     for one in files:
         for m in one.measurements:
-            known = m["value"] is not None and m["name"] in _TOLD and m["item"] != MEAN_OF_STEPS
-            if known and m["conventions"]:
-                numbers.setdefault(m["name"], []).append((one.file, m["conventions"]))
+            known = m.value is not None and m.name in _TOLD and m.item != MEAN_OF_STEPS
+            if known and m.conventions:
+                numbers.setdefault(m.name, []).append((one.file, m.conventions))
     sentences: list[str] = []
     for name, made in numbers.items():
         if _TOLD_BY.get(name) in numbers:

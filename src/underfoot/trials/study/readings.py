@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ from .conditions import (
     one_spelling,
     table_columns,
 )
-from .file_result import Draft, FileResult, refer_to
+from .file_result import Draft, FileResult, Sample, refer_to
 from .floor_classes import class_scheme
 
 NOTED = {
@@ -170,11 +170,11 @@ def reading_results(
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
         check_surfaces = "; ".join(c.description for c in used) or "none in the table"
+        kinds = [runs[i] for i in members]
+        _one_sample(draft, values[members], kinds, quantity, protocol, check_surfaces)
         if boards is not None:
-            draft.curves["boards"] = boards.read.get(conditions.get("operator", ""), [])
-        _one_sample(
-            draft, values[members], [runs[i] for i in members], quantity, protocol, check_surfaces
-        )
+            on_boards = boards.read.get(conditions.get("operator", ""), ())
+            draft.sample = replace(draft.sample, boards=on_boards)
         results.append(draft.finished(protocol))
     return results
 
@@ -205,7 +205,7 @@ class _Boards:
     """Rows of calibration boards; by operator (standard angle, angle read, its u), degrees."""
 
     rows: frozenset[int]
-    read: Mapping[str, list[list[float]]]
+    read: Mapping[str, tuple[tuple[float, ...], ...]]
 
 
 def _boards(
@@ -228,14 +228,14 @@ def _boards(
         of_one = own.setdefault(texts["operator"][i], {})
         of_one.setdefault(float(standards[i]), []).append(float(values[i]))
     read = {
-        operator: [
-            [
+        operator: tuple(
+            (
                 standard,
                 float(np.mean(angles)),
                 float(np.std(angles, ddof=1) / np.sqrt(len(angles))) if len(angles) > 1 else 0.0,
-            ]
+            )
             for standard, angles in sorted(angles_of.items())
-        ]
+        )
         for operator, angles_of in own.items()
     }
     return _Boards(frozenset(rows), read)
@@ -296,7 +296,7 @@ def _one_sample(
     drop = 0 if first.any() else int(protocol.number("conditioning", "1", 0.0))
     # A report prints the readings that count; a record sheet has those of conditioning too.
     readings = counted[-last:] if last and len(counted) > last else counted
-    draft.facts["repeats"] = float(len(readings))
+    draft.note(len(readings), "1", fact="repeats")
     if not len(readings):
         draft.refusals.append("no reading is left after zero and conditioning runs")
         return
@@ -365,8 +365,7 @@ def _one_sample(
         if scheme.quantity != quantity:
             draft.cautions.append(f"{scheme.title} is about {scheme.quantity}, not {quantity}")
         else:
-            draft.curves["class"] = scheme.class_of(value)
-            draft.curves["scheme"] = scheme.name
+            draft.sample = Sample(scheme=scheme.name)
             if scheme.class_of(middle) != scheme.class_of(value):
                 words = (
                     f"{scheme.class_of(middle)} by the median, {scheme.class_of(value)} by the mean"
@@ -375,7 +374,7 @@ def _one_sample(
     unit = "deg" if quantity == "angle" else "1"
     about = (len(readings), tuple(flags), conventions, spread)
     draft.add("sample", Measurement(quantity, value, unit, *scatter, *about), main=quantity)
-    draft.curves["readings"] = [float(v) for v in readings - offset]
+    draft.sample = replace(draft.sample, readings=tuple((readings - offset).tolist()))
 
 
 def _check_numbers(

@@ -20,7 +20,7 @@ from ..machines.tester_checks import log_kind, scan_flags, slide_flags
 from ..readers import Profile
 from ..recording.axes import Ramp, axes_of
 from ..recording.measurement import MEAN_OF_STEPS, Measurement, mean_of
-from ..recording.protocols import KINDS, Protocol
+from ..recording.protocols import KINDS, QUANTITIES, Protocol
 from ..recording.signals import LowPass
 from ..recording.trial import Trial
 from ..walking.events import Stance, no_contact_reason, stances
@@ -29,8 +29,8 @@ from ..walking.gait_context import gait_context, slip_course, stance_curves
 from ..walking.plausibility import unseen
 from ..walking.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..walking.walkway import Walkway, walkway_of
-from .edit_table import EDIT_COLUMNS, edit_log
-from .file_result import Draft, rates, refer_to
+from .edit_table import edit_log
+from .file_result import Draft, LoggedEdit, StepResult, rates, refer_to
 from .person_measures import person_measures
 
 
@@ -46,8 +46,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         return
     for edit in trial.edits:
         draft.refusals.append(Remark("excluded by hand", edit.why))
-        excluded = (draft.file, edit.what, "used", "excluded", "", None, None, edit.why)
-        draft.edits.append(dict(zip(EDIT_COLUMNS, excluded, strict=True)))
+        draft.edits.append(LoggedEdit(draft.file, edit.what, "used", "excluded", edit.why))
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
@@ -80,7 +79,8 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         draft.refusals.append(Remark("no COF", cof.reason))
     draft.add("slide", cof, main="cof")
     refer_to(record, draft)
-    draft.facts.update(slide.facts)
+    for fact, value in slide.facts.items():
+        draft.note(value, QUANTITIES[fact], fact=fact)
     series = {key: getattr(slide, key) for key in ("time", "normal", "shear", "ratio")}
     draft.curve("slide", **series, begin=slide.window[0], end=slide.window[1])
     if not profile.sensors or not trial.markers:
@@ -112,13 +112,13 @@ def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     speed = draft.conditions.get("speed")
     point = friction_point(trial, speed=speed if isinstance(speed, float) else None)
     draft.add(trial.name, point.cof, main="cof")
-    draft.facts["duration"] = float(point.time[-1] - point.time[0])
+    draft.note(point.time[-1] - point.time[0], "s", fact="duration")
     if point.normal is not None:
-        draft.facts["normal_force"] = point.normal
+        draft.note(point.normal, "N", fact="normal_force")
     if point.shear is not None:
-        draft.main["friction_force"] = point.shear
+        draft.note(point.shear, "N", main="friction_force")
     if point.speed is not None:
-        draft.facts["sliding_speed"] = draft.main["speed"] = point.speed
+        draft.note(point.speed, "m/s", main="speed", fact="sliding_speed")
     begin, end = point.window
     cof = point.cof.value or np.nan
     draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
@@ -137,8 +137,8 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
         draft.add("test", getattr(found, name), main=name)
     for measurement in _moduli(found, thickness, draft.conditions.get("area"), trial.name):
         draft.add("test", measurement, main=measurement.name)
-    draft.facts["hold_time"] = found.hold_time
-    draft.facts["compression"] = found.peak_displacement / (2.0 * thickness)
+    draft.note(found.hold_time, "s", fact="hold_time")
+    draft.note(found.peak_displacement / (2.0 * thickness), "1", fact="compression")
     time, force = found.hold
     log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
     draft.curve("hold", time=time[log], force=force[log], final=found.final_force.value or 0.0)
@@ -285,12 +285,12 @@ class _Walk:
             raise DataError(no_contact_reason(way), where=self.trial.name)
         rates(self.trial, draft)
         draft.cautions += [flag.message for flag in unseen(way)]
-        draft.curves["person"] = person_measures(self.trial, self.stances, self.axes)
+        draft.body = person_measures(self.trial, self.stances, self.axes)
 
 
 def _gait(walk: _Walk) -> None:
     if not _required(walk, walk.stances):
-        reasons = dict.fromkeys(step["reason"] for step in walk.draft.steps if step["reason"])
+        reasons = dict.fromkeys(step.reason for step in walk.draft.steps if step.reason)
         why = "; ".join(reasons or ["no peak found"])
         walk.draft.refusals.append(Remark("no clean step", why))
 
@@ -313,7 +313,7 @@ def _human_slip(walk: _Walk) -> None:
     for stance in on_plate:
         if stance not in usable[:1]:
             reason = stance.reason or "a later contact with the slippery plate"
-            draft.steps.append(_step_entry(walk, stance, reason=reason))
+            draft.steps.append(_step(walk, stance, reason=reason))
     if not usable:
         draft.refusals.append(on_plate[0].reason)
         return
@@ -338,8 +338,8 @@ def _human_slip(walk: _Walk) -> None:
         _sensors(walk, slip, stance.walking)
     acof = draft.conditions.get("acof")
     if isinstance(acof, float) and "rcof" in draft.main:
-        draft.main["acof"] = acof
-        draft.main["acof_minus_rcof"] = acof - draft.main["rcof"]
+        draft.note(acof, "1", main="acof")
+        draft.note(acof - draft.main["rcof"], "1", main="acof_minus_rcof")
 
 
 def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits) -> None:
@@ -354,23 +354,23 @@ def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits
     if slip.slipped is None:
         draft.refusals.append(slip.peak_speed.reason)
     else:
-        draft.main["slip"] = float(slip.slipped)
-    draft.steps.append(
-        {
-            **_step_entry(walk, stance),
-            "item": item,
-            "verdict": "not estimated" if slip.slipped is None else "accepted",
-            "peak_slipping_speed": slip.peak_speed.value,
-            "slip_start": slip.start.value,
-            "slip_distance": slip.distance.value,
-            "slipped": slip.slipped,
-            "outcome": None if slip.outcome is None else str(slip.outcome),
-            "slip_direction": slip.way,
-            "recovery_or_fall": course.body,
-            "recovery_or_fall_reason": course.body_reason,
-            **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
-        }
+        draft.note(slip.slipped, "1", main="slip")
+    step = replace(
+        _step(walk, stance),
+        item=item,
+        verdict="not estimated" if slip.slipped is None else "accepted",
+        judged_for_slip=True,
+        peak_slipping_speed=slip.peak_speed.value,
+        slip_start=slip.start.value,
+        slip_distance=slip.distance.value,
+        slipped=slip.slipped,
+        outcome=None if slip.outcome is None else str(slip.outcome),
+        slip_direction=slip.way,
+        recovery_or_fall=course.body,
+        recovery_or_fall_reason=course.body_reason,
+        **{key: getattr(course, key) for key in ("toe_slip", "trailing_slip", "misstep")},
     )
+    draft.steps.append(step)
 
 
 def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
@@ -381,7 +381,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
         draft.cautions.append(Remark("pressures", error.what))
         return
     draft.add("sensor array", reading.peak, main="peak_pressure")
-    draft.main["crossed_array"] = float(reading.crossed)
+    draft.note(float(reading.crossed), "1", main="crossed_array")
     across = np.cross(up, walking)
     places = {n: (float(np.dot(p, walking)), float(np.dot(p, across))) for n, p in sensors.items()}
     middle = np.mean([[min(c), max(c)] for c in zip(*places.values(), strict=True)], axis=1)
@@ -408,7 +408,8 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
                 draft.curve("sensor_rows", sensor=name, **facts)
     if pulses:
         quiet = trial.channel(next(iter(reading.pulses)))
-        draft.facts["baseline_samples"] = float(np.sum(quiet.time < slip.contact - 0.05))
+        before = float(np.sum(quiet.time < slip.contact - 0.05))
+        draft.note(before, "1", fact="baseline_samples")
         track = reading.track if len(reading.track) else np.full((1, 2), np.nan)
         draft.curve("track", along=track[:, 0], across=track[:, 1], pulses=pulses)
 
@@ -422,7 +423,7 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
     for step in steps:
         stance, rcof = step.stance, step.measurement
         draft.add(stance.label, rcof)
-        draft.steps.append(_step_entry(walk, stance, step))
+        draft.steps.append(_step(walk, stance, step))
         if rcof.value is None:
             _ratio_curve(walk, stance, "rejected")
             continue
@@ -436,11 +437,13 @@ def _required(walk: _Walk, chosen: list[Stance]) -> list[Measurement]:
             "gate": step.gate_time - stance.contact,
             "peak_time": step.peak_time - stance.contact, "peak": rcof.value,
         }  # fmt: skip
-        draft.curve("steps", step=stance.label, **series, verdict=step.verdict)
+        named = {"step": stance.label, "number": stance.number}
+        draft.curve("steps", **named, **series, verdict=step.verdict)
         curves = stance_curves(walk.way, stance, step.ratio, definition.filter)
         draft.curve("normalised", step=stance.label, **curves)
-    draft.facts["steps"] = float(len(values))
-    draft.facts["steps_with_caution"] = float(sum(bool(own.caution_flags) for own in values))
+    draft.note(len(values), "1", fact="steps")
+    cautious = sum(bool(rcof.caution_flags) for rcof in values)
+    draft.note(cautious, "1", fact="steps_with_caution")
     if values:
         draft.add(MEAN_OF_STEPS, mean_of(values), main="rcof")
     return values
@@ -454,26 +457,26 @@ def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     time, ratio = np.arange(len(force)) / plate.rate, shear / np.maximum(normal, 1.0)
-    words = {"step": stance.label, "reason": stance.reason}
-    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **words)
+    named = {"step": stance.label, "number": stance.number, "reason": stance.reason}
+    walk.draft.curve(kind, time=time, normal=normal, ratio=ratio, **named)
 
 
-def _step_entry(
-    walk: _Walk, stance: Stance, step: RequiredFriction | None = None, *, reason: str = ""
-) -> dict[str, Any]:
-    rcof = None if step is None else step.measurement
+def _step(
+    walk: _Walk, stance: Stance, friction: RequiredFriction | None = None, *, reason: str = ""
+) -> StepResult:
+    rcof = None if friction is None else friction.measurement
     why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else "")
-    return {
-        **{key: getattr(stance, key) for key in ("number", "plate", "side", "contact", "toe_off")},
-        "item": stance.label,
-        "stance_time": stance.duration,
-        "peak_force": stance.peak,
-        "rcof": None if rcof is None else rcof.value,
-        "rcof_uncertainty": None if rcof is None else rcof.uncertainty,
-        "verdict": "rejected" if step is None else step.verdict,
-        "reason": why,
-        "kind_of_reason": "; ".join(subjects(remarks([why]))),
-        "cautions": [] if rcof is None else [flag.message for flag in rcof.caution_flags],
-        "by_hand": list(stance.by_hand),
+    shared = ("number", "plate", "side", "contact", "toe_off", "by_hand")
+    return StepResult(
+        **{key: getattr(stance, key) for key in shared},
+        item=stance.label,
+        stance_time=stance.duration,
+        peak_force=stance.peak,
+        rcof=None if rcof is None else rcof.value,
+        rcof_uncertainty=None if rcof is None else rcof.uncertainty,
+        verdict="rejected" if friction is None else friction.verdict,
+        reason=why,
+        kind_of_reason="; ".join(subjects(remarks([why]))),
+        cautions=() if rcof is None else rcof.cautions(),
         **asdict(gait_context(walk.way, stance, walk.stances)),
-    }
+    )

@@ -22,7 +22,16 @@ from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
 from .readings import NOTED, board_correction
 from .study_tests import columns_of, comparison_findings, persons_of, slip_findings, varying
-from .tables import Finding, Table, condition_table, quantity_name
+from .tables import (
+    Column,
+    Finding,
+    Role,
+    Table,
+    condition_columns,
+    condition_table,
+    plain_columns,
+    quantity_name,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,11 +92,12 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             keep = parameter.value is not None and parameter.identified
             parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
-        (name, "95 % low", "95 % high", "remark")
+        (name, "95 % low", "95 % high", Column("remark", Role.LONG))
         for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
     )
-    columns = (
-        *keys, "n", "R^2", "verdict", *(name for four in intervals for name in four),
+    heads = (
+        *condition_columns(keys), "n", "R^2", "verdict",
+        *(head for four in intervals for head in four),
         "COF_BL by Nelder-Mead", "tau by Nelder-Mead", "asymptote by Nelder-Mead",
     )  # fmt: skip
     title = "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17"
@@ -96,7 +106,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         "Intervals are profile likelihoods; a dash means that the profile does not close.",
         "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
     )
-    made = [Table("stribeck", title, columns, tuple(rows), explained)]
+    made = [Table.of("stribeck", title, heads, rows, *explained)]
     findings: list[Finding] = []
     compared = protocol.texts("compare") or keys[:1]
     for name, values in parameters.items():
@@ -122,10 +132,10 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
                 "grid": curve.product.tolist(), "fitted": curve.fitted.tolist(), **numbers,
             }  # fmt: skip
             title = "One curve of COF against viscosity times speed"
-            columns = ("R^2", "residual sd", "points")
-            notes_of = ("Isotonic regression: nothing is assumed but the fall.",)
+            heads = ("R^2", "residual sd", "points")
+            note = "Isotonic regression: nothing is assumed but the fall."
             row = (*numbers.values(), len(cof))
-            made.append(Table("master_curve", title, columns, (row,), notes_of))
+            made.append(Table.of("master_curve", title, heads, [row], note))
         except UnderfootError as error:
             notes.append(f"no master curve: {error.what}")
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
@@ -177,23 +187,22 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             dry_adhesions.append(split.adhesion.value or 0.0)
             wet.append(m.value or 0.0)
     title = "Adhesion and hysteresis, Eq. 22 to 25"
-    columns = (*keys, "part", "force (N)", "standard error (N)", "n", "flags")
+    flags = Column("flags", Role.LONG)
+    heads = (*condition_columns(keys), "part", "force (N)", "standard error (N)", "n", flags)
     note = f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked."
-    made = [Table("friction_split", title, columns, tuple(rows), (note,))]
+    made = [Table.of("friction_split", title, heads, rows, note)]
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
     try:
         fit = alpha_beta(fluids, dry_adhesions, wet)
-        columns = ("fluid", "alpha (N)", "SE", "beta", "SE", "n")
-        lines = tuple(
-            (r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids
-        )
+        heads = ("fluid", "alpha (N)", "SE", "beta", "SE", "n")
+        lines = [(r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids]
         note = (
             f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
             f"mean absolute residual {fit.mean_absolute_residual:.3g} N."
         )
         title = "Adhesion a fluid leaves, Eq. 26"
-        made.append(Table("alpha_beta", title, columns, lines, (note,)))
+        made.append(Table.of("alpha_beta", title, heads, lines, note))
         findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]
         drawn = [(r.fluid, r.alpha, r.beta) for r in fit.fluids]
         curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
@@ -218,9 +227,9 @@ def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, st
         low, high = min(mean, key=mean.__getitem__), max(mean, key=mean.__getitem__)
         rows.append((sole, mean[low], low, mean[high], high, mean[high] - mean[low]))
     title = "Range of adhesion over the fluids: a small one is a polymer that no fluid blocks more"
-    columns = (key, "lowest (N)", "under", "highest (N)", "under", "range (N)")
+    heads = (*condition_columns([key]), "lowest (N)", "under", "highest (N)", "under", "range (N)")
     note = "The report: polyurethane 0.89 N, soft rubber 3.88 N, hard rubber 4.61 N."
-    return Table("fluid_range", title, columns, tuple(rows), (note,))
+    return Table.of("fluid_range", title, heads, rows, note)
 
 
 def _crossed_findings(
@@ -274,14 +283,14 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         )  # fmt: skip
     made = [condition_table(files, keys, ("cof",), person=_sample(files))]
     if rows:
-        columns = (
+        heads = (
             "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
             "peak from heel's back (mm)", "peak left of middle (mm)", "share of outer scans (%)",
-            "change at double spacing (%)", "flags", "sensor inlet",
+            "change at double spacing (%)", Column("flags", Role.LONG), "sensor inlet",
         )  # fmt: skip
         note = "The load is what the scans cover; pressure beyond them is not in it."
         title = "Load carried by the fluid, Eq. 27"
-        made.append(Table("maps", title, columns, tuple(rows), (note,)))
+        made.append(Table.of("maps", title, heads, rows, note))
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
     values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
     findings = comparison_findings("cof", values, columns_of(labelled, keys), margin=margin)
@@ -363,9 +372,9 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
          sum(map(tables.counted_steps, own)))
         for key, own in tables.in_order(dict(sorted(groups.items()))).items()
     )  # fmt: skip
-    columns = (person, *factors, "RCOF", "trials", "steps")
+    heads = (*condition_columns([person, *factors]), Column("RCOF", decimals=4), "trials", "steps")
     note = "Mean of the trials' means; these are the values that the tests compare."
-    return Table("persons", "Persons", columns, rows, (note,), {"RCOF": 4})
+    return Table.of("persons", "Persons", heads, rows, note)
 
 
 MODULI = tuple(
@@ -392,25 +401,24 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
     for f in files:
         m = f.measurements[0]
         low = high = None
-        if m["spread"] is not None:
-            _, _, low, high = tables.mean_and_interval(f.curves["readings"], quantity)
+        if m.spread is not None:
+            _, _, low, high = tables.mean_and_interval(f.sample.readings, quantity)
         cells: list[Any] = [f.file, *(f.conditions.get(k) for k in keys)]
-        cells += [m["n"], m["value"], m["spread"], low, high, m["uncertainty"]]
+        cells += [m.n, m.value, m.spread, low, high, m.uncertainty]
         if quantity == "ptv":
-            cof, error = cof_of_pendulum(float(m["value"]), float(m["uncertainty"] or 0.0))
+            cof, error = cof_of_pendulum(f.main["ptv"], m.uncertainty or 0.0)
             cells += cof, error or None
-        if "scheme" in f.curves and not (quantity == "angle" and "operator" in keys):
-            scheme = schemes.setdefault(f.curves["scheme"], class_scheme(f.curves["scheme"]))
-            cells += _classes(scheme, m)
+        name = f.sample.scheme
+        if name and not (quantity == "angle" and "operator" in keys):
+            scheme = schemes.setdefault(name, class_scheme(name))
+            cells += _classes(scheme, f.main[quantity], m.uncertainty)
         rows.append(tuple(cells))
-    numbers = [*tables.number_columns(quantity), "u"]
-    columns = ["file", *keys, "readings", *numbers]
-    columns += ["COF from PTV", "u of COF"] if quantity == "ptv" else []
     notes = [
         "SD and 95 % interval (t, on the logarithm): repeatability of one sample; u: standard "
         "uncertainty, with the calibration where it is known."
     ]
-    untold = [f.measurements[0]["n"] for f in files if f.measurements[0]["spread"] is None]
+    samples = [f.measurements[0] for f in files]
+    untold = [m.n for m in samples if m.spread is None]
     if any(n < 2 for n in untold):
         notes.append("Of a single reading SD, interval and u are not estimated: it has no scatter.")
     if any(n > 1 for n in untold):
@@ -418,13 +426,13 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
             "Of equal readings SD, interval and u are not resolved: they scatter by less than the "
             "resolution of a reading."
         )
-    columns += ["class", "2 u reaches"] if schemes else []
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
-    spreads = [f.measurements[0]["uncertainty"] for f in files]
-    places = max((tables.decimals_of(u) for u in spreads if u), default=2)
-    decimals = {**dict.fromkeys(numbers, places), "COF from PTV": 3, "u of COF": 3}
-    title = f"Samples, {quantity_name(quantity)}"
-    made = [Table("samples", title, tuple(columns), tuple(rows), tuple(notes), decimals)]
+    places = max((tables.decimals_of(m.uncertainty) for m in samples if m.uncertainty), default=2)
+    numbers = (*tables.number_columns(quantity, places), Column("u", decimals=places))
+    heads: list[Column | str] = ["file", *condition_columns(keys), "readings", *numbers]
+    heads += plain_columns("COF from PTV", "u of COF", decimals=3) if quantity == "ptv" else ()
+    heads += ("class", "2 u reaches") if schemes else ()
+    made = [Table.of("samples", f"Samples, {quantity_name(quantity)}", heads, rows, *notes)]
     if quantity == "angle":
         made += _walkers(files, keys, places, protocol.number("board_share", "1", 1.0))
     made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
@@ -438,19 +446,19 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
 
 def _readings_by(
     files: Sequence[FileResult], by: str, keys: tuple[str, ...]
-) -> dict[tuple[str, ...], dict[str, list[float]]]:
+) -> dict[tuple[str, ...], dict[str, Sequence[float]]]:
     """Return readings by the other conditions, and by laboratory, operator or machine."""
-    groups: dict[tuple[str, ...], dict[str, list[float]]] = {}
+    groups: dict[tuple[str, ...], dict[str, Sequence[float]]] = {}
     for f in files:
         if by in f.conditions:
             level = tuple(str(f.conditions.get(k, "")) for k in keys if k != by)
-            groups.setdefault(level, {})[str(f.conditions[by])] = f.curves["readings"]
+            groups.setdefault(level, {})[str(f.conditions[by])] = f.sample.readings
     return groups
 
 
-def _classes(scheme: ClassScheme, m: Mapping[str, Any]) -> tuple[str, str | None]:
-    """Return the class of a number and the others that twice its uncertainty reaches."""
-    value, wide = float(m["value"]), 2.0 * float(m["uncertainty"] or 0.0)
+def _classes(scheme: ClassScheme, value: float, u: float | None) -> tuple[str, str | None]:
+    """Return the class of a value and the others that twice its uncertainty ``u`` reaches."""
+    wide = 2.0 * (u or 0.0)
     own = scheme.class_of(value)
     others = {scheme.class_of(end) for end in (value - wide, value + wide)} - {own}
     return own, ", ".join(sorted(others)) or None
@@ -463,7 +471,7 @@ def _walkers(
     others = tuple(k for k in keys if k != "operator")
     rows, corrected = [], False
     for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
-        boards = [f.curves.get("boards", ()) for f in members]
+        boards = [f.sample.boards for f in members]
         changes = [
             board_correction(f.main["angle"], own, share)
             for f, own in zip(members, boards, strict=True)
@@ -474,7 +482,7 @@ def _walkers(
         added = [change if everybody else 0.0 for change, _ in changes]
         angles = [f.main["angle"] + change for f, change in zip(members, added, strict=True)]
         mean = float(np.mean(angles))
-        inside = [f.measurements[0]["uncertainty"] or 0.0 for f in members]
+        inside = [f.measurements[0].uncertainty or 0.0 for f in members]
         inside += [error for _, error in changes if everybody]
         apart = float(np.std(angles, ddof=1)) if len(angles) > 1 else 0.0
         u = max(float(np.hypot.reduce(inside)) / len(members), apart / np.sqrt(len(angles)))
@@ -483,14 +491,15 @@ def _walkers(
             + (f" {change:+.{places}f}" if everybody else "")
             for f, change in zip(members, added, strict=True)
         )
-        scheme = members[0].curves.get("scheme")
-        number = {"value": mean, "uncertainty": u}
-        classes = _classes(class_scheme(scheme), number) if scheme else (None, None)
+        scheme = members[0].sample.scheme
+        classes = _classes(class_scheme(scheme), mean, u) if scheme else (None, None)
         few = "1 of 2" if len(members) < 2 else ""
         rows.append((*level, told, mean, u, *classes, few))
     if not rows:
         return []
-    columns = (*others, "walkers", "angle (deg)", "u", "class", "2 u reaches", "walkers measured")
+    numbers = plain_columns("angle (deg)", "u", decimals=places)
+    classes = ("class", "2 u reaches", "walkers measured")
+    heads = (*condition_columns(others), "walkers", *numbers, *classes)
     notes = (
         "The class of a sample is that of the mean angle of its walkers, two of them.",
         f"Angles are corrected by {100 * share:.0f} % of what each walker reads off on the "
@@ -498,9 +507,7 @@ def _walkers(
         if corrected
         else "Angles are as read: no calibration boards of all walkers (a column standard angle).",
     )
-    decimals = {"angle (deg)": places, "u": places}
-    title = "Samples, all walkers, angle"
-    return [Table("walkers", title, columns, tuple(rows), notes, decimals)]
+    return [Table.of("walkers", "Samples, all walkers, angle", heads, rows, *notes)]
 
 
 def _lowest(
@@ -517,21 +524,20 @@ def _lowest(
     for level, members in tables.grouped(files, others).items() if heading else ():
         values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
         low = min(members, key=lambda f: f.main[quantity])
-        m, scheme = low.measurements[0], low.curves.get("scheme")
+        scheme, u = low.sample.scheme, low.measurements[0].uncertainty
         told = "; ".join(f"{name} {value:.{places}f}" for name, value in values.items())
         lacking = f"{len(values)} of {directions}" if len(values) < directions else ""
-        numbers = (m["value"], m["uncertainty"])
-        classes = _classes(class_scheme(scheme), m) if scheme else (None, None)
+        numbers = low.main[quantity], u
+        classes = _classes(class_scheme(scheme), *numbers) if scheme else (None, None)
         rows.append((*level, told, low.conditions.get(heading), *numbers, *classes, lacking))
     if not rows:
         return []
     name = quantity_name(quantity)
-    columns = (*others, "directions", "lowest", name, "u", "class", "2 u reaches",
-               "directions measured")  # fmt: skip
+    numbers = plain_columns(name, "u", decimals=places)
+    classes = ("class", "2 u reaches", "directions measured")
+    heads = (*condition_columns(others), "directions", "lowest", *numbers, *classes)
     note = "The class of a sample is that of its lowest direction."
-    decimals = {name: places, "u": places}
-    title = f"Samples, lowest direction, {name}"
-    return [Table("lowest", title, columns, tuple(rows), (note,), decimals)]
+    return [Table.of("lowest", f"Samples, lowest direction, {name}", heads, rows, note)]
 
 
 _UNRESOLVED = (
@@ -568,9 +574,11 @@ def _precision(
         ]
     if not rows:
         return []
-    name = quantity_name(quantity)
-    columns = (*others, {"laboratory": "laboratories"}.get(by, by + "s"), "readings", name, "s_r",
-               "s_R", "r = 2.8 s_r", "R = 2.8 s_R")  # fmt: skip
+    places = max((tables.decimals_of(row[-3]) for row in rows if row[-3]), default=2)
+    spreads = ("s_r", "s_R", "r = 2.8 s_r", "R = 2.8 s_R")
+    numbers = plain_columns(quantity_name(quantity), *spreads, decimals=places)
+    things = {"laboratory": "laboratories"}.get(by, by + "s")
+    heads = (*condition_columns(others), things, "readings", *numbers)
     notes = (
         f"Repeatability s_r and reproducibility s_R over each {by} (ISO 5725-2); nothing left out.",
         *(
@@ -580,9 +588,7 @@ def _precision(
         *((_UNRESOLVED,) if any(None in row[-4:] for row in rows) else ()),
     )
     title = f"Repeatability and reproducibility by {by}"
-    places = max((tables.decimals_of(row[-3]) for row in rows if row[-3]), default=2)
-    return [Table(f"precision_{by}", title, columns, tuple(rows), notes,
-                  dict.fromkeys(columns[-5:], places))]  # fmt: skip
+    return [Table.of(f"precision_{by}", title, heads, rows, *notes)]
 
 
 def _sample(files: Sequence[FileResult]) -> str:

@@ -83,8 +83,8 @@ def guarded_files(
         if results and results[0].checksum:
             bytes_of[results[0].checksum].append(i)
         values = [v for one in results for v in one.facts.values()]
-        values += [m["value"] for one in results for m in one.measurements]
-        values += [step[key] for one in results for step in one.steps for key in _STEP]
+        values += [m.value for one in results for m in one.measurements]
+        values += [getattr(step, key) for one in results for step in one.steps for key in _STEP]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
             numbers_of[numbers].append(i)
@@ -194,8 +194,8 @@ def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
     rows = tuple(
         (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
     )
-    columns = ("doubt", "left out of means and tests", "number", "files")
-    return Table("doubts", "Read this first: doubts about the study's files", columns, rows)
+    heads = ("doubt", "left out of means and tests", "number", "files")
+    return Table.of("doubts", "Read this first: doubts about the study's files", heads, rows)
 
 
 def _noted(result: FileResult) -> dict[str, Any]:
@@ -402,7 +402,7 @@ def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doub
 def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Two persons with one body: weight, height and distances of markers agree as repeats do."""
     bodies: dict[str, list[Mapping[str, float]]] = {
-        who: [one.curves["person"] for one in own if one.curves.get("person")]
+        who: [one.body for one in own if one.body]
         for (who,), own in grouped(files, (person,)).items()
     }
     usual = {who: {name: median([b[name] for b in own if name in b]) for name in own[0]}
@@ -531,7 +531,7 @@ def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A recording that shows another body than the person's other recordings."""
     measured = {
-        who: [(one.file, one.curves["person"]) for one in own if one.curves.get("person")]
+        who: [(one.file, one.body) for one in own if one.body]
         for (who,), own in grouped(files, (person,)).items()
     }
     away: dict[tuple[str, str], dict[str, float]] = {}
@@ -594,8 +594,8 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
         for one in files:
             values: dict[str, list[float]] = defaultdict(list)
             for step in one.steps:
-                if (step.get("rcof") or 0.0) > 0.0 and step.get(key):
-                    values[step.get("plate", "")].append(float(np.log(step[key])))
+                if (step.rcof or 0.0) > 0.0 and getattr(step, key):
+                    values[step.plate].append(float(np.log(getattr(step, key))))
             for pair in combinations(sorted(values), 2):
                 ratios[pair].append(float(np.mean(values[pair[0]]) - np.mean(values[pair[1]])))
         for (first, second), logs in ratios.items():
@@ -643,7 +643,7 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Yield the checks that need a person, each once."""
-    said = [m["conventions"] for one in files for m in one.measurements]
+    said = [m.conventions for one in files for m in one.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = "no calibration record (calibration.toml): the tester's gain can't be judged"
         yield Doubt(words, ("all",))

@@ -28,7 +28,21 @@ from .field_statistics import (
 )
 from .file_result import FileResult
 from .model_scripts import model_files
-from .tables import Cell, Finding, Table, decimals_of, finding, not_done, quantity_name
+from .tables import (
+    HOLM_P,
+    P_VALUE,
+    Cell,
+    Column,
+    Finding,
+    Role,
+    Table,
+    condition_columns,
+    decimals_of,
+    finding,
+    not_done,
+    plain_columns,
+    quantity_name,
+)
 
 _Fit = TypeVar("_Fit")
 _LAST = ("date", "day", "time", "session", "visit", "order", "operator")
@@ -135,24 +149,24 @@ def _mixed(
         "after Kenward and Roger."
     )
     note += _power_note(model, factors)
-    columns = ("term", "df", "df of error", "F", "p")
+    heads = ("term", "df", "df of error", "F", P_VALUE)
     rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
     files = model_files(key, title, model, response, values, factors, persons)
-    mixed = finding(key, title, columns, rows, note, model.warnings)
+    mixed = finding(key, title, heads, rows, note, model.warnings)
     mixed = replace(mixed, files=files, outcome=name)
     try:
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
         return [mixed], model
     title = f"Repeated-measures analysis of variance of {name}, means of persons"
-    columns = (*columns, "epsilon", "p (Greenhouse-Geisser)")
+    heads = (*heads, "epsilon", Column("p (Greenhouse-Geisser)", Role.CHANCE))
     corrected = zip(repeated.rows, repeated.epsilon, repeated.p_corrected, strict=True)
     rows = [(row.term, row.df, row.error_df, row.f, row.p, *more) for row, *more in corrected]
     note = (
         "Every person has every condition. The corrected p holds also where persons' reactions to "
         "some levels differ more than to others."
     )
-    return [finding(f"repeated_{response}", title, columns, rows, note), mixed], model
+    return [finding(f"repeated_{response}", title, heads, rows, note), mixed], model
 
 
 def _power_note(model: statistics.MixedModel, factors: Mapping[str, Sequence[str]]) -> str:
@@ -202,10 +216,6 @@ def _tukey(
              *effect_cells(drawn, c.first, c.second))
             for c in comparisons
         )  # fmt: skip
-        columns = (
-            "first", "second", "difference", "SE", "95 % low", "95 % high", "p adjusted",
-            "Hedges' g", "g 95 % low", "g 95 % high",
-        )  # fmt: skip
         listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
         note = f"Levels that share a letter do not differ at 0.05: {listed}. "
         note += (
@@ -215,10 +225,13 @@ def _tukey(
             else "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
         places = decimals_of(min(c.standard_error for c in comparisons))
-        decimals: dict[str, int] = dict.fromkeys(columns[2:6], places)
-        decimals |= dict.fromkeys(columns[7:], 2)
-        chances = frozenset({"p adjusted"})
-        table = Table(name, title, columns, rows, (note,), decimals, chances=chances)
+        heads = (
+            "first", "second",
+            *plain_columns("difference", "SE", "95 % low", "95 % high", decimals=places),
+            Column("p adjusted", Role.CHANCE),
+            *plain_columns("Hedges' g", "g 95 % low", "g 95 % high", decimals=2),
+        )  # fmt: skip
+        table = Table.of(name, title, heads, rows, note)
         findings.append(
             Finding(name, title, table, (), response, factor, marks, drawn, by_person=bool(persons))
         )
@@ -327,7 +340,8 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
             f"{plain_number(exact.low)} to {plain_number(exact.high)})."
         )
     warning = statistics.independence_warning(persons_of(having, person))
-    return finding(name, title, (key, "slips", "no slips", "share"), rows, note, warning)
+    heads = (*condition_columns([key]), "slips", "no slips", "share")
+    return finding(name, title, heads, rows, note, warning)
 
 
 def _t_tests(
@@ -364,8 +378,8 @@ def _t_tests(
             for row, kind in zip(rows, kinds, strict=True)
         ]
         title = f"t tests of {levels[0]} against {levels[1]} ({key})"
-        columns = ("quantity", "test", "difference (SI)", "t", "df", "p", "p (Holm)")
-        findings.insert(0, finding(f"t_{key}", title, columns, rows))
+        heads = ("quantity", "test", "difference (SI)", "t", "df", P_VALUE, HOLM_P)
+        findings.insert(0, finding(f"t_{key}", title, heads, rows))
     return findings
 
 
@@ -406,13 +420,13 @@ def _logistic(
                 rows.append((by_person, intercept, c.estimate, c.low, c.high, c.p))
             except UnderfootError as error:
                 cautions.append(f"estimating equations: {error.what}")
-        columns = ("method", "intercept", "slope", "95 % low", "95 % high", "p")
+        heads = ("method", "intercept", "slope", "95 % low", "95 % high", P_VALUE)
         note = (
             "Intervals of the first lines are profile likelihoods, p from likelihood ratios; those "
             "by person are Kauermann and Carroll's errors with t, p from flipped signs of persons."
         )
         cautions = list(dict.fromkeys(cautions))
-        findings.append(finding(f"logistic_{name}", title, columns, rows, note, cautions))
+        findings.append(finding(f"logistic_{name}", title, heads, rows, note, cautions))
         told = prediction_finding(name, y, x, persons)
         findings += [told] if told is not None else []
         if best is not None:
@@ -442,11 +456,11 @@ def _line(files: Sequence[FileResult], curves: dict[str, Any], person: str) -> F
     except UnderfootError as error:
         return not_done("line", title, error)
     curves["line"] = {"x": x, "y": y, "slope": line.slope, "intercept": line.intercept, "r": line.r}
-    columns = ("r", "p", "slope (m/s per kPa)", "SE", "intercept (m/s)", "n")
+    heads = ("r", P_VALUE, "slope (m/s per kPa)", "SE", "intercept (m/s)", "n")
     row = (line.r, line.p, line.slope, line.slope_error, line.intercept, line.n)
     note = "Trials whose heel crossed the sensor array."
     warning = statistics.independence_warning(persons_of(having, person))
-    return finding("line", title, columns, [row], note, warning)
+    return finding("line", title, heads, [row], note, warning)
 
 
 def _subsets(files: Sequence[FileResult]) -> list[Finding]:
@@ -470,7 +484,7 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
             (" + ".join(s.predictors), label, s.adjusted_r_squared, s.r_squared, len(rows))
             for s in found
         ]
-    columns = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
+    heads = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
     note = "Sensor passages of trials with a slip; ML is the distance without its sign."
     caution = "Nine sensors of one slip are not independent: p values would be too small."
-    return [finding("subsets", title, columns, made, note, (caution,))]
+    return [finding("subsets", title, heads, made, note, (caution,))]

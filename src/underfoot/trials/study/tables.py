@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from typing import Self
 
 import numpy as np
@@ -17,37 +18,102 @@ from .file_result import FileResult
 Cell = str | float | int | None
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Rows under headings; ``notes`` stand below. ``name`` is a file name without ending.
+class Role(StrEnum):
+    """What the cells of a column are; a page shows some in a way of their own."""
 
-    ``decimals`` are those a reader should see, by column, after the uncertainty; files keep all.
-    ``spreads`` names the columns of mean, SD and both ends of the interval of each quantity,
-    ``chances`` those of p, ``answers`` those of 1 for yes and 0 for no.
+    PLAIN = "plain"
+    CONDITION = "condition"
+    """What a laboratory noted."""
+    COUNT = "count"
+    """How many persons, trials or steps a mean is of."""
+    MEAN = "mean"
+    SD = "standard deviation"
+    LOW = "low end"
+    HIGH = "high end"
+    CHANCE = "p"
+    ANSWER = "answer"
+    """1 for yes, 0 for no."""
+    LONG = "long text"
+    """Stands below its row, over the whole width of a page."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table: heading, what its cells are, and of which quantity.
+
+    ``decimals``: those that a reader should see, None for as many as the value needs; files keep
+    all. ``always``: it stands even where it is empty.
     """
 
     name: str
+    role: Role = Role.PLAIN
+    quantity: str = ""
+    decimals: int | None = None
+    always: bool = False
+
+
+P_VALUE = Column("p", Role.CHANCE)
+HOLM_P = Column("p (Holm)", Role.CHANCE)
+
+
+def plain_columns(*names: str, decimals: int | None = None) -> tuple[Column, ...]:
+    """Return plain columns that share their decimals."""
+    return tuple(Column(name, decimals=decimals) for name in names)
+
+
+def condition_columns(names: Iterable[str]) -> tuple[Column, ...]:
+    """Return the columns of conditions."""
+    return tuple(Column(name, Role.CONDITION, always=True) for name in names)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows under columns; ``notes`` stand below. ``name`` is a file name without ending."""
+
+    name: str
     title: str
-    columns: tuple[str, ...]
+    heads: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
-    decimals: Mapping[str, int] = field(default_factory=dict)
-    spreads: tuple[tuple[str, ...], ...] = ()
-    chances: frozenset[str] = frozenset()
-    answers: frozenset[str] = frozenset()
 
-    def filled(self, always: Collection[str] = ()) -> list[int]:
-        """Return the numbers of the columns with content, and of those named in ``always``."""
-        return [
-            i
-            for i, name in enumerate(self.columns)
-            if name in always or any(row[i] not in (None, "") for row in self.rows)
-        ]
+    @classmethod
+    def of(
+        cls,
+        name: str,
+        title: str,
+        heads: Iterable[Column | str],
+        rows: Iterable[Iterable[Cell]],
+        *notes: str,
+    ) -> Self:
+        """Return the table; a heading alone stands for a plain column."""
+        columns = (head if isinstance(head, Column) else Column(head) for head in heads)
+        return cls(name, title, tuple(columns), tuple(map(tuple, rows)), notes)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Headings; a condition that is called like another column says that it is a condition."""
+        others = {head.name for head in self.heads if head.role is not Role.CONDITION}
+        return tuple(
+            f"{head.name} (condition)"
+            if head.role is Role.CONDITION and head.name in others
+            else head.name
+            for head in self.heads
+        )
+
+    def filled(self) -> list[int]:
+        """Return the numbers of the columns with content."""
+        cells = range(len(self.heads))
+        return [i for i in cells if any(row[i] not in (None, "") for row in self.rows)]
+
+    def without_empty(self) -> Self:
+        """Return the table without the columns that have no content and need not stand."""
+        filled = self.filled()
+        return self.only([i for i, h in enumerate(self.heads) if h.always or i in filled])
 
     def only(self, keep: Collection[int]) -> Self:
         """Return the table with the columns of these numbers alone."""
         rows = tuple(tuple(row[i] for i in keep) for row in self.rows)
-        return replace(self, columns=tuple(self.columns[i] for i in keep), rows=rows)
+        return replace(self, heads=tuple(self.heads[i] for i in keep), rows=rows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,25 +146,20 @@ class Finding:
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
         plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
         name = f"anova_{plain}_type_{anova.ss_type}"
-        columns = ("term", "sum of squares", "df", "F", "p")
-        table = Table(name, anova.title, columns, rows, chances=frozenset({"p"}))
+        table = Table.of(name, anova.title, ("term", "sum of squares", "df", "F", P_VALUE), rows)
         return cls(name, anova.title, table, (*cautions, *anova.warnings), outcome=outcome)
 
 
 def finding(
     name: str,
     title: str,
-    columns: tuple[str, ...],
-    rows: Sequence[tuple[Cell, ...]],
+    heads: Iterable[Column | str],
+    rows: Iterable[Iterable[Cell]],
     note: str = "",
     cautions: Sequence[str] = (),
-    *,
-    decimals: Mapping[str, int] | None = None,
 ) -> Finding:
-    """Return a finding from the rows of its table; p stands first in headings of p."""
-    chances = frozenset(column for column in columns if column.split(" ")[0] == "p")
-    notes = (note,) if note else ()
-    table = Table(name, title, columns, tuple(rows), notes, decimals or {}, chances=chances)
+    """Return a finding from the rows of its table."""
+    table = Table.of(name, title, heads, rows, *filter(None, [note]))
     return Finding(name, title, table, tuple(cautions))
 
 
@@ -176,22 +237,29 @@ def in_order(
 def file_table(files: Sequence[FileResult]) -> Table:
     """Return one row per file: verdict, main numbers, conditions, reasons."""
     numbers = list(dict.fromkeys(name for one in files for name in one.main))
-    noted = list(dict.fromkeys(name for one in files for name in one.conditions))
     # A number that the analysis took over from the conditions is shown once.
-    noted = [name for name in noted if name not in numbers]
+    conditions = [
+        name
+        for name in dict.fromkeys(name for one in files for name in one.conditions)
+        if any(f.main.get(name, level) != level for f in files if (level := f.conditions.get(name)))
+        or name not in numbers
+    ]
     rows = tuple(
         (
             one.file,
             one.verdict,
             *(scaled(name, one.main.get(name)) for name in numbers),
-            *(one.conditions.get(name) for name in noted),
+            *(one.conditions.get(name) for name in conditions),
             "; ".join(one.reasons),
         )
         for one in files
     )
-    columns = ("file", "verdict", *map(heading, numbers), *noted, "reasons")
-    answers = frozenset(map(heading, _ANSWERS.intersection(numbers)))
-    return Table("files", "Every file with its verdict", columns, rows, answers=answers)
+    measured = (
+        Column(heading(name), Role.ANSWER if name in _ANSWERS else Role.PLAIN) for name in numbers
+    )
+    reasons = Column("reasons", Role.LONG)
+    heads = ("file", "verdict", *measured, *condition_columns(conditions), reasons)
+    return Table.of("files", "Every file with its verdict", heads, rows)
 
 
 def measurement_table(files: Sequence[FileResult]) -> Table:
@@ -201,22 +269,19 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
         (
             one.file,
             str(one.conditions.get(person, "")),
-            *(m[key] for key in _NUMBER_COLUMNS.values()),
-            "yes" if any(flag["matters"] for flag in m["flags"]) else "",
-            "; ".join(flag["message"] for flag in m["flags"]),
-            "; ".join(f"{key}: {value}" for key, value in m["conventions"].items()),
+            *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
+            "yes" if m.caution_flags else "",
+            "; ".join(flag.message for flag in m.flags),
+            "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
         for one in files
         for m in one.measurements
     )
-    columns = ("file", "person", *_NUMBER_COLUMNS, "caution", "flags", "conventions")
-    return Table("measurements", "Every number with its conventions", columns, rows)
-
-
-_NUMBER_COLUMNS = {
-    "item": "item", "quantity": "name", "value": "value", "unit": "unit",
-    "standard uncertainty": "uncertainty", "not estimated because": "reason", "n": "n",
-}  # fmt: skip
+    heads = (
+        "file", "person", "item", "quantity", "value", "unit", "standard uncertainty",
+        "not estimated because", "n", "caution", Column("flags", Role.LONG), "conventions",
+    )  # fmt: skip
+    return Table.of("measurements", "Every number with its conventions", heads, rows)
 
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
@@ -224,18 +289,36 @@ def edit_table(files: Iterable[FileResult]) -> Table | None:
     edits = [(one.file, edit) for one in files for edit in one.edits]
     if not edits:
         return None
-    rows = tuple((file, *edit.values()) for file, edit in edits)
-    return Table("edits", "Edits by hand", ("file", *edits[0][1]), rows)
+    rows = tuple(
+        (
+            file,
+            e.step,
+            e.what,
+            e.before,
+            e.after,
+            e.quantity,
+            e.number_before,
+            e.number_after,
+            e.why,
+        )
+        for file, e in edits
+    )  # fmt: skip
+    heads = (
+        "file", "step", "what", "before", "after", "quantity", "number before", "number after",
+        "why",
+    )  # fmt: skip
+    return Table.of("edits", "Edits by hand", heads, rows)
 
 
-# Column, entry of the step and decimals that a reader sees.
-_STEP_COLUMNS = (
-    ("step", "item", None), ("side", "side", None), ("contact (s)", "contact", 3),
-    ("RCOF", "rcof", 3), ("RCOF standard uncertainty", "rcof_uncertainty", 3),
-    ("walking speed (m/s)", "walking_speed", 2), ("slip", "outcome", None),
-    ("verdict", "verdict", None), ("reason", "reason", None), ("cautions", "cautions", None),
-    ("by hand", "by_hand", None),
-)  # fmt: skip
+_STEP_COLUMNS = {
+    "item": Column("step", always=True), "side": Column("side"),
+    "contact": Column("contact (s)", decimals=3), "rcof": Column("RCOF", decimals=3, always=True),
+    "rcof_uncertainty": Column("RCOF standard uncertainty", decimals=3),
+    "walking_speed": Column("walking speed (m/s)", decimals=2), "outcome": Column("slip"),
+    "verdict": Column("verdict", always=True), "reason": Column("reason", Role.LONG, always=True),
+    "cautions": Column("cautions", Role.LONG, always=True), "by_hand": Column("by hand"),
+}  # fmt: skip
+"""Columns of the table of steps by the field of a step."""
 
 
 def steps_table(files: Iterable[FileResult]) -> Table:
@@ -243,18 +326,13 @@ def steps_table(files: Iterable[FileResult]) -> Table:
     rows = []
     for one in files:
         for step in one.steps:
-            values = [step.get(key) for _, key, _ in _STEP_COLUMNS]
-            texts = ["; ".join(map(str, v)) if isinstance(v, list | tuple) else v for v in values]
+            values = [getattr(step, name) for name in _STEP_COLUMNS]
+            texts = ["; ".join(map(str, v)) if isinstance(v, tuple) else v for v in values]
             rows.append((one.file, *texts))
-    table = Table(
-        "steps",
-        "Every contact, rejected ones with the reason",
-        ("file", *(column for column, _, _ in _STEP_COLUMNS)),
-        tuple(rows),
-        ("All that is known of a step is in tables/steps_wide.csv and steps_long.csv.",),
-        {column: places for column, _, places in _STEP_COLUMNS if places is not None},
-    )
-    return table.only(table.filled(("file", "step", "RCOF", "verdict", "reason", "cautions")))
+    heads = (Column("file", always=True), *_STEP_COLUMNS.values())
+    note = "All that is known of a step is in tables/steps_wide.csv and steps_long.csv."
+    title = "Every contact, rejected ones with the reason"
+    return Table.of("steps", title, heads, rows, note).without_empty()
 
 
 def condition_table(
@@ -308,9 +386,6 @@ def condition_table(
                 errors.setdefault(number, []).append(spread / np.sqrt(len(values)))
         rows.append(tuple(cells))
     trials = "trials" if person or any(f.steps for f in usable) else "readings"
-    shares = ["share of trials with a slip", "95 % from", "95 % to", f"{unit} who slipped"]
-    named = (shares if number == "slip" else number_columns(number) for number in numbers)
-    columns = (*keys, unit, trials, "steps", *(name for names in named for name in names))
     averaged = ", each person's trials averaged first." if person else "."
     notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
     if any(
@@ -322,21 +397,22 @@ def condition_table(
             "No condition names the persons or samples: every file counts as one. Where files "
             'repeat a person, note it ("subject" in conditions.csv, or a pattern of names).'
         )
-    decimals = {
-        column: decimals_of(float(np.median(values)))
-        for number, values in errors.items()
-        for column in number_columns(number)
-    }
+    shares = ("share of trials with a slip", "95 % from", "95 % to", f"{unit} who slipped")
+    heads: list[Column | str] = [*condition_columns(keys)]
+    heads += [Column(things, Role.COUNT) for things in (unit, trials, "steps")]
+    for number in numbers:
+        places = decimals_of(float(np.median(errors[number]))) if number in errors else None
+        heads += shares if number == "slip" else number_columns(number, places)
     title = "By " + ", ".join(keys) if keys else "All trials"
-    spreads = tuple(tuple(number_columns(number)) for number in numbers if number != "slip")
-    table = Table(name, title, columns, tuple(rows), tuple(notes), decimals, spreads)
-    return table.only(table.filled(keys))
+    return Table.of(name, title, heads, rows, *notes).without_empty()
 
 
-def number_columns(name: str) -> list[str]:
-    """Return the headings of mean, SD and interval of a quantity."""
+def number_columns(name: str, decimals: int | None = None) -> list[Column]:
+    """Return the columns of mean, SD and interval of a quantity."""
     ends = [f"{quantity_name(name)} 95 % {end}" for end in ("low", "high")]
-    return [heading(name), heading(name, "SD"), *ends]
+    heads = (heading(name), heading(name, "SD"), *ends)
+    roles = (Role.MEAN, Role.SD, Role.LOW, Role.HIGH)
+    return [Column(*both, name, decimals) for both in zip(heads, roles, strict=True)]
 
 
 INTERVALS = (
@@ -364,7 +440,7 @@ def mean_and_interval(values: Sequence[float] | np.ndarray, name: str) -> tuple[
 def counted_steps(result: FileResult) -> int:
     """Return the number of steps of a file that gave a required friction."""
     return sum(
-        m["name"] == "rcof" and m["value"] is not None and m["item"] != MEAN_OF_STEPS
+        m.name == "rcof" and m.value is not None and m.item != MEAN_OF_STEPS
         for m in result.measurements
     )
 
@@ -396,28 +472,28 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
     files = [one for one in files if one.steps]
     if not files:
         return []
-    noted = list(dict.fromkeys(name for one in files for name in one.conditions))
+    conditions = list(dict.fromkeys(name for one in files for name in one.conditions))
     wide: list[tuple[Cell, ...]] = []
     long: list[tuple[Cell, ...]] = []
     for one in files:
-        own = [one.conditions.get(name) for name in noted]
+        own = [one.conditions.get(name) for name in conditions]
         for step in one.steps:
-            head = (one.file, one.verdict, *own, step["number"])
-            texts = [step.get(name) or "" for name in _TEXTS]
-            cautions = "; ".join(step["cautions"])
-            wide.append((*head, *texts, cautions, *(step.get(name) for name in STEP_NUMBERS)))
+            head = (one.file, one.verdict, *own, step.number)
+            texts = [getattr(step, name) or "" for name in _TEXTS]
+            cautions = "; ".join(step.cautions)
+            wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
             long += [
-                (*head, step["side"], step["verdict"], name, step[name], unit)
+                (*head, step.side, step.verdict, name, getattr(step, name), unit)
                 for name, unit in STEP_NUMBERS.items()
-                if step.get(name) is not None
+                if getattr(step, name) is not None
             ]
-    first = ("file", "file verdict", *noted, "step")
+    first = ("file", "file verdict", *condition_columns(conditions), "step")
     units = [f"{n} ({u})" if u != "1" else n for n, u in STEP_NUMBERS.items()]
-    columns = (*first, *_TEXTS, "cautions", *units)
+    heads = (*first, *_TEXTS, "cautions", *units)
     tidy = (*first, "side", "step verdict", "quantity", "value", "unit")
     return [
-        Table("steps_wide", "Every step with its numbers", columns, tuple(wide)),
-        Table("steps_long", "Every number of every step", tidy, tuple(long)),
+        Table.of("steps_wide", "Every step with its numbers", heads, wide),
+        Table.of("steps_long", "Every number of every step", tidy, long),
     ]
 
 
@@ -458,5 +534,5 @@ def curve_table(files: Iterable[FileResult]) -> Table | None:
         ]
     names = [f"{n} (N)" if n != "ratio" else n for n in _CURVES]
     both = [column for name in names for column in (f"mean {name}", f"SD {name}")]
-    columns = (*keys, "percent of stance", "persons" if person else "files", *both)
-    return Table("stance_curves", "Forces over stance", columns, tuple(rows))
+    heads = (*condition_columns(keys), "percent of stance", "persons" if person else "files", *both)
+    return Table.of("stance_curves", "Forces over stance", heads, rows)

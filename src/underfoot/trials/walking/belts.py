@@ -1,21 +1,23 @@
 """Treadmill belts: found where a standing foot is carried backward, and how fast."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from underfoot.core.deprecation import renamed
 
-from ..recording.axes import Direction, DirectionSource, marker_velocity, pressure_path, shear_swing
+from ..recording.axes import Direction, DirectionSource, walking_direction
 from ..recording.measurement import Choice
-from ..recording.plates import plate_contacts
+from ..recording.plates import Contact
+from ..recording.signals import frames_between
 from ..recording.trial import Marker, Plate, Trial
 
 _SLOWEST = 0.3  # m/s; a slower belt can't be told from feet that roll and drift
 _STANDS = (0.2, 0.45)  # share of a contact in which heel and toe of the foot lie flat
 _STRAIGHT = 0.01  # m that a standing foot may stray from even motion
 _ROLL, _ROLL_SD = 0.155, 0.024  # m from the first to the last fifth of a stance: 16 recorded steps
+_BESIDE = 15.0  # s of a marker's path before and after a step on a belt
 _NEAREST = 5  # stances whose median is the belt's speed at a time: belts of their own pace change
 
 
@@ -46,6 +48,20 @@ class Belt:
 
     words = renamed("words", "speed_text", gone="0.4")
 
+    def carry_back(self, marker: Marker, time: float) -> Marker:
+        """Return a marker as seen from the surface, in laboratory axes at ``time`` (s).
+
+        Of the 15 s before and after.
+        """
+        near = frames_between(marker.time, time - _BESIDE, time + _BESIDE)
+        moments, places = marker.time[near], marker.positions[near]
+        return replace(
+            marker,
+            positions=places - np.outer(moments - time, self.velocity(time)),
+            start=float(moments[0]) if len(moments) else marker.start,
+            times=None if marker.times is None else moments,
+        )
+
     def direction(self, time: float) -> Direction:
         """Return the way of somebody who walks against the belt."""
         speed = self.speed(time)
@@ -54,26 +70,26 @@ class Belt:
         return Direction(-self.velocity(time) / speed, DirectionSource.TREADMILL, words)
 
 
-def belts_of(trial: Trial, up: np.ndarray, feet: Sequence[Marker]) -> dict[str, Belt]:
-    """Return the belts of a trial by the name of their plate; none on a floor.
+def belts_of(
+    contacts: Mapping[Plate, Sequence[Contact]], body: np.ndarray | None, feet: Sequence[Marker]
+) -> dict[str, Belt]:
+    """Return the belts among plates by the name of their plate; none on a floor.
 
     On a belt a foot that stands is carried evenly, against the way in which it pushes itself, at
     0.3 m/s or more, and the body stays behind: this must hold for most contacts of the plate. The
     speed is that of the markers ``feet`` (heels, toes) between 20 and 45 % of the contact; without
-    them that of the centre of pressure, less its own 155 +- 24 mm from heel to toe.
+    them that of the centre of pressure, less its own 155 +- 24 mm from heel to toe. ``body`` is the
+    velocity (3,) of all markers over the recording (m/s), None without any.
     """
     belts = {}
-    body = marker_velocity(trial, -np.inf, np.inf, up)
-    for plate in trial.plates:
-        if not plate.usable:
-            continue
+    for plate, ones in contacts.items():
         seen, straightness = [], []
-        for start, stop in plate_contacts(plate, up):
-            swing = shear_swing(plate, start, stop, up)
+        for contact in ones:
+            start, stop, swing = contact.start, contact.stop, contact.shear_swing
             if not 0.3 < (stop - start) / plate.rate < 2.0 or np.linalg.norm(swing) < 10.0:
                 continue
             swing /= np.linalg.norm(swing)
-            velocity, error = _carried(plate, start, stop, up, feet, swing)
+            velocity, error = _carried(contact, feet, swing)
             if velocity is not None:
                 seen.append((plate.start + start / plate.rate, velocity, swing))
                 straightness.append(error)
@@ -90,19 +106,20 @@ def belts_of(trial: Trial, up: np.ndarray, feet: Sequence[Marker]) -> dict[str, 
 
 
 def _carried(
-    plate: Plate, start: int, stop: int, up: np.ndarray, feet: Sequence[Marker], swing: np.ndarray
+    contact: Contact, feet: Sequence[Marker], swing: np.ndarray
 ) -> tuple[np.ndarray | None, float]:
     """Velocity (3,) of the foot that stands on a plate and its uncertainty (m/s)."""
-    duration = (stop - start) / plate.rate
+    plate, start, up = contact.plate, contact.start, contact.up
+    duration = (contact.stop - start) / plate.rate
     if not feet:
-        step = pressure_path(plate, start, stop, up)
+        step = contact.pressure_path
         if not step.any():
             return None, 0.0
         return (step - _ROLL * swing) / (0.8 * duration), _ROLL_SD / (0.8 * duration)
     begin, end = (plate.start + start / plate.rate + share * duration for share in _STANDS)
     lines = []
     for marker in feet:
-        near = marker.frames(begin, end)
+        near = frames_between(marker.time, begin, end)
         inside = ~marker.missing[near]
         if inside.sum() < max(4, 0.5 * (end - begin) * marker.rate):
             continue
@@ -115,3 +132,20 @@ def _carried(
             lines.append((line[1], spread / (end - begin)))
     # The other foot swings forward: the one that stands goes least along the way of the walk.
     return min(lines, key=lambda pair: float(pair[0] @ swing), default=(None, 0.0))
+
+
+def contact_direction(
+    trial: Trial,
+    contact: Contact,
+    belts: Mapping[str, Belt],
+    walking: str | None,
+    body: np.ndarray | None,
+) -> Direction:
+    """Return the walking direction during a contact: against its belt, else ``walking_direction``.
+
+    ``belts``: by the name of their plate. ``walking`` and ``body`` as ``walking_direction``.
+    """
+    plate, belt = contact.plate, belts.get(contact.plate.name)
+    if belt is not None and not walking:
+        return belt.direction(plate.start + contact.start / plate.rate)
+    return walking_direction(trial, contact, walking, body)

@@ -11,7 +11,8 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 
 from ..readers import Profile, read_profile, read_trials
-from ..recording.axes import LEVEL, Axes, DirectionSource, Ramp, axis_name, heel_candidates
+from ..recording.axes import LEVEL, Axes, DirectionSource, Ramp, axis_name
+from ..recording.marker_names import heel_candidates
 from ..recording.measurement import mean_of
 from ..recording.trial import Edit, Plate, Trial, joined
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions

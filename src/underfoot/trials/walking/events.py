@@ -1,6 +1,6 @@
 """Contacts with a force plate: begin and end, edits by hand, which of them are steps."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,9 +10,9 @@ from underfoot.core.remark import Remark
 
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
-from ..recording.plates import plate_axes, plate_contacts, plate_named
-from ..recording.signals import CONTACT_FORCE, along
-from ..recording.trial import Edit, Plate, Trial
+from ..recording.plates import plate_axes
+from ..recording.signals import CONTACT_FORCE, frames_between
+from ..recording.trial import Edit, Plate
 from .walkway import Walkway, of_walkway
 
 _UNKNOWN = Direction()
@@ -70,8 +70,12 @@ class EditError(InputError):
     """An edit that names no step, changes nothing or contradicts another: it ends the run."""
 
 
-def edited_contacts(detected: Sequence[Stance], trial: Trial, up: np.ndarray) -> list[Stance]:
-    """Return the contacts with the trial's edits applied; ``side`` is applied where it is judged.
+def edited_contacts(
+    detected: Sequence[Stance], edits: Sequence[Edit], plates: Mapping[str, Plate], up: np.ndarray
+) -> list[Stance]:
+    """Return the contacts with a trial's edits applied; ``side`` is applied where it is judged.
+
+    ``plates``: those of the contacts by name; ``up`` (3,): unit vector out of the floor.
 
     An excluded contact, and one that is no step because another plate was named, have a reason.
 
@@ -80,7 +84,7 @@ def edited_contacts(detected: Sequence[Stance], trial: Trial, up: np.ndarray) ->
     """
     contacts = list(detected)
     seen: dict[tuple[int, str], Edit] = {}
-    for edit in trial.edits:
+    for edit in edits:
         at = _named(contacts, edit)
         number = contacts[at].number
         for (other, what), earlier in seen.items():
@@ -94,7 +98,7 @@ def edited_contacts(detected: Sequence[Stance], trial: Trial, up: np.ndarray) ->
         if edit.what == "plate":
             contacts = _on_plate(contacts, at, edit)
         else:
-            contacts[at] = _changed(contacts[at], edit, trial, up)
+            contacts[at] = _changed(contacts[at], edit, plates[contacts[at].plate], up)
     return contacts
 
 
@@ -117,7 +121,7 @@ def _named(contacts: Sequence[Stance], edit: Edit) -> int:
     return min(near)[1]
 
 
-def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance:
+def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance:
     by_hand = (*stance.by_hand, edit.what)
     if edit.what == "exclude":
         return replace(stance, reason=Remark("excluded by hand", edit.why), by_hand=by_hand)
@@ -126,7 +130,6 @@ def _changed(stance: Stance, edit: Edit, trial: Trial, up: np.ndarray) -> Stance
             text = f"step {stance.number} is the {edit.value} foot already"
             raise EditError(f"{text}: the edit changes nothing", where=edit.where)
         return replace(stance, side=str(edit.value), heel="", by_hand=by_hand)
-    plate = plate_named(trial, stance.plate)
     time = float(edit.value or 0.0)
     last = plate.start + (len(plate.force) - 1) / plate.rate
     if not plate.start <= time <= last:
@@ -191,19 +194,18 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
     """
     trial, up = walk.trial, walk.up
     plates = {plate.name: plate for plate in trial.plates if plate.usable}
+    feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
     detected: list[Stance] = []
     for plate in plates.values():
-        vertical = along(plate.force, up)
-        for start, stop in plate_contacts(plate, up, threshold):
-            time = plate.start + np.array([start, stop]) / plate.rate
-            peak = float(np.nanmax(vertical[start:stop]))
-            detected.append(Stance(plate.name, start, stop, float(time[0]), float(time[1]), peak))
+        usual = threshold == CONTACT_FORCE
+        found = walk.contacts[plate] if usual else walk.contacts_above(plate, threshold)
+        for contact, way in found:
+            time = plate.start + np.array([contact.start, contact.stop]) / plate.rate
+            span = contact.start, contact.stop, float(time[0]), float(time[1])
+            detected.append(Stance(plate.name, *span, contact.peak, direction=way))
     detected.sort(key=lambda stance: stance.contact)
-    feet = {plate.name: _Feet(walk, plate) for plate in plates.values()}
 
     def located(stance: Stance) -> Stance:
-        way = walk.direction(plates[stance.plate], stance.start, stance.stop)
-        stance = replace(stance, direction=way)
         if "side" in stance.by_hand:
             return replace(stance, heel=walk.heels.get(stance.side, ""))
         side, heel = feet[stance.plate].foot(stance)
@@ -211,8 +213,11 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
 
     detected = [located(replace(stance, number=i)) for i, stance in enumerate(detected, start=1)]
     if trial.edits:
-        detected = edited_contacts(detected, trial, up)
-        detected = [located(s) if s.by_hand and not s.reason else s for s in detected]
+        detected = edited_contacts(detected, trial.edits, plates, up)
+        for i, stance in enumerate(detected):
+            if stance.by_hand and not stance.reason:
+                way = walk.direction(plates[stance.plate], stance.start, stance.stop)
+                detected[i] = located(replace(stance, direction=way))
     usual = float(np.median([s.peak for s in detected])) if detected else 0.0
     # One that the record cuts began at a time nobody knows.
     begun = [s for s in detected if not s.reason and (s.start or "contact" in s.by_hand)]
@@ -343,16 +348,17 @@ class _Feet:
 
     def __init__(self, walk: Walkway, plate: Plate) -> None:
         self.walk, self.plate, self.up = walk, plate, walk.up
-        self.markers = {side: walk.trial.marker(name) for side, name in walk.heels.items()}
+        self.markers = {side: walk.trial.markers[name] for side, name in walk.heels.items()}
         others = (p.corners for p in walk.trial.plates if p.usable and p is not plate)
         self.edges = None if plate.corners is None else _Edges(plate.corners)
         self.others = [_Edges(corners) for corners in others if corners is not None]
+        self.belt = walk.belts.get(plate.name)
         self.seen: dict[tuple[float, float], dict[str, int]] = {}
         self.lowest = {side: _lowest(m.positions @ self.up) for side, m in self.markers.items()}
 
     def surface(self, stance: Stance) -> np.ndarray:
         """Velocity (3,) of the surface under a stance (m/s)."""
-        return self.walk.surface_velocity(self.plate.name, stance.contact)
+        return np.zeros(3) if self.belt is None else self.belt.velocity(stance.contact)
 
     def over(self, edges: _Edges, places: np.ndarray) -> np.ndarray:
         """Mask of places (n, 3) over the plate, up to 20 mm beyond where no other plate lies."""
@@ -370,7 +376,7 @@ class _Feet:
             return self.seen.get(span, {})
         frames = self.seen[span] = {}
         for side, marker in self.markers.items():
-            near = marker.frames(stance.contact, stance.toe_off, beside=1)
+            near = frames_between(marker.time, stance.contact, stance.toe_off, beside=1)
             time, at = marker.time[near], marker.positions[near]
             if len(at) < 2:
                 continue
@@ -392,7 +398,7 @@ class _Feet:
         early = self.early(stance, max(5, (stance.stop - stance.start) // 5))
         distance, end = 0.15, stance.contact + 0.2 * stance.duration
         for name, marker in self.markers.items() if not side and len(early) else ():
-            at = marker.positions[marker.frames(stance.contact, end)]
+            at = marker.positions[frames_between(marker.time, stance.contact, end)]
             at = at[np.isfinite(at).all(axis=1)]
             if len(at):
                 away = self.flat(np.median(at, axis=0), early)
@@ -424,7 +430,7 @@ class _Feet:
             return 0.0
         most = 0.0
         for side, marker in self.markers.items():
-            near = marker.frames(stance.contact, stance.contact + 0.04)
+            near = frames_between(marker.time, stance.contact, stance.contact + 0.04)
             time, at = marker.time[near], marker.positions[near]
             inside = np.isfinite(at).all(axis=1)
             if inside.sum() < 2:
@@ -442,7 +448,7 @@ class _Feet:
         best, lowest = "", 0.06
         for side, marker in self.markers.items() if self.edges else ():
             most = max(0.03, 1.0 / marker.rate)
-            near = marker.frames(stance.contact - most, stance.contact + most)
+            near = frames_between(marker.time, stance.contact - most, stance.contact + most)
             at = marker.positions[near]
             at = at[
                 (np.abs(marker.time[near] - stance.contact) < most) & np.isfinite(at).all(axis=1)

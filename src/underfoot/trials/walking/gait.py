@@ -1,6 +1,7 @@
 """Required friction (RCOF) of a step, every convention named."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -9,23 +10,18 @@ import numpy as np
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
 
-from ..recording.axes import Axes
+from ..recording.axes import Ramp
 from ..recording.measurement import Flag, Measurement, remark
-from ..recording.plates import baseline_words, plate_up
-from ..recording.signals import FILTERS, FORCE_FILTER, LowPass, low_passed_part
-from ..recording.trial import Plate
+from ..recording.signals import FILTERS, FORCE_FILTER, LowPass
+from ..recording.trial import PlateAccuracy
 from .events import Stance, stances
 from .gait_context import push_off_flags
 from .likelihood import impossible, unseen_gain
-from .plausibility import (
-    baseline_error,
-    judged_features,
-    other_foot_flags,
-    rcof_flags,
-    step_flags,
-    walking_speed,
-)  # fmt: skip
-from .slips import Outcome, Slip, slip_of
+from .plausibility import baseline_error, other_foot_flags, rcof_flags, step_flags, unloaded_levels
+from .slips import Outcome, Slip
+from .slips import slip as heel_slip
+from .step import Step
+from .step_features import judged_features
 from .walkway import Walkway, of_walkway
 
 PEAKS = {
@@ -68,6 +64,12 @@ class RcofDefinition:
             raise InputError(f"part {self.part}", where="rcof.part", allowed="above 0, up to 1")
         if not self.gate > 0 or (self.gate_body_weight is not None and self.gate_body_weight <= 0):
             raise InputError("the gate must be above zero", where="rcof.gate")
+
+    @property
+    def other_filters(self) -> list[LowPass]:
+        """What else the filter's name can mean, at the same cutoff; nothing without a filter."""
+        kinds = set(FILTERS) - {"none", self.filter.kind} if self.filter.kind != "none" else ()
+        return [replace(self.filter, kind=kind) for kind in kinds]
 
     def conventions(self) -> dict[str, str]:
         """Return the choices in words."""
@@ -173,13 +175,13 @@ def required_friction(
     Source: definitions collected from Redfern 2001, Chang 2011, Beschorner 2016 and others; the
     default is the grant report's (G.6.1) made unambiguous, see docs/physics/required_friction.md.
     """
-    definition = definition or DEFINITIONS["default"]
-    axes, weight, plate = walk.axes, walk.weight, walk.plate(stance.plate)
+    definition, step = definition or DEFINITIONS["default"], Step(walk, stance)
+    axes, weight, plate = walk.axes, walk.weight, step.plate
     choices = {
         **definition.conventions(),
-        "baseline": baseline_words(plate),
+        "baseline": plate.baseline_text,
         "walking direction": stance.direction.explanation,
-        **walk.surface(stance.plate, stance.contact),
+        **step.surface_text,
     }
     slip: Slip | None = None
 
@@ -190,11 +192,12 @@ def required_friction(
     if not stance.accepted or stance.walking is None:
         return without(stance.reason or "no walking direction")
     if checked and stance.heel:
-        slip = slip_of(walk, stance)
+        up, forward = step.surface  # a heel slides along it
+        slip = heel_slip(step.heel, stance.contact, up=up, walking=forward, leaves=stance.toe_off)
         if slip.slides:
-            speed, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
+            peak, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
             return without(
-                f"the heel slides at {speed:.2f} m/s over {way:.0f} mm: the ratio is available "
+                f"the heel slides at {peak:.2f} m/s over {way:.0f} mm: the ratio is available "
                 "friction (ACOF), not required"
             )
     gate = definition.gate
@@ -202,14 +205,13 @@ def required_friction(
         if weight is None:
             return without("the gate is a share of body weight and the mass is not known")
         gate = definition.gate_body_weight * weight.newtons
-    speed = walking_speed(walk, stance) if checked else None
-    features = judged_features(walk, stance, speed) if checked else {}
+    speed = step.speed if checked else None
+    features = judged_features(step) if checked else {}
     reason = impossible(features, speed=speed)
     if reason:
         return without(reason)
-    surface = axes.ramp.surface(axes.up, stance.walking)
     try:
-        curves = _curves(plate, stance, definition, surface)
+        curves = _curves(step.filtered_force[definition.filter], step.surface, definition.shear)
     except DataError as error:
         return without(error.what)
     normal, ratio, along = curves
@@ -221,20 +223,28 @@ def required_friction(
     if at is None:
         return without(f"no {PEAKS[definition.peak]} while the gate is passed")
     value = float(ratio[at])
-    flags = plate.flags + stance.flags + _tilt_flags(plate, stance, axes)
+    flags = plate.flags + stance.flags + _tilt_flags(step.slope, axes.ramp)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
         text = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
         flags += (remark(text),)
     uncertainty, parts = None, "not estimated"
     if checked:
-        flags += step_flags(walk, stance, definition.filter, features, speed)
+        levels = unloaded_levels(step)
+        flags += step_flags(step, definition.filter, features, levels)
         flags += rcof_flags(value, axes.ramp, speed)
-        flags += push_off_flags(walk, stance)
+        flags += push_off_flags(step)
         flags += unseen_gain(features, value, mass=weight is not None, speed=speed)
         if slip is not None and slip.outcome is Outcome.MICROSLIP:
             flags += tuple(f for f in slip.peak_speed.flags if f.name == "speed against distance")
-        uncertainty, parts = _uncertainty(plate, stance, definition, surface, gate, at, curves)
+        filtering = [value]
+        for other in definition.other_filters:
+            load, curve, push = _curves(step.filtered_force[other], step.surface, definition.shear)
+            top = _peak(definition, curve, _allowed(definition, load, push, gate))
+            if top is not None:
+                filtering.append(float(curve[top]))
+        baseline = baseline_error(levels, step.surface[0], float(normal[at]), value)
+        uncertainty, parts = _uncertainty(value, baseline, filtering, plate.accuracy)
     unasked, choices = "" if checked else "not asked for", {**choices, "uncertainty": parts}
     once = tuple(dict.fromkeys(flags))
     measurement = Measurement(
@@ -258,26 +268,20 @@ def stance_frictions(
 ) -> list[RequiredFriction]:
     """Return the required friction of the stances given, each compared with the others."""
     steps = [required_friction(walk, stance, definition) for stance in chosen]
-    values = [(s.stance, s.measurement.value) for s in steps if s.measurement.value is not None]
+    values = [(s.stance.plate, s.measurement.value) for s in steps]
     for i, step in enumerate(steps):
-        friction = step.measurement
+        friction, here = step.measurement, step.stance.plate
         if friction.value is not None:
-            more = other_foot_flags(step.stance, friction.value, values, walk.weight)
+            others = [v for plate, v in values if v is not None and plate != here]
+            more = other_foot_flags(friction.value, others, walk.weight)
             steps[i] = replace(step, measurement=replace(friction, flags=friction.flags + more))
     return steps
 
 
-def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
-    """Caution where the plate's corners slope along the walk and the ramp says otherwise.
-
-    Forces of a plate with corners stand in laboratory axes.
-    """
-    if plate.corners is None or stance.walking is None:
-        return ()
-    normal = plate_up(plate.corners, axes.up)
-    slope = math.atan2(-float(normal @ stance.walking), float(normal @ axes.up))
-    stated = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
-    if abs(slope - stated) <= _TILT:
+def _tilt_flags(slope: float | None, ramp: Ramp) -> tuple[Flag, ...]:
+    """Caution where a plate's corners slope along the walk (rad) and the ramp says otherwise."""
+    stated = ramp.angle if ramp.plate_frame == "horizontal" else 0.0
+    if slope is None or abs(slope - stated) <= _TILT:
         return ()
     text = (
         f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
@@ -287,58 +291,38 @@ def _tilt_flags(plate: Plate, stance: Stance, axes: Axes) -> tuple[Flag, ...]:
 
 
 def _curves(
-    plate: Plate, stance: Stance, definition: RcofDefinition, surface: tuple[np.ndarray, np.ndarray]
+    force: np.ndarray, surface: tuple[np.ndarray, np.ndarray], counted: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return normal force, ratio and shear along the walk over the stance, (n,) each.
 
-    ``surface`` holds normal and forward tangent of the walking surface.
+    ``force`` (n, 3) is filtered; ``surface`` holds normal and forward tangent of the walking
+    surface; ``counted`` is a key of ``SHEARS``.
     """
-    part = stance.start, stance.stop
-    force = low_passed_part(plate.force, plate.rate, definition.filter, *part)
     up, forward = surface
     normal = force @ up
     shear = force - np.outer(normal, up)
     along = shear @ forward
-    size = np.linalg.norm(shear, axis=1) if definition.shear == "resultant" else np.abs(along)
+    size = np.linalg.norm(shear, axis=1) if counted == "resultant" else np.abs(along)
     return normal, np.where(normal > 1.0, size / np.maximum(normal, 1.0), np.nan), along
 
 
 def _uncertainty(
-    plate: Plate,
-    stance: Stance,
-    definition: RcofDefinition,
-    surface: tuple[np.ndarray, np.ndarray],
-    gate: float,
-    at: int,
-    curves: tuple[np.ndarray, np.ndarray, np.ndarray],
+    value: float, baseline: float, readings: Sequence[float], accuracy: PlateAccuracy
 ) -> tuple[float, str]:
-    """Return the standard uncertainty of one step's RCOF, and its parts in words.
+    """Return the standard uncertainty of one step's RCOF ``value``, and its parts in words.
 
     Baseline: the largest effect of the unloaded level before or after the step. Filter: the range
-    between the four filters that "4th order Butterworth" can mean, as a rectangle. Plate: gain of
-    shear and of normal force, and crosstalk, each a rectangle of its specification.
+    of the ``readings`` by the four filters that "4th order Butterworth" can mean, as a rectangle.
+    Plate: gain of shear and of normal force, and crosstalk, each a rectangle of its specification.
     """
-    normal, ratio, _ = curves
-    value = float(ratio[at])
-    third = math.sqrt(3.0)
-    accuracy = plate.accuracy
-    plate_part = math.hypot(math.sqrt(2.0) * accuracy.gain * value, accuracy.crosstalk) / third
-    baseline = baseline_error(plate, stance, surface[0], float(normal[at]), value)
-    readings = [value]
-    if definition.filter.kind != "none":
-        for kind in set(FILTERS) - {"none", definition.filter.kind}:
-            other = replace(definition, filter=replace(definition.filter, kind=kind))
-            load, curve, push = _curves(plate, stance, other, surface)
-            top = _peak(other, curve, _allowed(other, load, push, gate))
-            if top is not None:
-                readings.append(float(curve[top]))
+    plate = math.hypot(math.sqrt(2.0) * accuracy.gain * value, accuracy.crosstalk) / math.sqrt(3.0)
     filtering = (max(readings) - min(readings)) / math.sqrt(12.0)
     words = (
         f"baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate "
-        f"{plate_part:.4f} (gain {100 * accuracy.gain:g} %, crosstalk {100 * accuracy.crosstalk:g} "
+        f"{plate:.4f} (gain {100 * accuracy.gain:g} %, crosstalk {100 * accuracy.crosstalk:g} "
         f"%, {accuracy.source})"
     )
-    return math.hypot(baseline, filtering, plate_part), words
+    return math.hypot(baseline, filtering, plate), words
 
 
 def _allowed(

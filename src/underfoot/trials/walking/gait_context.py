@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..recording.measurement import Flag
-from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, low_passed_part
+from ..recording.signals import MARKER_FILTER, LowPass, bridged, frames_between, low_passed
 from ..recording.trial import Marker
 from .events import Stance
 from .slips import OutcomeLimits, Slip, heel_motion
+from .step import Step
 from .walkway import Walkway, of_walkway
 
 FLAT = (0.3, 0.5)  # share of the stance in which the foot lies flat
@@ -42,16 +43,16 @@ class GaitContext:
 @of_walkway
 def gait_context(walk: Walkway, stance: Stance, stances: Sequence[Stance]) -> GaitContext:
     """Return the walk around one of the ``stances`` of a trial, as seen from its surface."""
-    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
-    length, time = _step(walk, stance, stances)
-    angle, belt = foot_angle(walk, stance), walk.belts.get(stance.plate)
+    step, belt = Step(walk, stance), walk.belts.get(stance.plate)
+    body, angle = step.body.flat, _foot_angle(step)
+    length, time = _length_and_time(step, stances)
     return GaitContext(
         walking_speed=None if body is None else _number(float(np.linalg.norm(body))),
         step_length=length,
         step_time=time,
         cadence=1.0 / time if time else None,
         foot_angle=None if angle is None else _number(float(angle[1][0])),
-        heel_speed=heel_speed(walk, stance),
+        heel_speed=_heel_speed(step),
         belt_speed=None if belt is None else belt.speed(stance.contact),
     )
 
@@ -59,22 +60,20 @@ def gait_context(walk: Walkway, stance: Stance, stances: Sequence[Stance]) -> Ga
 @of_walkway
 def heel_speed(walk: Walkway, stance: Stance) -> float | None:
     """Return the heel's speed at contact in the plane of the floor (m/s), None where unknown."""
-    heel = _marker(walk, stance.heel, stance)
+    return _heel_speed(Step(walk, stance))
+
+
+def _heel_speed(step: Step) -> float | None:
+    heel = step.heel
     if heel is None or heel.times is not None:
         return None
-    motion = heel_motion(heel, walk.up)
-    return _number(float(np.interp(stance.contact, motion.time, motion.speed)))
+    motion = heel_motion(heel, step.walk.up)
+    return _number(float(np.interp(step.stance.contact, motion.time, motion.speed)))
 
 
-def _marker(walk: Walkway, name: str | None, stance: Stance) -> Marker | None:
-    """A marker as seen from the surface under a stance; None without a name."""
-    return walk.marker(name, stance.plate, stance.contact) if name else None
-
-
-def _step(
-    walk: Walkway, stance: Stance, stances: Sequence[Stance]
-) -> tuple[float | None, float | None]:
+def _length_and_time(step: Step, stances: Sequence[Stance]) -> tuple[float | None, float | None]:
     """Return length and time since the contact of the other foot (0.25 to 1.5 s before)."""
+    stance = step.stance
     before = [
         other
         for other in stances
@@ -85,7 +84,7 @@ def _step(
         return None, None
     other = max(before, key=lambda one: one.contact)
     time = stance.contact - other.contact
-    heels = [(_marker(walk, one.heel, stance), one) for one in (other, stance)]
+    heels = [(step.markers.get(one.heel), one) for one in (other, stance)]
     if stance.walking is None:
         return None, time
     first, second = (_standing_place(heel, one) for heel, one in heels)
@@ -96,7 +95,7 @@ def _standing_place(heel: Marker | None, stance: Stance) -> np.ndarray:
     """Median place (3,) of a heel between 10 and 40 % of its stance; NaN where it is not seen."""
     if heel is None:
         return np.full(3, np.nan)
-    near = heel.frames(stance.contact, stance.toe_off)
+    near = frames_between(heel.time, stance.contact, stance.toe_off)
     share = (heel.time[near] - stance.contact) / max(stance.duration, 1e-9)
     inside = (share > 0.1) & (share < 0.4) & ~heel.missing[near]
     places = heel.positions[near][inside]
@@ -110,7 +109,11 @@ def foot_angle(walk: Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] |
     From the line heel marker to toe marker of the same side, low-passed at 10 Hz, against its
     angle while the foot lies flat (30 to 50 % of stance).
     """
-    heel, toe = _marker(walk, stance.heel, stance), _toe(walk, stance.side, stance)
+    return _foot_angle(Step(walk, stance))
+
+
+def _foot_angle(step: Step) -> tuple[np.ndarray, np.ndarray] | None:
+    stance, heel, toe = step.stance, step.heel, step.toe
     if heel is None or toe is None or stance.walking is None:
         return None
     if len(heel.positions) != len(toe.positions) or heel.rate != toe.rate or heel.times is not None:
@@ -120,7 +123,7 @@ def foot_angle(walk: Walkway, stance: Stance) -> tuple[np.ndarray, np.ndarray] |
         return None
     if heel.rate > 2.3 * _FOOT_FILTER.cutoff:
         line = low_passed(line, heel.rate, _FOOT_FILTER)
-    tilt = np.unwrap(np.arctan2(line @ walk.up, line @ stance.walking))
+    tilt = np.unwrap(np.arctan2(line @ step.walk.up, line @ stance.walking))
     share = (time - stance.contact) / stance.duration
     flat = (share > FLAT[0]) & (share < FLAT[1])
     if not flat.any():
@@ -138,8 +141,7 @@ def stance_curves(
     ``vertical`` (on a ramp: normal to it), ``braking`` (positive when the floor pushes backward),
     ``to the left``, ``ratio``.
     """
-    plate, axes = walk.plate(stance.plate), walk.axes
-    force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
+    axes, force = walk.axes, Step(walk, stance).filtered_force[low_pass]
     walking = stance.walking if stance.walking is not None else np.zeros(3)
     normal, forward = axes.ramp.surface(axes.up, walking)
     curves = {
@@ -187,10 +189,11 @@ def slip_course(
 ) -> SlipCourse:
     """Return what happened around a slip (or a step without one)."""
     limits = limits or OutcomeLimits()
+    step = Step(walk, stance)
     body, why = _body(walk, slip)
-    toe = None if slip.slides else _toe_way(walk, stance)
-    trailing = _trailing_way(walk, stance, slip)
-    misstep = _misstep(walk, stance)
+    toe = None if slip.slides else _toe_way(step)
+    trailing = _trailing_way(step, slip)
+    misstep = _misstep(step)
     flags = _toe_flags(toe, limits)
     if trailing is not None and trailing > limits.microslip:
         text = f"the trailing foot slides by {1e3 * trailing:.0f} mm"
@@ -200,12 +203,12 @@ def slip_course(
     return SlipCourse(body, why, toe, trailing, misstep, flags)
 
 
-def push_off_flags(walk: Walkway, stance: Stance) -> tuple[Flag, ...]:
+def push_off_flags(step: Step) -> tuple[Flag, ...]:
     """Return the caution of a toe that slides while its foot pushes off.
 
     In 10 recorded steps with toes it moves by up to 16 mm.
     """
-    return _toe_flags(_toe_way(walk, stance), OutcomeLimits())
+    return _toe_flags(_toe_way(step), OutcomeLimits())
 
 
 def _toe_flags(way: float | None, limits: OutcomeLimits) -> tuple[Flag, ...]:
@@ -229,8 +232,9 @@ def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     markers = [m for m in markers if len(m.positions) == len(markers[0].positions)]
     if all(m.missing.all() for m in markers):
         return "", "no marker of the pelvis is seen"
-    near = markers[0].frames(slip.contact - 0.6, slip.contact + _AFTER)
-    time = markers[0].time[near]
+    time = markers[0].time
+    near = frames_between(time, slip.contact - 0.6, slip.contact + _AFTER)
+    time = time[near]
     heights = np.array([m.positions[near] @ walk.up for m in markers])
     seen = np.isfinite(heights).any(axis=0)
     height = np.full(len(time), np.nan)
@@ -248,39 +252,34 @@ def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     return "recovery", share
 
 
-def _toe_way(walk: Walkway, stance: Stance) -> float | None:
-    marker = _toe(walk, stance.side, stance)
+def _toe_way(step: Step) -> float | None:
+    stance, marker, up = step.stance, step.toe, step.walk.up
     begin, end = (stance.contact + share * stance.duration for share in (0.4, 0.9))
-    return (
-        None if marker is None else _way(marker, begin, _lifts(marker, begin, end, walk), walk.up)
-    )
+    return None if marker is None else _way(marker, begin, _lifts(marker, begin, end, up), up)
 
 
-def _lifts(marker: Marker, begin: float, end: float, walk: Walkway) -> float:
+def _lifts(marker: Marker, begin: float, end: float, up: np.ndarray) -> float:
     """Return when a toe is 30 mm above its lowest place between two times, or the second (s)."""
-    near = marker.frames(begin, end)
-    height = marker.positions[near] @ walk.up
+    near = frames_between(marker.time, begin, end)
+    height = marker.positions[near] @ up
     inside = np.isfinite(height)
     if inside.sum() < 3:
         return end
-    up = inside & (height > height[inside].min() + 0.03)
-    return float(marker.time[near][up][0]) if up.any() else end
+    lifted = inside & (height > height[inside].min() + 0.03)
+    return float(marker.time[near][lifted][0]) if lifted.any() else end
 
 
-def _toe(walk: Walkway, side: str, stance: Stance) -> Marker | None:
-    return _marker(walk, None if side == "unknown" else walk.toes.get(side), stance)
-
-
-def _trailing_way(walk: Walkway, stance: Stance, slip: Slip) -> float | None:
+def _trailing_way(step: Step, slip: Slip) -> float | None:
+    stance, up = step.stance, step.walk.up
     other = {"left": "right", "right": "left"}.get(stance.side, "unknown")
-    marker = _toe(walk, other, stance)
+    marker = None if other == "unknown" else step.markers.get(step.walk.toes.get(other, ""))
     if marker is None or not np.isfinite(slip.end):
         return None
     # The trailing foot stands on its toe until it lifts.
-    if (~marker.missing[marker.frames(stance.contact, slip.end)]).sum() < 3:
+    if (~marker.missing[frames_between(marker.time, stance.contact, slip.end)]).sum() < 3:
         return None
-    end = _lifts(marker, stance.contact, slip.end, walk)
-    return _way(marker, stance.contact, end, walk.up)
+    end = _lifts(marker, stance.contact, slip.end, up)
+    return _way(marker, stance.contact, end, up)
 
 
 def _way(marker: Marker, begin: float, end: float, up: np.ndarray) -> float | None:
@@ -306,15 +305,15 @@ def _bridged_between(
     Gaps of up to 0.1 s are bridged, also those that reach out of it.
     """
     gap = round(0.1 * marker.rate)
-    near = marker.frames(begin, end, beside=gap + 3)
+    near = frames_between(marker.time, begin, end, beside=gap + 3)
     path = marker.positions[near] - (0.0 if base is None else base.positions[near])
     time = marker.time[near]
     inside = (time > begin) & (time < end)
     return time[inside], bridged(path, gap)[0][inside]
 
 
-def _misstep(walk: Walkway, stance: Stance) -> str:
-    angle = foot_angle(walk, stance)
+def _misstep(step: Step) -> str:
+    angle = _foot_angle(step)
     if angle is not None and angle[1][0] < _TOE_FIRST:
         return f"the toe comes down first ({np.degrees(angle[1][0]):.0f} deg)"
     return ""

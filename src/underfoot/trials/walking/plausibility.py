@@ -11,25 +11,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core import UnderfootError
+from underfoot.core.constants import GRAVITY
 
 from ..recording.axes import LEVEL, DirectionSource, Ramp, body_markers
 from ..recording.measurement import Flag, remark
-from ..recording.plates import plate_contacts
 from ..recording.signals import (
     CONTACT_FORCE,
     LowPass,
+    frames_between,
     longest_run,
     low_passed,
-    low_passed_part,
     runs,
 )
-from ..recording.trial import MADE_UP, Marker, Plate, once_a_record
+from ..recording.trial import Marker, Plate, once_a_record
+from .body_weight import BodyWeight
 from .events import Stance
 from .likelihood import unlikely_flags
 from .processed import averaged, dead_time
 from .slips import contact_from_heel, heel_motion, marker_jumps
-from .step_features import BUMP, VERTICAL, step_features
-from .walkway import GRAVITY, BodyWeight, Walkway
+from .step import Step
+from .step_features import BUMP, FASTEST, USUAL_DURATION, USUAL_SPEED, VERTICAL
+from .walkway import Walkway
 
 _ASSUMED = "assumed; kept by every real step that comes with this package"
 
@@ -152,40 +154,39 @@ LATE = Limit(
 SLOW, _SLOW_STANCE, _SLOW_MEAN = 0.9, 0.8, 0.78  # m/s, s, body weights
 _LOADING = (0.08, 0.5)  # share of the stance in which the turns of the shear are counted
 _STANDS_OUT = 0.006
-_OUTSIDE = 0.004, 0.04  # s from contact or toe off in which nothing loads the plate
 _QUIET = 0.2  # s of unloaded record looked at before and after a step
 _MARGIN = 0.025  # s away from the load
+_OUTSIDE = 0.004, 0.04  # s from contact or toe off in which nothing loads the plate
 
 
 def step_flags(
-    walk: Walkway,
-    stance: Stance,
+    step: Step,
     low_pass: LowPass,
     features: Mapping[str, float],
-    speed: float | None,
+    levels: Sequence[np.ndarray],
 ) -> tuple[Flag, ...]:
     """Return what is doubtful about signals, markers and features of one accepted step.
 
-    ``speed``: of the walk (m/s), None where no marker tells it.
+    ``low_pass``: the filter of its forces. ``features``: those of ``judged_features``. ``levels``:
+    ``unloaded_levels``.
     """
-    plate = walk.plate(stance.plate)
-    forces = (*unknown_heel(walk), *_force_flags(walk, plate, stance, speed))
+    forces = (*unknown_heel(step.walk), *_force_flags(step))
     if any(flag.name == FILTERED.name for flag in forces):  # says why there are no bumps
         features = {name: v for name, v in features.items() if not name.startswith(BUMP)}
     return (
         *forces,
-        *_level_flags(plate, stance, walk.up, low_pass),
-        *_path_flags(walk, stance),
-        *_marker_flags(walk, stance),
-        *(unlikely_flags(features, speed=speed) if features else (_NOT_JUDGED,)),
+        *_level_flags(step, low_pass, levels),
+        *_path_flags(step),
+        *_marker_flags(step),
+        *(unlikely_flags(features, speed=step.speed) if features else (_NOT_JUDGED,)),
         *([] if not features or VERTICAL[0] in features else [_TOO_FAST]),
     )
 
 
 def unknown_heel(walk: Walkway) -> tuple[Flag, ...]:
     """Return the caution of a recording whose markers have no heel among them, by their names."""
-    count = len(body_markers(walk.trial.markers))
-    if walk.heels or not count:
+    count = 0 if walk.heels else len(body_markers(walk.trial.markers))
+    if not count:
         return ()
     text = (
         f"none of {count} markers is recognised as a heel: a slip can't be seen, "
@@ -222,46 +223,9 @@ _NOT_JUDGED = remark(
 )
 
 
-_FASTEST = 1.8  # m/s
-_USUAL_DURATION = 0.65  # s; the longest stance of the recorded steps
-_USUAL_SPEED = 1.3  # m/s; of the people whose RCOF and steps the limits are of
-_FLAT = math.log(0.9)  # of the valley over the peaks
-_PEAK_TIMES = {"time of first peak", "time of second peak"}
-_ONSETS = {"shear after normal at contact", "shear after normal at toe off"}  # s
-_LEAKS = {"shear in the sideways force", "shear in the mass"}
-_SHEAR_BY_SPEED = {"braking impulse": True, "driving impulse": True, "both impulses": True,
-                   "driving ratio": False}  # logarithm or not  # fmt: skip
 _TOO_FAST = remark(
-    f"shape of the normal force not judged: above {_FASTEST} m/s sound steps have others"
+    f"shape of the normal force not judged: above {FASTEST} m/s sound steps have others"
 )
-
-
-def judged_features(walk: Walkway, stance: Stance, speed: float | None) -> dict[str, float]:
-    """Return the features of a step that recorded steps can be compared with: on level ground.
-
-    Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
-    2008) up to it fewer than 1 % look unlikely by one of them (none of 25 below 0.9 m/s), of
-    faster ones a half. The shear of slower people is taken to the speed of those compared with: it
-    grows with the step's length, as the root of the speed.
-    """
-    if walk.axes.ramp.angle or walk.trial.settings.get("software") == MADE_UP:
-        return {}
-    features = step_features(walk, stance)
-    for name in _ONSETS & features.keys():  # longer, as the stance is
-        features[name] /= max(stance.duration / _USUAL_DURATION, 1.0)
-    if speed is None:
-        return features
-    if speed > _FASTEST:
-        return {name: value for name, value in features.items() if name not in VERTICAL}
-    share = math.sqrt(min(speed, _USUAL_SPEED) / _USUAL_SPEED)
-    for name in _LEAKS & features.keys():  # told the worse, the smaller the shear
-        features[name] *= share
-    if features.get("valley over peaks", -1.0) > _FLAT:  # two peaks that don't stand out
-        features = {name: value for name, value in features.items() if name not in _PEAK_TIMES}
-    for name in _SHEAR_BY_SPEED.keys() & features.keys() if share > 0.3 else ():
-        logarithm = _SHEAR_BY_SPEED[name]
-        features[name] = features[name] - math.log(share) if logarithm else features[name] / share
-    return features
 
 
 def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> tuple[Flag, ...]:
@@ -272,7 +236,7 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> 
     as the usual RCOF does with the step's length, the root of the speed.
     """
     usual = 0.5 * (RCOF.value + LOW_RCOF.value)
-    fall = usual * (1.0 - math.sqrt(min(speed / _USUAL_SPEED, 1.0))) if speed else 0.0
+    fall = usual * (1.0 - math.sqrt(min(speed / USUAL_SPEED, 1.0))) if speed else 0.0
     low = max(LOW_RCOF.value - fall, 0.0)
     slope = math.tan(abs(ramp.angle))
     where = f"straight walking on a {ramp.name}" if slope else "level, straight walking"
@@ -284,38 +248,35 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> 
 
 
 def other_foot_flags(
-    stance: Stance,
-    shear: float,
-    others: Sequence[tuple[Stance, float]],
-    weight: BodyWeight | None = None,
+    shear: float, others: Sequence[float], weight: BodyWeight | None = None
 ) -> tuple[Flag, ...]:
     """Return the flag of a step whose RCOF differs from that of the recording's other plates.
 
-    Children, by their ``weight``, scatter more.
+    ``shear``: its RCOF; ``others``: those of the other plates. Children, by their ``weight``,
+    scatter more.
     """
-    values = [value for other, value in others if other.plate != stance.plate]
-    if not values:
+    if not others:
         return ()
-    middle = float(np.median(values))
+    middle = float(np.median(others))
     ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
     words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
     child = weight is not None and weight.newtons < 40.0 * GRAVITY
     return (CHILDS_FOOT if child else OTHER_FOOT).above(ratio, words)
 
 
-def _pace(walk: Walkway, stance: Stance, speed: float | None) -> float | None:
+def _pace(step: Step) -> float | None:
     """Stance time made free of size and speed by the height of the pelvis (see ``LONG_PACE``)."""
-    up, markers = tuple(walk.up.tolist()), map(walk.trial.marker, walk.pelvis)
+    walk, speed, corners = step.walk, step.speed, step.plate.corners
+    up, markers = tuple(walk.up.tolist()), (walk.trial.markers[name] for name in walk.pelvis)
     usual = [_usual_height(marker, up) for marker in markers]
     heights = [height for height in usual if height is not None]
-    corners = walk.plate(stance.plate).corners
     if speed is None or not heights or corners is None:
         return None
     height = float(np.median(heights)) - float(corners.mean(axis=0) @ walk.up)
     if not height > 0.2:
         return None
     swing = math.sqrt(GRAVITY / height)
-    return stance.duration * swing * math.sqrt(speed / (height * swing))
+    return step.stance.duration * swing * math.sqrt(speed / (height * swing))
 
 
 @once_a_record
@@ -325,21 +286,9 @@ def _usual_height(marker: Marker, up: tuple[float, ...]) -> float | None:
     return float(np.nanmedian(marker.positions @ np.array(up)))
 
 
-def walking_speed(walk: Walkway, stance: Stance) -> float | None:
-    """Return the speed of the body over the surface during a step (m/s), None without markers.
-
-    On a belt that of the belt, before which the body stays.
-    """
-    if stance.plate in walk.belts:
-        return walk.belts[stance.plate].speed(stance.contact)
-    body = walk.body_velocity(stance.plate, stance.contact, stance.toe_off)
-    return None if body is None else float(np.linalg.norm(body))
-
-
-def _stance_flags(
-    walk: Walkway, stance: Stance, mean: float, speed: float | None
-) -> Iterator[Flag]:
-    duration, pace = stance.duration, _pace(walk, stance, speed)
+def _stance_flags(step: Step, mean: float) -> Iterator[Flag]:
+    """Flags of the length of a stance whose mean normal force is ``mean`` (N)."""
+    weight, speed, duration, pace = step.walk.weight, step.speed, step.stance.duration, _pace(step)
     long = f"stance of {duration:.2f} s: is the sampling rate right?"
     short = f"stance of {duration:.2f} s: running, or a wrong rate"
     if pace is not None:
@@ -348,19 +297,17 @@ def _stance_flags(
             yield SHORT_PACE.flag(pace, f"{short} for {speed:.2f} m/s")
         return
     # A slow walk has both feet down for longer: its mean is lower, that of a wrong clock is not.
-    slow = walk.weight is not None and mean < _SLOW_MEAN * walk.weight.newtons
+    slow = weight is not None and mean < _SLOW_MEAN * weight.newtons
     yield from (LONG_STANCE if slow else USUAL_STANCE).above(duration, long)
     if duration < SHORT_STANCE.value:
         yield SHORT_STANCE.flag(duration, short)
 
 
-def _force_flags(
-    walk: Walkway, plate: Plate, stance: Stance, speed: float | None
-) -> Iterator[Flag]:
-    up, weight, rate = walk.up, walk.weight, plate.rate
-    part = plate.force[stance.start : stance.stop]
-    normal = part @ up
-    yield from _stance_flags(walk, stance, float(normal.mean()), speed)
+def _force_flags(step: Step) -> Iterator[Flag]:
+    stance, plate, speed = step.stance, step.plate, step.speed
+    up, weight, rate = step.walk.up, step.walk.weight, plate.rate
+    normal = step.force @ up
+    yield from _stance_flags(step, float(normal.mean()))
     thirds = len(normal) // 3
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
@@ -377,13 +324,11 @@ def _force_flags(
             text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
             yield limit.flag(mean, text)
     own = weight.newtons if weight else 0.9 * stance.peak
-    step = float(normal[0] - plate.force[max(stance.start - 1, 0)] @ up) / own
-    if stance.start and step > REST_JUMP.value + 100.0 / rate:
-        text = f"the force jumps from rest to {100 * step:.0f} % of body weight in one sample"
-        yield REST_JUMP.flag(step, text)
-    smooth = low_passed_part(
-        plate.force, rate, LowPass(cutoff=min(36.0, 0.4 * rate)), stance.start, stance.stop
-    )
+    jump = float(normal[0] - plate.force[max(stance.start - 1, 0)] @ up) / own
+    if stance.start and jump > REST_JUMP.value + 100.0 / rate:
+        text = f"the force jumps from rest to {100 * jump:.0f} % of body weight in one sample"
+        yield REST_JUMP.flag(jump, text)
+    smooth = step.smooth_force
     slope = float(np.diff((smooth @ up)[: len(smooth) // 2]).max(initial=0.0)) * rate / own
     yield from LOADING_RATE.above(slope, f"loading rate of {slope:.0f} body weights a second")
     yield from _sample_flags(plate, stance, up)
@@ -485,14 +430,14 @@ def _high_share(force: np.ndarray, rate: float) -> float:
     return math.sqrt(float(power[high].mean(axis=0).sum() / power[low].mean(axis=0).sum()))
 
 
-def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.ndarray]:
+def unloaded_levels(step: Step) -> list[np.ndarray]:
     """Return the mean forces (3,) of up to 0.2 s unloaded record before and after a step.
 
     A side with less than 20 ms between the margins of neighbouring loads is left out.
     """
-    rate = plate.rate
+    plate, stance, rate = step.plate, step.stance, step.plate.rate
     margin, quiet = round(_MARGIN * rate), round(_QUIET * rate)
-    free = _unloaded(plate, up, margin)
+    free = _free(plate, step.contacts, margin)
     begin, end = max(0, stance.start - margin), stance.stop + margin
     found = []
     for window in (slice(max(0, begin - quiet), begin), slice(end, end + quiet)):
@@ -503,55 +448,54 @@ def unloaded_levels(plate: Plate, stance: Stance, up: np.ndarray) -> list[np.nda
     return found
 
 
-def _unloaded(plate: Plate, up: np.ndarray, margin: int) -> np.ndarray:
-    """Mask of the samples (n,) further than ``margin`` from any contact; not to be written to."""
-    return _free(plate, tuple(up.tolist()), margin)
-
-
 @once_a_record
-def _free(plate: Plate, up: tuple[float, ...], margin: int) -> np.ndarray:
+def _free(plate: Plate, contacts: tuple[tuple[int, int], ...], margin: int) -> np.ndarray:
+    """Mask of the samples (n,) further than ``margin`` from any contact; not to be written to."""
     free = np.ones(len(plate.force), dtype=bool)
-    for start, stop in plate_contacts(plate, np.array(up)):
+    for start, stop in contacts:
         free[max(0, start - margin) : stop + margin] = False
     return free
 
 
 def baseline_error(
-    plate: Plate, stance: Stance, up: np.ndarray, normal: float, rcof: float
+    levels: Sequence[np.ndarray], up: np.ndarray, normal: float, rcof: float
 ) -> float:
-    """Return what the unloaded level before or after a step, if not zero, does to its RCOF."""
+    """Return what the unloaded levels (3,) around a step, if not zero, do to its RCOF.
+
+    ``normal``: force (N) at the peak of the ratio, which is ``rcof``; ``up``: normal to the floor.
+    """
     effects = [
         math.hypot(float(np.linalg.norm(level - (level @ up) * up)), rcof * float(level @ up))
-        for level in unloaded_levels(plate, stance, up)
+        for level in levels
     ]
     return max(effects, default=0.0) / max(normal, 1.0)
 
 
-def _turns(plate: Plate, stance: Stance, up: np.ndarray) -> int:
-    """Count the maxima and minima of the shear while the foot is loaded, along and across."""
+def _turns(force: np.ndarray, walking: np.ndarray, up: np.ndarray) -> int:
+    """Count the maxima and minima of the shear while the foot is loaded, along and across.
+
+    ``force`` (n, 3) is the smoothed one of the stance, ``walking`` (3,) its direction.
+    """
     from scipy.signal import find_peaks
 
-    assert stance.walking is not None  # an accepted step has one
-    low_pass = LowPass(cutoff=min(36.0, 0.4 * plate.rate))
-    force = low_passed_part(plate.force, plate.rate, low_pass, stance.start, stance.stop)
     begin, end = (round(share * len(force)) for share in _LOADING)
     least = _STANDS_OUT * float((force @ up).mean())
-    axes = stance.walking, np.cross(up, stance.walking)
+    axes = walking, np.cross(up, walking)
     parts = [sign * (force @ axis)[begin:end] for axis in axes for sign in (1, -1)]
     return sum(len(find_peaks(part, prominence=least)[0]) for part in parts)
 
 
-def _level_flags(plate: Plate, stance: Stance, up: np.ndarray, low_pass: LowPass) -> Iterator[Flag]:
-    normal = 0.8 * stance.peak
-    drift = baseline_error(plate, stance, up, normal, 0.2)
+def _level_flags(step: Step, low_pass: LowPass, levels: Sequence[np.ndarray]) -> Iterator[Flag]:
+    stance, up, normal = step.stance, step.walk.up, 0.8 * step.stance.peak
+    drift = baseline_error(levels, up, normal, 0.2)
     text = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
     yield from DRIFT.above(drift, text)
-    noise = unloaded_noise(plate, up, low_pass)
+    noise = _noise(step.plate, tuple(up.tolist()), step.contacts, low_pass)
     text = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
     yield from VIBRATION.above(2.0 * noise / normal, text)
     if stance.by_hand:  # who sets an instant may leave load outside
         return
-    before, after = _shear_outside(plate, stance, up)
+    before, after = _shear_outside(step.plate, stance, up)
     late = "the shear was shifted or filtered by itself"
     text = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
     yield from SHEAR_BEFORE.above(before, text)
@@ -579,15 +523,16 @@ def _shear_outside(plate: Plate, stance: Stance, up: np.ndarray) -> tuple[float,
     return found[0], found[1]
 
 
-def unloaded_noise(plate: Plate, up: np.ndarray, low_pass: LowPass) -> float:
-    """Return the standard deviation (N) of the filtered shear about its slow level, unloaded."""
-    return _noise(plate, tuple(up.tolist()), low_pass)
-
-
 @once_a_record
-def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> float:
+def _noise(
+    plate: Plate,
+    vertical: tuple[float, ...],
+    contacts: tuple[tuple[int, int], ...],
+    low_pass: LowPass,
+) -> float:
+    """Standard deviation (N) of the filtered shear about its slow level, unloaded."""
     parts, up = [], np.array(vertical)
-    for start, stop in runs(_unloaded(plate, up, round(2 * _MARGIN * plate.rate))):
+    for start, stop in runs(_free(plate, contacts, round(2 * _MARGIN * plate.rate))):
         part = plate.force[start:stop]
         if stop - start < max(40, 0.1 * plate.rate) or not np.isfinite(part).all():
             continue
@@ -602,8 +547,8 @@ def _noise(plate: Plate, vertical: tuple[float, ...], low_pass: LowPass) -> floa
     return float(np.sqrt(np.concatenate(parts).mean())) if parts else 0.0
 
 
-def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
-    axes = walk.axes
+def _path_flags(step: Step) -> Iterator[Flag]:
+    walk, stance, axes = step.walk, step.stance, step.walk.axes
     if stance.direction.source is DirectionSource.SHEAR:
         yield Flag(
             "walking direction",
@@ -620,13 +565,14 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         away = max(abs(height - heights[stance.plate]) for height in heights.values())
         text = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
         yield from PLATE_HEIGHT.above(away, text)
-    turns = _turns(walk.plate(stance.plate), stance, axes.up) if stance.walking is not None else 0
+    turns = 0
+    if stance.walking is not None:
+        turns = _turns(step.smooth_force, stance.walking, axes.up)
     text = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
     yield from TURNS.above(turns, text)
-    middle = 0.5 * (stance.contact + stance.toe_off)
-    whole = walk.body_velocity(stance.plate, stance.contact, stance.toe_off, climb=True)
+    whole, _, first, second = step.body
     if whole is None:
-        angle = _braking_to_driving(walk, stance)
+        angle = _braking_to_driving(step)
         text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
         yield from SHEAR_TURN.above(angle, text)
         return
@@ -637,8 +583,6 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     ground = f", the ramp at {expected:.2f} m/s" if slope else ": stairs, a ramp or a jump"
     yield from CLIMB.above(abs(climb - expected), f"the body rises at {climb:.2f} m/s{ground}")
     yield from FAST.above(speed, f"{speed:.1f} m/s is faster than people walk")
-    first = walk.body_velocity(stance.plate, stance.contact, middle)
-    second = walk.body_velocity(stance.plate, middle, stance.toe_off)
     if first is None or second is None:
         return
     if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
@@ -648,15 +592,15 @@ def _path_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     yield from TURN.above(angle, text)
 
 
-def _braking_to_driving(walk: Walkway, stance: Stance) -> float:
+def _braking_to_driving(step: Step) -> float:
     """Angle (rad) between the braking and the opposite of the driving impulse of a step.
 
     The even sideways force of a foot that stands beside the body is taken off before.
     """
-    if stance.walking is None:
+    walk, walking, force = step.walk, step.stance.walking, step.force
+    if walking is None:
         return 0.0
-    up, forward = walk.axes.ramp.gravity(walk.up, stance.walking)
-    force = walk.plate(stance.plate).force[stance.start : stance.stop]
+    up, forward = walk.axes.ramp.gravity(walk.up, walking)
     normal, across = force @ up, np.cross(up, forward)
     shear = force - np.outer(normal, up)
     even = float((shear @ across).mean() / normal.mean())
@@ -673,7 +617,8 @@ def _angle(first: np.ndarray, second: np.ndarray) -> float:
     return math.acos(min(1.0, max(-1.0, float(first @ second) / size))) if size else 0.0
 
 
-def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
+def _marker_flags(step: Step) -> Iterator[Flag]:
+    walk, stance = step.walk, step.stance
     by_hand = "side" in stance.by_hand
     for event in walk.trial.events:
         sides = {event.side, stance.side}
@@ -687,11 +632,11 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
     if not walk.heels:
         return
     if not stance.heel:
-        if walk.plate(stance.plate).corners is not None and not by_hand:
+        if step.plate.corners is not None and not by_hand:
             text = "no heel marker comes down on the plate: are forces and markers in time?"
             yield Flag("foot", text)
         return
-    heel = walk.trial.marker(stance.heel)
+    heel = walk.trial.markers[stance.heel]  # over the whole record, also on a belt
     if heel.times is not None:
         jumps = marker_jumps(heel.positions)
     else:
@@ -699,9 +644,9 @@ def _marker_flags(walk: Walkway, stance: Stance) -> Iterator[Flag]:
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
         text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
-        slowness = max(stance.duration / _USUAL_DURATION, 1.0)
+        slowness = max(stance.duration / USUAL_DURATION, 1.0)
         yield from replace(LATE, value=LATE.value * slowness).above(gap, text)
-    near = heel.frames(stance.contact - 0.1, stance.toe_off)
+    near = frames_between(heel.time, stance.contact - 0.1, stance.toe_off)
     inside = (heel.time[near] > stance.contact - 0.1) & (heel.time[near] < stance.toe_off)
     leaps = int(jumps[near][inside].sum())
     if leaps:

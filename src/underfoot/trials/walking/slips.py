@@ -13,6 +13,7 @@ from ..recording.measurement import Choice, Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
 from ..recording.trial import Marker, once_a_record
 from .events import Stance
+from .step import Step
 from .walkway import Walkway, of_walkway
 
 PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}
@@ -470,11 +471,10 @@ def slip_of(
     On a belt the heel's speed is that over the belt. A contact rejected as a step may still be a
     slip (a foot that slides off a plate is no clean step): its reason is kept as a flag.
     """
-    walking, up = stance.walking, walk.up
+    walking, up, step = stance.walking, walk.up, Step(walk, stance)
     if walking is None:
-        walking = walk.direction(walk.plate(stance.plate), stance.start, stance.stop).vector
-    heel = stance.heel or walk.heels.get(stance.side)
-    marker = walk.marker(heel, stance.plate, stance.contact) if heel else None
+        walking = walk.direction(step.plate, stance.start, stance.stop).vector
+    marker = step.heel or step.markers.get(walk.heels.get(stance.side, ""))
     flags = (caution(f"not a clean step: {stance.reason}"),) if stance.reason else ()
     if walking is not None:
         up, walking = walk.axes.ramp.surface(up, walking)  # a heel slides along the surface

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 
-from ..recording.signals import LowPass, low_passed, low_passed_part
-from .events import Stance
-from .walkway import GRAVITY, Walkway
+from underfoot.core.constants import GRAVITY
+
+from ..recording.signals import LowPass, frames_between, low_passed, low_passed_part
+from ..recording.trial import MADE_UP
+from .step import Step
 
 _PENDULUM = 0.8  # slope of the force line of recorded steps in the plane of walking
 VERTICAL = (
@@ -21,27 +23,64 @@ _SINGLE = (0.18, 0.82)  # share of the stance in which the other foot swings
 _SLOW = LowPass(cutoff=20.0)
 _BODY = LowPass(cutoff=6.0)
 
+FASTEST = 1.8  # m/s
+USUAL_DURATION = 0.65  # s; the longest stance of the recorded steps
+USUAL_SPEED = 1.3  # m/s; of the people whose RCOF and steps the limits are of
+_FLAT = math.log(0.9)  # of the valley over the peaks
+_PEAK_TIMES = {"time of first peak", "time of second peak"}
+_ONSETS = {"shear after normal at contact", "shear after normal at toe off"}  # s
+_LEAKS = {"shear in the sideways force", "shear in the mass"}
+_SHEAR_BY_SPEED = {"braking impulse": True, "driving impulse": True, "both impulses": True,
+                   "driving ratio": False}  # logarithm or not  # fmt: skip
 
-def step_features(walk: Walkway, stance: Stance) -> dict[str, float]:
+
+def judged_features(step: Step) -> dict[str, float]:
+    """Return the features of a step that recorded steps can be compared with: on level ground.
+
+    Those of the normal force up to 1.8 m/s: of the recorded steps of ten persons (Pataky et al.
+    2008) up to it fewer than 1 % look unlikely by one of them (none of 25 below 0.9 m/s), of
+    faster ones a half. The shear of slower people is taken to the speed of those compared with: it
+    grows with the step's length, as the root of the speed.
+    """
+    walk, speed = step.walk, step.speed
+    if walk.axes.ramp.angle or walk.trial.settings.get("software") == MADE_UP:
+        return {}
+    features = step_features(step)
+    for name in _ONSETS & features.keys():  # longer, as the stance is
+        features[name] /= max(step.stance.duration / USUAL_DURATION, 1.0)
+    if speed is None:
+        return features
+    if speed > FASTEST:
+        return {name: value for name, value in features.items() if name not in VERTICAL}
+    share = math.sqrt(min(speed, USUAL_SPEED) / USUAL_SPEED)
+    for name in _LEAKS & features.keys():  # told the worse, the smaller the shear
+        features[name] *= share
+    if features.get("valley over peaks", -1.0) > _FLAT:  # two peaks that don't stand out
+        features = {name: value for name, value in features.items() if name not in _PEAK_TIMES}
+    for name in _SHEAR_BY_SPEED.keys() & features.keys() if share > 0.3 else ():
+        logarithm = _SHEAR_BY_SPEED[name]
+        features[name] = features[name] - math.log(share) if logarithm else features[name] / share
+    return features
+
+
+def step_features(step: Step) -> dict[str, float]:
     """Return the features of an accepted step by name; one that can't be had is left out.
 
     Ratios, shares and times, so that they hold for any mass and force. Those that need a mass,
     markers of the pelvis or a centre of pressure are there only with them.
     """
-    plate, rate = walk.plate(stance.plate), walk.plate(stance.plate).rate
+    walk, stance, raw, rate = step.walk, step.stance, step.force, step.plate.rate
     if stance.walking is None:
         return {}
     up, forward = walk.axes.ramp.gravity(walk.up, stance.walking)
     across = np.cross(up, forward)
-    raw = plate.force[stance.start : stance.stop]
     if 2.3 * _SLOW.cutoff > rate or len(raw) < 40:
         return {}
-    low_pass = LowPass(cutoff=min(36.0, 0.44 * rate))
-    force = low_passed_part(plate.force, rate, low_pass, stance.start, stance.stop)
+    force = step.filtered_force[LowPass(cutoff=min(36.0, 0.44 * rate))]
     normal, along, beside = (force @ axis for axis in (up, forward, across))
     found = _shapes(normal, along, beside)
     found |= _samples(raw @ up, raw @ forward, raw @ across, rate, float(normal.mean()))
-    found |= _force_line(walk, stance, across)
+    found |= _force_line(step, across)
     return {name: value for name, value in found.items() if math.isfinite(value)}
 
 
@@ -105,7 +144,7 @@ def _samples(
     return features
 
 
-def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, float]:
+def _force_line(step: Step, across: np.ndarray) -> dict[str, float]:
     """How the force points from the centre of pressure to the pelvis while one foot stands.
 
     In walking the force passes near the body's centre: shear over normal = slope x (pelvis ahead of
@@ -113,17 +152,15 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
     of the plane of walking. The vertical force over g plus the pelvis's vertical acceleration is
     the mass.
     """
-    plate = walk.plate(stance.plate)
-    pelvis = {
-        walk.marker(name, stance.plate, stance.contact): side for name, side in walk.pelvis.items()
-    }
+    walk, stance, plate = step.walk, step.stance, step.plate
+    pelvis = {step.markers[name]: side for name, side in walk.pelvis.items()}
     pelvis = {m: side for m, side in pelvis.items() if m.times is None and not m.missing.all()}
     markers = list(pelvis)
     begin, end = (stance.start + round(s * (stance.stop - stance.start)) for s in _LOADED)
     if len(markers) < 2 or stance.walking is None or markers[0].rate < 40.0:
         return {}
     time = plate.start + np.arange(begin, end) / plate.rate
-    near = markers[0].frames(time[0] - 0.3, time[-1] + 0.3)
+    near = frames_between(markers[0].time, time[0] - 0.3, time[-1] + 0.3)
     paths = np.array([one.positions[near] for one in markers])
     seen = np.flatnonzero(np.isfinite(paths).all(axis=(1, 2)))
     whole = paths[seen]
@@ -144,7 +181,7 @@ def _force_line(walk: Walkway, stance: Stance, across: np.ndarray) -> dict[str, 
         features["mass by acceleration"] = math.log(mass.mean() * GRAVITY / walk.weight.newtons)
     if plate.centre_of_pressure is None:
         return features
-    carried = np.outer(time - stance.contact, walk.surface_velocity(plate.name, stance.contact))
+    carried = np.outer(time - stance.contact, step.surface_velocity)
     place = np.column_stack([np.interp(time, frames, body[:, i]) for i in range(3)])
     arm = place - (plate.centre_of_pressure[begin:end] - carried)
     height = arm @ walk.up
