@@ -13,7 +13,7 @@ from underfoot.core import InputError
 from underfoot.shoe import Flat, Heel, SoleMap, heel_map
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
-from underfoot.sole_contact.long_waves import SIDE, net_over, waves_on
+from underfoot.sole_contact.long_waves import SIDE, net_over
 from underfoot.sole_contact.march import Counts
 from underfoot.sole_contact.solver import longest_step, passing_time
 
@@ -74,7 +74,7 @@ def test_waves_share_the_land_and_have_no_kink(cells, count):
     net = net_over(sole, sole.land)
     assert SIDE == 5e-3
     assert net.x.size == 2 * count + 1
-    waves = waves_on(sole, sole.land, net).toarray()
+    waves = net.waves(sole, sole.land).toarray()
     land = sole.land.ravel()
     np.testing.assert_allclose(waves[land].sum(axis=1), 1.0)
     assert not waves[~land].any()

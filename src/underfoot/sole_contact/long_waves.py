@@ -64,8 +64,7 @@ class LongWaves:
 
     def self_compliance(self, shape: tuple[int, int]) -> Array:
         """Return what is added to the deflection of a cell under its own unit pressure."""
-        product = self.waves.multiply(sp.csr_matrix(self.waves @ sp.csr_matrix(self.matrix)))
-        return np.asarray(product.sum(axis=1)).reshape(shape)
+        return np.asarray(self.waves.multiply(self.waves @ self.matrix).sum(axis=1)).reshape(shape)
 
     def within(self, shape: tuple[int, int], box: Box, dtype: Any = float) -> LongWaves:
         """Return the same between the cells of a box of a map of ``shape``."""
@@ -113,16 +112,26 @@ class Net:
             self.low[:, None] + (self.high - self.low)[:, None] * share,
         )
 
-    def waves(self, sole: SoleMap) -> sp.csr_matrix:
-        """Return each wave at each cell of a map: splines of second order over the squares."""
-        nx = self.x.size // 2
+    def waves(self, sole: SoleMap, cells: NDArray[np.bool_]) -> sp.csr_matrix:
+        """Return each wave at each cell of a map: splines of second order over the squares.
+
+        They are 0 away from ``cells``.
+        """
+        nx, ny = self.x.size // 2, self.ny
         at = np.clip((sole.x - self.x[0]) / (self.x[2] - self.x[0]), 0.0, nx)
         column = np.minimum(at.astype(np.intp), nx - 1)
         low, high = (_through(rim, column, at - column) for rim in (self.low, self.high))
-        across = self.ny * (sole.y - low[:, None]) / (high - low)[:, None]
-        along = _splines(at, nx)
-        values = np.einsum("ia,ijb->ijab", along, _splines(np.clip(across, 0.0, self.ny), self.ny))
-        return sp.csr_matrix(values.reshape(across.size, -1))
+        i, j = np.nonzero(cells)
+        across = np.clip(ny * (sole.y[j] - low[i]) / (high - low)[i], 0.0, ny)
+        square = np.minimum(across.astype(np.intp), ny - 1)
+        along = _splines((at - column)[i])
+        values = along[:, :, None] * _splines(across - square)[:, None, :]
+        beside = np.arange(3)
+        numbers = (column[i, None] + beside)[:, :, None] * (ny + 2)
+        numbers = numbers + (square[:, None] + beside)[:, None, :]
+        ends = np.concatenate([[0], np.cumsum(9 * cells.ravel())])
+        shape = cells.size, (nx + 2) * (ny + 2)
+        return sp.csr_matrix((values.ravel(), numbers.ravel(), ends), shape)
 
     @property
     def sizes(self) -> Array:
@@ -197,18 +206,12 @@ def _near(sole: SoleMap) -> NDArray[np.bool_]:
 
 def _near_waves(sole: SoleMap, net: Net) -> sp.csr_matrix:
     """Return the waves at each cell, 0 away from what is near."""
-    return waves_on(sole, _near(sole), net)
+    return net.waves(sole, _near(sole))
 
 
-def waves_on(sole: SoleMap, cells: NDArray[np.bool_], net: Net) -> sp.csr_matrix:
-    """Return the waves of a net on some cells of a map, 0 at the others."""
-    return sp.csr_matrix(sp.diags(cells.ravel().astype(float)) @ net.waves(sole))
-
-
-def _splines(at: Array, count: int) -> Array:
-    """Return the ``count`` + 2 splines of second order on 0 to ``count`` at places (..., n)."""
-    off = np.abs(at[..., None] - (np.arange(count + 2) - 0.5))
-    return np.where(off < 0.5, 0.75 - off**2, 0.5 * np.maximum(1.5 - off, 0.0) ** 2)
+def _splines(share: Array) -> Array:
+    """Return the three splines of second order that meet at a share (n,) of a square, (n, 3)."""
+    return np.stack([0.5 * (1 - share) ** 2, 0.75 - (share - 0.5) ** 2, 0.5 * share**2], axis=-1)
 
 
 def _through(values: Array, column: NDArray[np.intp], share: Array) -> Array:
