@@ -199,7 +199,7 @@ def test_squares_of_another_side_give_the_same_gap(monkeypatch):
     given = {"modulus": MODULUS, "poisson_ratio": RATIO, "shoe_angle": ANGLE} | BODIES["rubber"]
     pressure = pressed(sole, "facet")
     rises = []
-    for side in (5e-3, 5.6e-3, 6.5e-3):
+    for side in (4e-3, 4.5e-3, 5.2e-3):
         monkeypatch.setattr(long_waves, "SIDE", side)
         rises.append(layered_compliance(sole, **given).apply(pressure))
     rim = binary_erosion(sole.inside, iterations=4)

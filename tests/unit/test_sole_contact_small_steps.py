@@ -68,12 +68,12 @@ def test_a_step_is_no_longer_than_its_stage_and_no_finer_than_its_eighth():
     assert longest_step(stage, 0.5 * stage / 6) == pytest.approx(0.5 * stage)
 
 
-@pytest.mark.parametrize(("cells", "count"), [(4, 1), (9, 1), (10, 2), (12, 2), (58, 6)])
+@pytest.mark.parametrize(("cells", "count"), [(4, 1), (7, 1), (8, 2), (12, 2), (58, 8)])
 def test_waves_share_the_land_and_have_no_kink(cells, count):
     """Splines of second order: they sum to one, lines are exact, parabolas off by one number."""
     sole = striped(cells + 1)
     splines = splines_over(sole, sole.land)
-    assert WAVE * SIDE == 10e-3
+    assert WAVE * SIDE == 8e-3
     assert splines.squares[0] == count
     waves = splines.on(sole.x, sole.y, sole.land).toarray()
     land = sole.land.ravel()

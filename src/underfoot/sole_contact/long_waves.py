@@ -29,12 +29,12 @@ from ._kernels.brick_elements import Bricks, work_of_waves
 from ._kernels.splines import Splines
 
 Box = tuple[slice, slice]
-SIDE = 5e-3
+SIDE = 4e-3
 """Side of a square, m, at most; larger where ``MOST_SQUARES`` do not cover the plan."""
 LEAST_LENGTH = 30e-3
 """Length and width (m) of what is near the floor, below which the layers stay as they are: they
 were set by blocks of that size."""
-MOST_SQUARES = 250
+MOST_SQUARES = 400
 WAVE = 2
 """Squares under one of the waves, each way: what bricks don't resolve, the layers know better.
 Waves of one square beat with lugs: the film of a tread hung on the side of a square."""
@@ -47,7 +47,7 @@ ALIKE = 1e-3
 NARROWEST = 0.1
 """Width of a row of bricks where the rim ends in a point, over the widest."""
 SAMPLES = 3  # a side of a quarter of a square
-GROWTH = 1.6  # from a layer of bricks to the next, from the floor up
+GROWTH = 2.0  # from a layer of bricks to the next, from the floor up
 MIDSOLE_LAYERS = 2
 NEARLY_INCOMPRESSIBLE = 0.499
 FAINT = 0.1
@@ -264,7 +264,7 @@ def _halves(places: Array) -> Array:
 
 def _graded(thickness: float, side: float) -> Array:
     """Return the shares 0 to 1 of the outsole's thickness at which its layers of bricks end."""
-    steps = [side]
+    steps = [1.0 * side]
     while sum(steps) < thickness or len(steps) < 2:
         steps.append(steps[-1] * GROWTH)
     return np.concatenate([[0.0], np.cumsum(steps) / sum(steps)])
