@@ -210,10 +210,10 @@ def test_a_run_names_the_lug_that_drains_worst(tmp_path):
     )
     result = run(case, quick=True)
     fields = result.fields
-    # a bar of 16 mm across the shoe: the groove goes along it. Runs with it cut found 38 % less
-    # film under this lug, 1 % less with one to the front; on a facet of 30 mm it read 0.37
+    # a bar of 16 mm across the shoe: the groove goes along it. Runs with it cut found 43 to 47 %
+    # less film under this lug, up to 3 % less with one to the front
     assert SIDES[int(fields.lug_groove_side[0])] in ("left", "right")
-    assert float(fields.lug_relief[0]) == pytest.approx(0.29, abs=0.05)
+    assert float(fields.lug_relief[0]) == pytest.approx(0.45, abs=0.05)
     assert fields.lug_load.sum() <= result.value("fluid_load") * (1 + 1e-9)
     assert (np.diff(fields.lug_load) <= 0).all()
     assert result.labels["drainage"] in " ".join(result.remarks()["Notes"])

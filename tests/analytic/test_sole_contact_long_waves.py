@@ -8,10 +8,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
+from scipy.ndimage import binary_erosion
 
-from underfoot.shoe import Facet, Flat, Heel, heel_map
-from underfoot.sole_contact._kernels.brick_elements import Bricks, work_of_hats
+from underfoot.shoe import ArcChannel, Facet, Flat, Heel, heel_map
+from underfoot.sole_contact import long_waves
+from underfoot.sole_contact._kernels.brick_elements import Bricks, work_of_waves
 from underfoot.sole_contact._kernels.elastic import block_compression
+from underfoot.sole_contact._kernels.splines import Splines
 from underfoot.sole_contact.compliance import half_space_compliance, layered_compliance
 from underfoot.sole_contact.finite_element import Layers, finite_element_compliance, sole_prisms
 from underfoot.sole_contact.row_compliance import short_waves
@@ -69,12 +72,14 @@ def bricks(side, height, count, layers, ratio):
     nodes = np.stack(np.meshgrid(place, place, level, indexing="ij"), axis=-1)
     full = np.ones((2 * count, 2 * count))
     same = np.full(layers, MODULUS), np.full(layers, ratio)
-    return Bricks(side / count, nodes, full, full, *same)
+    return Bricks(nodes, full, full, *same)
 
 
 def mean_compression(block: Bricks, side: float) -> float:
-    corners = np.arange((block.cover.shape[0] // 2 + 1) ** 2)
-    return work_of_hats(block, corners).sum() / side**2
+    splines = Splines((0.0, 0.0), (side / 4, side / 4), (4, 4))
+    work, overlap = work_of_waves(block, splines, np.arange(splines.count))
+    assert overlap.sum() == pytest.approx(side**2)
+    return work.sum() / side**2
 
 
 def test_bricks_free_to_bulge_nowhere_are_exact():
@@ -101,7 +106,7 @@ def test_blocks_give_way_as_elements_of_high_order_say(side, height):
 @pytest.mark.parametrize("spacing", [1e-3, 0.6e-3])
 def test_the_gap_under_a_bevel_has_the_shape_of_elements_of_order_4(body, spacing):
     """Along the middle within 3 % of the largest rise behind the facet's front (5.5 % at it on
-    the coarse grid), the tilt of the facet within 3 %, near the round rear within 11 %."""
+    the coarse grid), the tilt of the facet within 3 %, 15 mm beside the middle within 6 %."""
     sole = heel_map(heel(body), shoe_angle=ANGLE, spacing=spacing)
     compliance = layered_compliance(
         sole, modulus=MODULUS, poisson_ratio=RATIO, shoe_angle=ANGLE, **BODIES[body]
@@ -114,7 +119,7 @@ def test_the_gap_under_a_bevel_has_the_shape_of_elements_of_order_4(body, spacin
         behind = middle & (places[:, 0] < 25e-3)
         assert np.abs(error[behind]).max() < 0.03
         assert np.abs(error[middle]).max() < 0.055
-        assert np.abs(error[~middle]).max() < 0.11
+        assert np.abs(error[~middle]).max() < 0.06
         rear, front = (np.flatnonzero(middle & (places[:, 0] == at)) for at in (4e-3, 20e-3))
         assert abs(error[front] - error[rear]) < 0.03
 
@@ -184,6 +189,40 @@ def test_a_flat_heel_keeps_its_closed_form_within_the_error_of_that():
     assert rise[sole.inside].mean() == pytest.approx(closed[sole.inside].mean(), rel=0.05)
 
 
+def test_squares_of_another_side_give_the_same_gap(monkeypatch):
+    """The rise under a bevel hardly knows where the squares lie: 1 % rms of the largest, 3 % at
+    most.
+
+    Hats of first order made it kink at each corner: 40 % of film hung on the side of a square.
+    """
+    sole = heel_map(heel("rubber"), shoe_angle=ANGLE, spacing=1e-3)
+    given = {"modulus": MODULUS, "poisson_ratio": RATIO, "shoe_angle": ANGLE} | BODIES["rubber"]
+    pressure = pressed(sole, "facet")
+    rises = []
+    for side in (4e-3, 4.5e-3, 5.2e-3):
+        monkeypatch.setattr(long_waves, "SIDE", side)
+        rises.append(layered_compliance(sole, **given).apply(pressure))
+    rim = binary_erosion(sole.inside, iterations=4)
+    near = rim & (pressure > 0)
+    for other in rises[1:]:
+        off = (other - rises[0])[near] / rises[0].max()
+        assert np.abs(off).max() < 0.03
+        assert np.sqrt(np.mean(off**2)) < 0.01
+    bends = np.diff(rises[0][:28, sole.y.size // 2], 2)[6:18]
+    assert np.abs(bends).max() < 0.005 * rises[0].max()
+
+
+def test_a_channel_of_a_millimetre_hardly_cuts_a_body_of_25():
+    """It was as deep as the body to the layers: the rise dipped by a tenth 6 mm beside it."""
+    given = {"modulus": MODULUS, "poisson_ratio": RATIO, "shoe_angle": ANGLE} | BODIES["rubber"]
+    channel = ArcChannel(position=20e-3, radius=0.5, width=4e-3, depth=1e-3)
+    cut = heel_map(heel("rubber", arc_channel=channel), shoe_angle=ANGLE, spacing=1e-3)
+    whole = heel_map(heel("rubber"), shoe_angle=ANGLE, spacing=1e-3)
+    pressure = np.where(cut.land, pressed(whole, "facet"), 0.0)
+    with_it, without = (layered_compliance(s, **given).apply(pressure) for s in (cut, whole))
+    assert np.abs(with_it - without)[pressure > 0].max() < 0.005 * without.max()
+
+
 def test_the_elements_of_a_bevelled_heel_are_as_thick_as_the_heel():
     """A corner of the map outside the sole was taken for its plane: 0.9 mm of 25 were missing."""
     sole = heel_map(heel("rubber"), shoe_angle=ANGLE, spacing=1e-3)
@@ -191,6 +230,8 @@ def test_the_elements_of_a_bevelled_heel_are_as_thick_as_the_heel():
     normal = np.array([-math.sin(ANGLE), 0.0, math.cos(ANGLE)])
     foot, land = (mesh.nodes[np.unique(part)] @ normal for part in (mesh.foot, mesh.land))
     assert foot.mean() - land.min() == pytest.approx(25e-3, rel=1e-9)
+    flat = foot.mean() - (mesh.nodes[np.unique(mesh.land)] @ normal)
+    assert flat.max() == pytest.approx(25e-3, rel=1e-9)
 
 
 def test_every_compliance_has_a_near_field():
@@ -207,7 +248,7 @@ def test_every_compliance_has_a_near_field():
 @pytest.mark.slow
 @pytest.mark.parametrize("body", BODIES)
 def test_finite_elements_have_the_shape_of_elements_of_order_4(body):
-    """Within 6 %: prisms of 3 mm and order 2, on cells of 1 mm."""
+    """Within 5 %, 2 % behind the facet's front: prisms of 3 mm and order 2, on cells of 1 mm."""
     sole = heel_map(heel(body), shoe_angle=ANGLE, spacing=1e-3)
     compliance = finite_element_compliance(
         sole, modulus=MODULUS, poisson_ratio=RATIO, shoe_angle=ANGLE, **BODIES[body]
@@ -215,4 +256,6 @@ def test_finite_elements_have_the_shape_of_elements_of_order_4(body):
     for load in LOADS:
         places, true = reference(body, load)
         rise = RegularGridInterpolator((sole.x, sole.y), compliance.apply(pressed(sole, load)))
-        assert np.abs(rise(places) - true).max() < 0.06 * true.max()
+        error = np.abs(rise(places) - true) / true.max()
+        assert error.max() < 0.05
+        assert error[(places[:, 1] < 1e-3) & (places[:, 0] < 20e-3)].max() < 0.02

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from underfoot.core import InputError
-from underfoot.core.arrays import Array, Mask
+from underfoot.core.arrays import Array
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -111,13 +111,11 @@ class ConvolutionCompliance:
             risen += correction.apply(pressure)
         return risen
 
-    def corrected(
-        self, body: BodyCorrection | None, sole: SoleMap, plan: Mask
-    ) -> ConvolutionCompliance:
+    def corrected(self, body: BodyCorrection | None, sole: SoleMap) -> ConvolutionCompliance:
         """Return the compliance with the long waves of its body put right; itself for None."""
         if body is None:
             return self
-        result = self.plus(body.on(sole, plan))
+        result = self.plus(body.on(sole))
         result.body = body
         return result
 
@@ -129,14 +127,14 @@ class ConvolutionCompliance:
         result._self = np.maximum(own, LEAST_OWN * self._self)
         return result
 
-    def under_hats(self, hats: sp.csr_matrix) -> Array:
+    def under_waves(self, waves: sp.csr_matrix) -> Array:
         """Return B^T C B (m/Pa) of fields B (cells, n), in single precision."""
         shape = self._self.shape
-        loaded = (np.diff(hats.indptr) > 0).reshape(shape)
+        loaded = (np.diff(waves.indptr) > 0).reshape(shape)
         rows, columns = (np.flatnonzero(loaded.any(axis=axis)) for axis in (1, 0))
         box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
         cells = np.arange(loaded.size).reshape(shape)[box]
-        near: Any = hats[cells.ravel()]
+        near: Any = waves[cells.ravel()]
         fields = cast("Any", sp.csc_matrix(near))
         part = self.within(box, np.float32)
         risen = np.empty((cells.size, fields.shape[1]))
@@ -295,8 +293,7 @@ def layered_compliance(
 
     depth = mean_lug_depth(sole)
     land = sole.inside & sole.land
-    lugs_left = bool((sole.tread_depth[land] > 0).any())
-    plan = sole.inside if lugs_left else land  # channels worn nearly through press on the block too
+    plan = sole.inside  # a channel is shallow beside the body, whose real shape the elements have
     give = block_compression(plan, sole.spacing, body, modulus, poisson_ratio)
     footprint = partial(free_sided_symbol, **elastic, uniform=float(give[plan].mean()))
 
@@ -310,10 +307,10 @@ def layered_compliance(
     soft = None
     if midsole_modulus is not None and midsole_thickness is not None:
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
-    real = Body(sole, plan, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
-    correction = body_correction(real, layers.under_hats, known)
+    real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+    correction = body_correction(real, layers.under_waves, known)
     if depth == 0.0:
-        return layers.corrected(correction, sole, plan)
+        return layers.corrected(correction, sole)
 
     height = lug_height(sole)
     cut = sole.cut or CutCells.none(shape)
@@ -338,7 +335,7 @@ def layered_compliance(
         parts.append((short, np.sqrt(bare)))
     return ConvolutionCompliance(
         shape, parts, lambda q: (rest(q) + footprint(q)) * smooth(q) + lug(q), modulus=plane
-    ).corrected(correction, sole, plan)
+    ).corrected(correction, sole)
 
 
 def body_thickness(sole: SoleMap, thickness: float, shoe_angle: float) -> Array:

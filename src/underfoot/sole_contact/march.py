@@ -22,6 +22,7 @@ from .problem import Problem, State
 EASY = 7  # Newton steps below which the time step grows
 GROWTH = 2.0
 STILL, FASTER = 3, 4.0  # Newton steps at most on the way to a steady state, and growth then
+LEAST_SHARE = 0.1  # of its way that a cell goes where steps swing
 CUT = 2.5
 SHORTEST = 1e-4  # of the first step, below which the march gives up
 BEARS = 1e3  # Pa, of a film that is no edge of the pool: a pocket, which pressure may lift above it
@@ -97,7 +98,8 @@ class March:
         self._pool_depth = pool_depth
         self._first, self._shortest = first_step, first_step * SHORTEST
         self._cells: Cells | None = None
-        self._settling: tuple[State, State] | None = None  # before the last two steps
+        self._before: tuple[Array, float] | None = None  # gap before the last step, its length
+        self._settling: list[tuple[State, State]] = []  # start and end of the last two steps
         self._lugs = inlet
         self._edges: dict[bool, LeadingEdges] = {}  # by the way that the floor moves
 
@@ -128,8 +130,8 @@ class March:
         start = self.state
         while True:
             demand = demand_after(duration)
-            if demand.settles and self._settling is not None:
-                start = _calmed(*self._settling, self.state)
+            if demand.settles and len(self._settling) == 2:
+                start = _calmed(*self._settling)
             problem = replace(
                 self.problem, clearance=demand.clearance, wall_speed=demand.wall_speed
             )
@@ -155,7 +157,9 @@ class March:
                 content=self._content()[cells.numbers],
                 tolerance=demand.tolerance,
                 leaps=demand.leaps,
-                upstream=self._upstream(problem, cells, start),
+                upstream=self._upstream(
+                    problem, cells, start if demand.leaps else self._ahead(duration)
+                ),
                 inlet=self._inlet(problem, cells, start),
                 tick=tick,
             )
@@ -166,8 +170,8 @@ class March:
             # it must not touch the floor outside the cells of the step
             beside = TOUCHES * problem.decay
             if state is not None and not (state.gap[~cells.mask] < beside).any():
-                first = self.state if self._settling is None else self._settling[1]
-                self._settling = (first, self.state) if demand.settles else None
+                self._settling = [*self._settling[-1:], (start, state)] if demand.settles else []
+                self._before = self.state.gap, duration
                 self.problem, self.state, self.film = problem, state, film
                 self.counts.time_steps += 1
                 grown = duration * (GROWTH if attempt.newton < EASY else 1.0)
@@ -181,6 +185,14 @@ class March:
             limited = False
             if duration < self._shortest:
                 return 0.0
+
+    def _ahead(self, duration: float) -> State:
+        """Return the state with the gap that goes on as in the last step, for what faces lean."""
+        if self._before is None:
+            return self.state
+        gap, last = self._before
+        share = min(duration / last, GROWTH)
+        return replace(self.state, gap=self.state.gap + share * (self.state.gap - gap))
 
     @property
     def _film_that_stays(self) -> Mask:
@@ -225,16 +237,23 @@ class March:
         return np.where(self.film, self.state.fraction * held, pool)
 
 
-def _calmed(first: State, before: State, now: State) -> State:
-    """Return a state whose pressures and gaps lie half a step back where they swing.
+def _calmed(before: tuple[State, State], last: tuple[State, State]) -> State:
+    """Return where pressures and gaps should start so that a step ends where it starts.
 
     What a step takes from its start (faces that lean, edges that let in) overshoots the steady
-    state when steps are longer than the memory of the film: each step swings to the other side.
+    state when steps are longer than the memory of the film: steps swing, from one side to the other
+    or round in threes. So each cell's secant through the last two steps, ``before`` and ``last``
+    with their starts and ends, says how much of the way it goes.
     """
+    (first, _), (start, now) = before, last
     calmed = {}
     for name in ("pressure", "gap", "fluid"):
-        one, two, three = (getattr(state, name) for state in (first, before, now))
-        calmed[name] = np.where((three - two) * (two - one) < 0, 0.5 * (two + three), three)
+        ends = [(getattr(step[0], name), getattr(step[1], name)) for step in (before, last)]
+        was, way = (end - begin for begin, end in ends)
+        moved = getattr(start, name) - getattr(first, name)
+        bent = was - way
+        share = np.divide(moved, bent, out=np.ones_like(moved), where=moved * bent > 0)
+        calmed[name] = getattr(start, name) + np.clip(share, LEAST_SHARE, 1.0) * way
     return replace(now, **calmed)
 
 

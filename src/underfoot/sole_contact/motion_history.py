@@ -19,7 +19,7 @@ from .sole_state import SoleState, SolverSettings
 from .solver import SoleContact, held_on, longest_step, passing_time, with_history
 from .stepping import Reporting, SlidingSole
 
-STEPS = 3.0
+STEPS = 3.5
 """Inner steps into which the whole history falls at least, over the time resolution; every point of
 the history ends one."""
 LANDED = 0.01

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array
 from underfoot.core.sparse import factorization
 
+from .splines import Splines
+
 EMPTY = 1e-3
 """Share of the rubber's stiffness that stands for air, so that no node is loose."""
 GAUSS = 1 / np.sqrt(3.0)
@@ -51,45 +53,49 @@ def shape_functions(points: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class Bricks:
-    """Bodies over squares of side ``side`` (m), bonded to a rigid foot at their top.
+    """Bodies over a net of squares, bonded to a rigid foot at their top.
 
-    ``nodes`` (2 nx + 1, 2 ny + 1, 2 nz + 1, 3) are places in the floor's frame, corners at even
+    ``nodes`` (2 nx + 1, 2 ny + 1, 2 nz + 1, 3) are places in the floor's frame, m, corners at even
     indices; ``cover`` (2 nx, 2 ny) is the share of each quarter of a square that the body covers,
-    ``loaded`` that of what presses on it; ``modulus`` and ``poisson_ratio`` (nz,) are those of the
-    layers, from the floor up.
+    ``pressed`` that on which waves press;
+    ``modulus`` and ``poisson_ratio`` (nz,) are those of the layers, from the floor up.
     """
 
-    side: float
     nodes: Array
     cover: Array
-    loaded: Array
+    pressed: Array
     modulus: Array
     poisson_ratio: Array
 
 
-def work_of_hats(bricks: Bricks, hats: NDArray[np.int64]) -> Array:
-    """Return the work of hats on the floor of the bricks, (n, n), m^3/Pa.
+def work_of_waves(
+    bricks: Bricks, splines: Splines, waves: NDArray[np.int64]
+) -> tuple[Array, Array]:
+    """Return the work of waves on the floor of the bricks, m^3/Pa, and their overlap, m^2, (n, n).
 
-    ``hats`` are numbers of corners of the plan, i (ny + 1) + j: bilinear, 1 at a corner and 0 at
-    the others, 0 outside the body. [a, b] is the integral of hat a times the rise under a pressure
-    that is hat b. Small strain; reduced integration (2 x 2 x 2), so that nothing locks. What comes
-    of a body is kept: cases that differ in fluid, floor, speed or hardness alone share it.
+    ``waves`` are numbers of ``splines``; a wave is 0 where nothing presses. [a, b] is the integral
+    of wave a times the rise under a pressure that is wave b, or times wave b itself. Small strain;
+    reduced integration (2 x 2 x 2), so that nothing locks. What comes of a body is kept: cases that
+    differ in fluid, floor, speed or hardness alone share it.
     """
     stiff = bricks.modulus[0]  # what the work goes by: other rubber under a foot is known too
     relative = replace(bricks, modulus=bricks.modulus / stiff)
-    return _work_of_hats(pickle.dumps((relative, hats))) / stiff
+    work, overlap = _work_of_waves(pickle.dumps((relative, splines, waves)))
+    return work / stiff, overlap
 
 
 @lru_cache(maxsize=8)
-def _work_of_hats(pickled: bytes) -> Array:
-    bricks, hats = pickle.loads(pickled)
+def _work_of_waves(pickled: bytes) -> tuple[Array, Array]:
+    bricks, splines, waves = pickle.loads(pickled)
     number, elements = _numbering(bricks)
     stiffness = _stiffness(bricks, elements, number)
-    load = _hat_loads(bricks, elements, number)
-    right = np.ascontiguousarray(load[:, hats].toarray())
+    rise, area, x, y = _floor(bricks, elements, number)
+    pressed = splines.at(x, y)[:, waves]
+    weighted = sp.csr_matrix(pressed.multiply(area[:, None]))
+    right = np.ascontiguousarray((rise.T @ weighted).toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
     work = right.T @ factors.solve(right)
-    return 0.5 * (work + work.T)
+    return 0.5 * (work + work.T), (pressed.T @ weighted).toarray()
 
 
 def _numbering(bricks: Bricks) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -146,26 +152,28 @@ def _stiffness(
     return matrix
 
 
-def _hat_loads(
+def _floor(
     bricks: Bricks, elements: NDArray[np.int64], number: NDArray[np.int64]
-) -> sp.csr_matrix:
-    """Return the loads of all hats on the unknowns."""
-    ny = bricks.cover.shape[1] // 2
-    count = (bricks.cover.shape[0] // 2 + 1) * (ny + 1)
+) -> tuple[sp.csr_matrix, Array, Array, Array]:
+    """Return the rise by the unknowns at points of the floor, their pressed areas (m^2), x and y.
+
+    Four points a quarter of a square.
+    """
     low = elements[elements[:, 2] == 0]
-    numbers = number[_element_nodes(low)]
-    steps = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
-    hats = (low[:, None, 0] + steps[:, 0]) * (ny + 1) + low[:, None, 1] + steps[:, 1]
-    load = np.zeros((len(low), 20, 4))
-    inner = np.array([(a, b) for a in (-1, 1) for b in (-1, 1)]) * GAUSS
-    for a, b in steps:  # the quarters of a square
-        area = 0.0625 * bricks.side**2 * bricks.loaded[2 * low[:, 0] + a, 2 * low[:, 1] + b]
-        for point in 0.5 * inner + (np.array([a, b]) - 0.5):
-            value, _ = shape_functions(np.array([[*point, -1.0]]))
-            bilinear = 0.25 * (1 + (2 * steps - 1) * point).prod(axis=1)
-            load += area[:, None, None] * np.outer(value[0], bilinear)
-    size = 3 * (int(number.max()) + 1)
-    rows = np.repeat(3 * numbers + 2, 4, axis=1).ravel()
-    columns = np.tile(hats, (1, 20)).ravel()
-    kept = rows >= 2
-    return sp.csr_matrix((load.reshape(-1)[kept], (rows[kept], columns[kept])), (size, count))
+    at = _element_nodes(low)
+    numbers, places = number[at], bricks.nodes[at][..., :2]
+    inner = 0.5 * GAUSS * np.array([(a, b) for a in (-1, 1) for b in (-1, 1)])
+    quarters = [(a, b) for a in (0, 1) for b in (0, 1)]
+    points = np.concatenate([inner + (np.array(quarter) - 0.5) for quarter in quarters])
+    value, slope = shape_functions(np.column_stack([points, np.full(len(points), -1.0)]))
+    drawn = np.einsum("eni,pnj->epij", places, slope[:, :, :2])
+    pressed = [bricks.pressed[2 * low[:, 0] + a, 2 * low[:, 1] + b] for a, b in quarters]
+    area = 0.25 * np.abs(np.linalg.det(drawn)) * np.repeat(np.stack(pressed, axis=1), 4, axis=1)
+    x, y = np.einsum("pn,eni->iep", value, places)
+    unknowns = np.repeat(3 * numbers[:, None, :] + 2, len(points), axis=1)
+    kept = (unknowns >= 2) & (value != 0.0)
+    rows = np.broadcast_to(np.arange(area.size).reshape(area.shape)[:, :, None], kept.shape)
+    values = np.broadcast_to(value, kept.shape)
+    shape = area.size, 3 * (int(number.max()) + 1)
+    rise = sp.csr_matrix((values[kept], (rows[kept], unknowns[kept])), shape)
+    return rise, area.ravel(), x.ravel(), y.ravel()

@@ -12,7 +12,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
-from ..long_waves import LongWaves, wide_hats
+from ..long_waves import LongWaves, splines_over
 from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, SoleMesh, sole_mesh
 from .plan import plan_of
@@ -26,7 +26,7 @@ FAR_ELEMENT = 4.0e-3
 REACH = 3.5e-3
 """Land higher above the floor than this (m) keeps the layered compliance alone."""
 FAINT = 0.02
-"""Hats that the land can't tell apart (relative eigenvalue of their overlap) are left out."""
+"""Waves that the land can't tell apart (relative eigenvalue of their overlap) are left out."""
 
 
 class OutsoleAndMidsole(TypedDict):
@@ -52,7 +52,7 @@ def finite_element_compliance(
     """Return the compliance of a sole from finite elements of its real shape.
 
     Finite elements for what varies over 6 mm or more, lug by lug too; layers for what is finer
-    and for land far above the floor: ``LongWaves`` with hats that the land cuts out.
+    and for land far above the floor: ``LongWaves`` with waves that the land cuts out.
 
     Parameters:
         sole: Plan form, profile and tread; meshed as its cells show them.
@@ -70,7 +70,8 @@ def finite_element_compliance(
     land = sole_land(sole, cache=cache, progress=progress, **body)
     layers = layered_compliance(sole, **body)
     nodes, near = hats_on_cells(land, sole), sole.land & (sole.clearance < REACH)
-    fields = wide_hats(sole, near)
+    fields = splines_over(sole, near).on(sole.x, sole.y, near)
+    fields = sp.csr_matrix(fields[:, np.diff(sp.csc_matrix(fields).indptr) > 0])
     size = np.sqrt(np.asarray(fields.multiply(fields).sum(axis=0)).ravel())
     values, vectors = np.linalg.eigh((fields.T @ fields).toarray() / np.outer(size, size))
     distinct = values > FAINT
@@ -79,7 +80,7 @@ def finite_element_compliance(
     # turns it into pressure, so that force is kept where cells cover a rim only in part.
     pressure = np.linalg.solve(land.overlap.toarray(), (nodes.T @ fields).toarray() @ turn)
     exact = pressure.T @ land.work @ pressure * sole.spacing**2
-    change = turn @ (exact - turn.T @ layers.under_hats(fields) @ turn) @ turn.T
+    change = turn @ (exact - turn.T @ layers.under_waves(fields) @ turn) @ turn.T
     return layers.plus(LongWaves(fields, 0.5 * (change + change.T)))
 
 
