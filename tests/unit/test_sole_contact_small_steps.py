@@ -11,9 +11,10 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.shoe import Flat, Heel, SoleMap, heel_map
+from underfoot.sole_contact._kernels.splines import Splines
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
-from underfoot.sole_contact.long_waves import SIDE, net_over, waves_on
+from underfoot.sole_contact.long_waves import SIDE, WAVE, net_over, splines_over
 from underfoot.sole_contact.march import Counts
 from underfoot.sole_contact.solver import longest_step, passing_time
 
@@ -67,22 +68,32 @@ def test_a_step_is_no_longer_than_its_stage_and_no_finer_than_its_eighth():
     assert longest_step(stage, 0.5 * stage / 6) == pytest.approx(0.5 * stage)
 
 
-@pytest.mark.parametrize(("cells", "count"), [(4, 1), (5, 2), (12, 3), (58, 12)])
+@pytest.mark.parametrize(("cells", "count"), [(4, 1), (7, 1), (8, 2), (12, 2), (58, 8)])
 def test_waves_share_the_land_and_have_no_kink(cells, count):
     """Splines of second order: they sum to one, lines are exact, parabolas off by one number."""
     sole = striped(cells + 1)
-    net = net_over(sole, sole.land)
-    assert SIDE == 5e-3
-    assert net.x.size == 2 * count + 1
-    waves = waves_on(sole, sole.land, net).toarray()
+    splines = splines_over(sole, sole.land)
+    assert WAVE * SIDE == 8e-3
+    assert splines.squares[0] == count
+    waves = splines.on(sole.x, sole.y, sole.land).toarray()
     land = sole.land.ravel()
     np.testing.assert_allclose(waves[land].sum(axis=1), 1.0)
     assert not waves[~land].any()
-    side = net.x[2] - net.x[0]
-    middles = np.repeat(net.x[0] + side * (np.arange(count + 2) - 0.5), net.ny + 2)
+    side = splines.sides[0]
+    middles = splines.start[0] + side * (np.arange(count + 2) - 0.5)
+    middles = np.repeat(middles, splines.squares[1] + 2)
     x = np.repeat(sole.x, sole.y.size)[land]
     np.testing.assert_allclose((waves @ middles)[land], x, atol=1e-12)
     np.testing.assert_allclose((waves @ middles**2)[land] - x**2, side**2 / 4, rtol=1e-9)
+
+
+def test_a_wave_overlaps_itself_by_its_size():
+    fine = 0.05e-3 * (np.arange(1000) + 0.5)
+    splines = Splines((0.0, 0.0), (10e-3, 10e-3), (5, 5))
+    along = splines.at(fine, np.full(1000, 25e-3)).toarray().reshape(1000, 7, 7)[:, 3, 3]
+    middle = splines.at(np.full(1, 25e-3), np.full(1, 25e-3)).toarray().reshape(7, 7)[3, 3]
+    one = (along**2).sum() * 0.05e-3 / middle
+    assert one**2 == pytest.approx(splines.size, rel=1e-5)
 
 
 def test_columns_of_a_net_end_at_the_rim():
@@ -96,7 +107,7 @@ def test_columns_of_a_net_end_at_the_rim():
             x=centres, y=centres, inside=inside, spacing=1e-3, whole=None,
         ),
     )  # fmt: skip
-    net = net_over(disc, inside)
+    net = net_over(disc, splines_over(disc, inside))
     rim = np.sqrt(np.maximum(radius**2 - net.x**2, 0.0))
     np.testing.assert_allclose(net.high[2:-2], rim[2:-2], atol=0.02 * radius)
     np.testing.assert_allclose(net.low, -net.high, atol=1e-9)

@@ -26,14 +26,18 @@ from underfoot.core.arrays import Array
 from underfoot.shoe.geometry import SoleMap
 
 from ._kernels.brick_elements import Bricks, work_of_waves
+from ._kernels.splines import Splines
 
 Box = tuple[slice, slice]
-SIDE = 5e-3
+SIDE = 4e-3
 """Side of a square, m, at most; larger where ``MOST_SQUARES`` do not cover the plan."""
 LEAST_LENGTH = 30e-3
 """Length and width (m) of what is near the floor, below which the layers stay as they are: they
 were set by blocks of that size."""
-MOST_SQUARES = 250
+MOST_SQUARES = 400
+WAVE = 2
+"""Squares under one of the waves, each way: what bricks don't resolve, the layers know better.
+Waves of one square beat with lugs: the film of a tread hung on the side of a square."""
 REACH = 6e-3
 """Land higher above the floor than this (m) keeps the layers alone."""
 MARGIN = 1.5
@@ -43,7 +47,7 @@ ALIKE = 1e-3
 NARROWEST = 0.1
 """Width of a row of bricks where the rim ends in a point, over the widest."""
 SAMPLES = 3  # a side of a quarter of a square
-GROWTH = 1.6  # from a layer of bricks to the next, from the floor up
+GROWTH = 2.0  # from a layer of bricks to the next, from the floor up
 MIDSOLE_LAYERS = 2
 NEARLY_INCOMPRESSIBLE = 0.499
 FAINT = 0.1
@@ -64,8 +68,7 @@ class LongWaves:
 
     def self_compliance(self, shape: tuple[int, int]) -> Array:
         """Return what is added to the deflection of a cell under its own unit pressure."""
-        product = self.waves.multiply(sp.csr_matrix(self.waves @ sp.csr_matrix(self.matrix)))
-        return np.asarray(product.sum(axis=1)).reshape(shape)
+        return np.asarray(self.waves.multiply(self.waves @ self.matrix).sum(axis=1)).reshape(shape)
 
     def within(self, shape: tuple[int, int], box: Box, dtype: Any = float) -> LongWaves:
         """Return the same between the cells of a box of a map of ``shape``."""
@@ -113,35 +116,16 @@ class Net:
             self.low[:, None] + (self.high - self.low)[:, None] * share,
         )
 
-    def waves(self, sole: SoleMap) -> sp.csr_matrix:
-        """Return each wave at each cell of a map: splines of second order over the squares."""
-        nx = self.x.size // 2
-        at = np.clip((sole.x - self.x[0]) / (self.x[2] - self.x[0]), 0.0, nx)
-        column = np.minimum(at.astype(np.intp), nx - 1)
-        low, high = (_through(rim, column, at - column) for rim in (self.low, self.high))
-        across = self.ny * (sole.y - low[:, None]) / (high - low)[:, None]
-        along = _splines(at, nx)
-        values = np.einsum("ia,ijb->ijab", along, _splines(np.clip(across, 0.0, self.ny), self.ny))
-        return sp.csr_matrix(values.reshape(across.size, -1))
-
-    @property
-    def sizes(self) -> Array:
-        """Overlap of each wave with itself where nothing cuts it, m^2."""
-        middles = np.clip(np.arange(self.x.size // 2 + 2) - 0.5, 0.0, self.x.size // 2)
-        widths = np.interp(middles, 0.5 * np.arange(self.x.size), self.high - self.low) / self.ny
-        whole = 0.55**2 * (self.x[2] - self.x[0]) * widths
-        return np.repeat(whole, self.ny + 2)
-
 
 @dataclass(frozen=True, slots=True)
 class BodyCorrection:
     """Correction of the layers of one shoe, for its maps on cells of ``spacing`` (m).
 
-    ``matrix`` K (n, n) in m/N belongs to the waves ``chosen`` of ``net``; ``by_bricks`` is what the
-    elements say on any cells, m/N.
+    ``matrix`` K (n, n) in m/N belongs to the waves ``chosen`` of ``splines``; ``by_bricks`` is what
+    the elements say on any cells, m/N.
     """
 
-    net: Net
+    splines: Splines
     chosen: NDArray[np.int64]
     by_bricks: Array
     spacing: float
@@ -149,7 +133,7 @@ class BodyCorrection:
 
     def on(self, sole: SoleMap) -> LongWaves:
         """Return the correction on the cells of a map."""
-        waves = _near_waves(sole, self.net)[:, self.chosen]
+        waves = near_waves(sole, self.splines)[:, self.chosen]
         return LongWaves(sp.csr_matrix(waves), self.matrix * sole.spacing**2)
 
 
@@ -167,25 +151,25 @@ def body_correction(
     if not along.size or min(np.ptp(along), np.ptp(across)) + 1 < (LEAST_LENGTH / sole.spacing):
         return None
     if known is None:
-        bricks, net = _bricks(body, near)
-        chosen = np.flatnonzero(np.diff(sp.csc_matrix(_near_waves(sole, net)).indptr))
-        by_bricks = _compliance(*work_of_waves(bricks, chosen), net.sizes[chosen])
+        bricks, splines = _bricks(body, near)
+        chosen = np.flatnonzero(np.diff(sp.csc_matrix(near_waves(sole, splines)).indptr))
+        by_bricks = _compliance(*work_of_waves(bricks, splines, chosen), splines.size)
     else:
-        net, chosen, by_bricks = known.net, known.chosen, known.by_bricks
-    waves = sp.csr_matrix(_near_waves(sole, net)[:, chosen])
+        splines, chosen, by_bricks = known.splines, known.chosen, known.by_bricks
+    waves = sp.csr_matrix(near_waves(sole, splines)[:, chosen])
     cell = sole.spacing**2
     overlap = (waves.T @ waves).toarray() * cell
-    matrix = by_bricks - _compliance(layers(waves) * cell, overlap, net.sizes[chosen])
-    return BodyCorrection(net, chosen, by_bricks, sole.spacing, matrix)
+    matrix = by_bricks - _compliance(layers(waves) * cell, overlap, splines.size)
+    return BodyCorrection(splines, chosen, by_bricks, sole.spacing, matrix)
 
 
-def _compliance(work: Array, overlap: Array, sizes: Array) -> Array:
+def _compliance(work: Array, overlap: Array, size: float) -> Array:
     """Return the rise by waves (m) of forces on waves (N): R W R, R = overlap^-1.
 
     Waves that little of what presses is left of fade out, and what few cells can't tell apart.
     """
-    missing = np.maximum(sizes - np.diagonal(overlap), 0.0)
-    inverse = np.linalg.inv(overlap + np.diag(FAINT * missing + ALIKE * sizes))
+    missing = np.maximum(size - np.diagonal(overlap), 0.0)
+    inverse = np.linalg.inv(overlap + np.diag(FAINT * missing + ALIKE * size))
     product = inverse @ work @ inverse
     return 0.5 * (product + product.T)
 
@@ -195,20 +179,9 @@ def _near(sole: SoleMap) -> NDArray[np.bool_]:
     return sole.inside & (sole.clearance < REACH)
 
 
-def _near_waves(sole: SoleMap, net: Net) -> sp.csr_matrix:
+def near_waves(sole: SoleMap, splines: Splines) -> sp.csr_matrix:
     """Return the waves at each cell, 0 away from what is near."""
-    return waves_on(sole, _near(sole), net)
-
-
-def waves_on(sole: SoleMap, cells: NDArray[np.bool_], net: Net) -> sp.csr_matrix:
-    """Return the waves of a net on some cells of a map, 0 at the others."""
-    return sp.csr_matrix(sp.diags(cells.ravel().astype(float)) @ net.waves(sole))
-
-
-def _splines(at: Array, count: int) -> Array:
-    """Return the ``count`` + 2 splines of second order on 0 to ``count`` at places (..., n)."""
-    off = np.abs(at[..., None] - (np.arange(count + 2) - 0.5))
-    return np.where(off < 0.5, 0.75 - off**2, 0.5 * np.maximum(1.5 - off, 0.0) ** 2)
+    return splines.on(sole.x, sole.y, _near(sole))
 
 
 def _through(values: Array, column: NDArray[np.intp], share: Array) -> Array:
@@ -219,8 +192,8 @@ def _through(values: Array, column: NDArray[np.intp], share: Array) -> Array:
     ).T
 
 
-def net_over(sole: SoleMap, near: NDArray[np.bool_], margin: float = 0.0) -> Net:
-    """Return the squares over some cells and what of the sole is within ``margin`` (m) of them."""
+def splines_over(sole: SoleMap, near: NDArray[np.bool_], margin: float = 0.0) -> Splines:
+    """Return waves over some cells and what of the sole is within ``margin`` (m) of them."""
     whole = sole.whole or sole
     half = 0.5 * sole.spacing
     ends = []
@@ -229,8 +202,17 @@ def net_over(sole: SoleMap, near: NDArray[np.bool_], margin: float = 0.0) -> Net
         low = max(float(rim[0]), float(reached[0]) - margin) - half
         ends.append((low, min(float(rim[-1]), float(reached[-1]) + margin) + half))
     (x0, x1), (y0, y1) = ends
-    side = max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
+    side = WAVE * max(SIDE, math.sqrt((x1 - x0) * (y1 - y0) / MOST_SQUARES))
     nx, ny = (max(1, math.ceil(length / side - 1e-9)) for length in (x1 - x0, y1 - y0))
+    return Splines((x0, y0), ((x1 - x0) / nx, (y1 - y0) / ny), (nx, ny))
+
+
+def net_over(sole: SoleMap, splines: Splines) -> Net:
+    """Return the squares under some waves, ``WAVE`` each way under a square of theirs."""
+    whole = sole.whole or sole
+    half = 0.5 * sole.spacing
+    nx, ny = (WAVE * count for count in splines.squares)
+    (x0, y0), (x1, y1) = splines.start, splines.end
     x = np.linspace(x0, x1, 2 * nx + 1)
     # parabolas nearest to the rim, which may end in a round
     rows = np.flatnonzero(whole.inside.any(axis=1) & (whole.x > x0) & (whole.x < x1))
@@ -246,11 +228,12 @@ def net_over(sole: SoleMap, near: NDArray[np.bool_], margin: float = 0.0) -> Net
     return Net(x, np.minimum(low, middle - least), np.maximum(high, middle + least), ny)
 
 
-def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Net]:
-    """Return the bricks over the squares of a net, and this."""
+def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Splines]:
+    """Return the bricks over the squares of a net, and the waves over them."""
     sole = body.sole
     margin = MARGIN * (float(body.thickness.max()) + (body.midsole[2] if body.midsole else 0.0))
-    net = net_over(sole, near, margin)
+    splines = splines_over(sole, near, margin)
+    net = net_over(sole, splines)
     x, y = net.places
     thickness = _at(sole, body.thickness, x, y)
     side = float(net.x[2] - net.x[0])
@@ -271,7 +254,7 @@ def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Net]:
     whole = sole.whole or sole
     cover = _covered(whole, whole.inside, net)
     pressed = cover * _covered(sole, near, net)
-    return Bricks(nodes, cover, pressed, np.array(modulus), capped), net
+    return Bricks(nodes, cover, pressed, np.array(modulus), capped), splines
 
 
 def _halves(places: Array) -> Array:
@@ -281,7 +264,7 @@ def _halves(places: Array) -> Array:
 
 def _graded(thickness: float, side: float) -> Array:
     """Return the shares 0 to 1 of the outsole's thickness at which its layers of bricks end."""
-    steps = [side]
+    steps = [1.0 * side]
     while sum(steps) < thickness or len(steps) < 2:
         steps.append(steps[-1] * GROWTH)
     return np.concatenate([[0.0], np.cumsum(steps) / sum(steps)])

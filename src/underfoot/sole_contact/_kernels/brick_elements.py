@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array
 from underfoot.core.sparse import factorization
 
+from .splines import Splines
+
 EMPTY = 1e-3
 """Share of the rubber's stiffness that stands for air, so that no node is loose."""
 GAUSS = 1 / np.sqrt(3.0)
@@ -66,31 +68,34 @@ class Bricks:
     poisson_ratio: Array
 
 
-def work_of_waves(bricks: Bricks, waves: NDArray[np.int64]) -> tuple[Array, Array]:
+def work_of_waves(
+    bricks: Bricks, splines: Splines, waves: NDArray[np.int64]
+) -> tuple[Array, Array]:
     """Return the work of waves on the floor of the bricks, m^3/Pa, and their overlap, m^2, (n, n).
 
-    ``waves`` are numbers i (ny + 2) + j of products of the i-th and the j-th spline of second order
-    over the net; a wave is 0 where nothing presses. [a, b] is the integral of wave a times the rise
-    under a pressure that is wave b, or times wave b itself. Small strain; reduced integration
-    (2 x 2 x 2), so that nothing locks. What comes of a body is kept: cases that differ in fluid,
-    floor, speed or hardness alone share it.
+    ``waves`` are numbers of ``splines``; a wave is 0 where nothing presses. [a, b] is the integral
+    of wave a times the rise under a pressure that is wave b, or times wave b itself. Small strain;
+    reduced integration (2 x 2 x 2), so that nothing locks. What comes of a body is kept: cases that
+    differ in fluid, floor, speed or hardness alone share it.
     """
     stiff = bricks.modulus[0]  # what the work goes by: other rubber under a foot is known too
     relative = replace(bricks, modulus=bricks.modulus / stiff)
-    work, overlap = _work_of_waves(pickle.dumps((relative, waves)))
+    work, overlap = _work_of_waves(pickle.dumps((relative, splines, waves)))
     return work / stiff, overlap
 
 
 @lru_cache(maxsize=8)
 def _work_of_waves(pickled: bytes) -> tuple[Array, Array]:
-    bricks, waves = pickle.loads(pickled)
+    bricks, splines, waves = pickle.loads(pickled)
     number, elements = _numbering(bricks)
     stiffness = _stiffness(bricks, elements, number)
-    load, overlap = _waves(bricks, elements, number)
-    right = np.ascontiguousarray(load[:, waves].toarray())
+    rise, area, x, y = _floor(bricks, elements, number)
+    pressed = splines.at(x, y)[:, waves]
+    weighted = sp.csr_matrix(pressed.multiply(area[:, None]))
+    right = np.ascontiguousarray((rise.T @ weighted).toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
     work = right.T @ factors.solve(right)
-    return 0.5 * (work + work.T), overlap[waves][:, waves].toarray()
+    return 0.5 * (work + work.T), (pressed.T @ weighted).toarray()
 
 
 def _numbering(bricks: Bricks) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -147,32 +152,28 @@ def _stiffness(
     return matrix
 
 
-def _waves(
+def _floor(
     bricks: Bricks, elements: NDArray[np.int64], number: NDArray[np.int64]
-) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Return the loads of all waves on the unknowns, and the overlap of waves."""
-    nx, ny = (n // 2 for n in bricks.cover.shape)
+) -> tuple[sp.csr_matrix, Array, Array, Array]:
+    """Return the rise by the unknowns at points of the floor, their pressed areas (m^2), x and y.
+
+    Four points a quarter of a square.
+    """
     low = elements[elements[:, 2] == 0]
     at = _element_nodes(low)
     numbers, places = number[at], bricks.nodes[at][..., :2]
-    near = np.array([(a, b) for a in range(3) for b in range(3)])
-    waves = (low[:, None, 0] + near[:, 0]) * (ny + 2) + low[:, None, 1] + near[:, 1]
-    load, overlap = np.zeros((len(low), 20, 9)), np.zeros((len(low), 9, 9))
-    inner = np.array([(a, b) for a in (-1, 1) for b in (-1, 1)]) * GAUSS
-    for a, b in ((0, 0), (0, 1), (1, 0), (1, 1)):  # the quarters of a square
-        pressed = bricks.pressed[2 * low[:, 0] + a, 2 * low[:, 1] + b]
-        for point in 0.5 * inner + (np.array([a, b]) - 0.5):
-            value, slope = shape_functions(np.array([[*point, -1.0]]))
-            drawn = np.einsum("eni,nj->eij", places, slope[0, :, :2])
-            area = 0.25 * np.abs(np.linalg.det(drawn)) * pressed
-            t = 0.5 * point
-            along, across = np.stack([0.5 * (0.5 - t) ** 2, 0.75 - t**2, 0.5 * (0.5 + t) ** 2]).T
-            each = np.outer(along, across).ravel()
-            load += area[:, None, None] * np.outer(value[0], each)
-            overlap += area[:, None, None] * np.outer(each, each)
-    size, count = 3 * (int(number.max()) + 1), (nx + 2) * (ny + 2)
-    rows, columns = np.repeat(3 * numbers + 2, 9, axis=1).ravel(), np.tile(waves, (1, 20)).ravel()
-    kept = rows >= 2
-    loads = sp.csr_matrix((load.reshape(-1)[kept], (rows[kept], columns[kept])), (size, count))
-    pairs = np.repeat(waves, 9, axis=1).ravel(), np.tile(waves, (1, 9)).ravel()
-    return loads, sp.csr_matrix((overlap.ravel(), pairs), (count, count))
+    inner = 0.5 * GAUSS * np.array([(a, b) for a in (-1, 1) for b in (-1, 1)])
+    quarters = [(a, b) for a in (0, 1) for b in (0, 1)]
+    points = np.concatenate([inner + (np.array(quarter) - 0.5) for quarter in quarters])
+    value, slope = shape_functions(np.column_stack([points, np.full(len(points), -1.0)]))
+    drawn = np.einsum("eni,pnj->epij", places, slope[:, :, :2])
+    pressed = [bricks.pressed[2 * low[:, 0] + a, 2 * low[:, 1] + b] for a, b in quarters]
+    area = 0.25 * np.abs(np.linalg.det(drawn)) * np.repeat(np.stack(pressed, axis=1), 4, axis=1)
+    x, y = np.einsum("pn,eni->iep", value, places)
+    unknowns = np.repeat(3 * numbers[:, None, :] + 2, len(points), axis=1)
+    kept = (unknowns >= 2) & (value != 0.0)
+    rows = np.broadcast_to(np.arange(area.size).reshape(area.shape)[:, :, None], kept.shape)
+    values = np.broadcast_to(value, kept.shape)
+    shape = area.size, 3 * (int(number.max()) + 1)
+    rise = sp.csr_matrix((values[kept], (rows[kept], unknowns[kept])), shape)
+    return rise, area.ravel(), x.ravel(), y.ravel()

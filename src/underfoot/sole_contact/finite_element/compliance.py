@@ -12,7 +12,7 @@ from underfoot.core.threads import threads_limited
 from underfoot.shoe.geometry import SoleMap
 
 from ..compliance import ConvolutionCompliance, layered_compliance
-from ..long_waves import LongWaves, net_over, waves_on
+from ..long_waves import LongWaves, splines_over
 from .elasticity import LandCompliance, Rubber, land_compliance
 from .mesh import Layers, SoleMesh, sole_mesh
 from .plan import plan_of
@@ -70,7 +70,7 @@ def finite_element_compliance(
     land = sole_land(sole, cache=cache, progress=progress, **body)
     layers = layered_compliance(sole, **body)
     nodes, near = hats_on_cells(land, sole), sole.land & (sole.clearance < REACH)
-    fields = waves_on(sole, near, net_over(sole, near))
+    fields = splines_over(sole, near).on(sole.x, sole.y, near)
     fields = sp.csr_matrix(fields[:, np.diff(sp.csc_matrix(fields).indptr) > 0])
     size = np.sqrt(np.asarray(fields.multiply(fields).sum(axis=0)).ravel())
     values, vectors = np.linalg.eigh((fields.T @ fields).toarray() / np.outer(size, size))
