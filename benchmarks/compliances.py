@@ -1,8 +1,8 @@
 """Film and COF of ten soles by layers and by finite elements, on three grids, sliding steadily.
 
 ``python -m benchmarks.compliances [SOLE ...]``: one position of the tread at the shoe's own
-angle; half an hour of CPU for all. ``squares`` in place of a sole: film and COF of plain heels by
-layers, with long waves put right on squares of other sides.
+angle; half an hour of CPU for all. ``squares`` in place of a sole: film and COF by layers, with
+long waves put right by bricks of other sides.
 """
 
 from __future__ import annotations
@@ -90,11 +90,11 @@ def numbers(sole: str, grid: str, model: str) -> tuple[float, float]:
 
 
 def squares() -> None:
-    """Print what the side of a square, which no input sets, does to plain heels on 1 mm."""
+    """Print what the side of a brick, which no input sets, does to heels and treads on 1 mm."""
     usual = long_waves.SIDE, long_waves.MOST_SQUARES
     print("| sole | side, mm | COF | film, N |")
     print("|---|---|---|---|")
-    for sole in ("plain", "facet 9 deg at 7"):
+    for sole in ("plain", "facet 9 deg at 7", "full tread", "bars, facet 5 deg"):
         for side in SIDES:
             long_waves.SIDE, long_waves.MOST_SQUARES = side, 2000
             cof, film = numbers(sole, GRIDS[0], MODELS[0])
