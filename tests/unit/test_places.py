@@ -631,6 +631,23 @@ def test_what_a_pendulum_read_goes_into_a_case(tmp_path):
     assert cofs[0] < cofs[1]
 
 
+def test_a_reading_of_the_case_does_not_count_in_the_file_too():
+    text = """
+    shoe = "work_shoe_full_tread"
+    floor.roughness = {}
+    contaminant = "detergent"
+    motion = "slip_tester_g4"
+    friction = {model = "pair_read", ptv_96 = 36}
+    """
+    case = Case.from_text(text)
+    with pytest.raises(InputError, match="the case holds what"):
+        calibrated_floor(case, "pendulum-96", 36.0)
+    told = calibrated_floor(case, "pendulum-55", 30.0)
+    assert [one.value for one in told.beside] == [36.0]
+    without = Case.from_text(text.replace("ptv_96 = 36", "ptv_96 = 60"))
+    assert calibrated_floor(without, "pendulum-55", 30.0).after == told.after
+
+
 def test_the_setting_of_17_deg_is_a_method_of_the_catalogue():
     case = Case(
         shoe="work_shoe_untreaded", floor="vinyl", contaminant="water", motion="whole_shoe_g6"

@@ -394,8 +394,8 @@ LEVEL = math.radians(0.05)
 """A tilt (rad) below it is that of noise and roundings."""
 _DRAWN_LEVEL = 0.2
 _BROAD = 0.5  # of the plan form: a sole's own land
-_DRAWN_FACES = 0.02  # of all faces' area
-_OF_THE_FILE = 1e-3  # of a unit vector's largest component: along an axis of the file, but tilted
+_DRAWN_FACES = 0.1  # of all faces' area
+_LIES_ASKEW = math.radians(5.0)
 _OTHER_FACE, _ALIKE = math.radians(3.0), math.radians(1.0)
 
 
@@ -420,33 +420,41 @@ def resting_plane(height: Array, spacing: float) -> tuple[float, float, float]:
     return float(a[best]), float(b[best]), float(c[best])
 
 
-def on_its_faces(triangles: NDArray[np.float32], axes: Array) -> Array:
-    """Return the axes of a levelled sole turned onto the faces that lie nearly level below it.
+def on_its_faces(triangles: NDArray[np.float32], axes: Array) -> tuple[Array, float]:
+    """Return the axes turned onto the plane in which a sole was drawn, and the angle, rad.
 
-    Heights in cells leave some hundredths of a degree of it; the faces of a drawn tread tell it
-    exactly. As it is where less than a fiftieth of the area lies within ``LEVEL``, as in a scan.
-    The rectangle around the plan form, which a tilt distorts, is found again; a file's axis stays
-    the direction that it is.
+    The plane of most area among the faces within 20 degrees of the frame, where it is
+    ``_DRAWN_FACES`` of all, and hardly any lie level as the axes are. A scan has no such plane. A
+    sole that a file's axes miss by more than ``_LIES_ASKEW`` has its length from the rectangle
+    around its plan form alone, not along an axis of the file.
     """
-    size = float(np.linalg.norm(axes[0]))
-    frame = axes / size
-    first, second, third = (triangles[:, n].astype(np.float64) for n in range(3))
-    normals = np.cross(second - first, third - first)
+    corners, _ = _sample(triangles)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1)
-    down = -normals @ frame[2]
-    level = down > math.cos(LEVEL) * area
-    if np.sum(area[level]) < _DRAWN_FACES * np.sum(area):
-        return axes
-    up = -normals[level].sum(axis=0)
+    upward = normals @ axes[2]
+    normals = normals * np.where(upward < 0, -1.0, 1.0)[:, None]
+    near = np.abs(upward) > _SNAP * area
+    if not near.any():
+        return axes, 0.0
+    units, of_unit = np.unique(
+        np.round(normals[near] / area[near, None], 3), axis=0, return_inverse=True
+    )
+    heaviest = units[int(np.argmax(np.bincount(of_unit.ravel(), area[near])))]
+    drawn = near & (normals @ heaviest > math.cos(LEVEL) * np.linalg.norm(heaviest) * area)
+    level = np.abs(upward) > math.cos(LEVEL) * area
+    share = float(area[drawn].sum())
+    if share < _DRAWN_FACES * area.sum() or area[level].sum() > _DRAWN_LEVEL * share:
+        return axes, 0.0
+    up = normals[drawn].sum(axis=0)
     up /= np.linalg.norm(up)
-    along = frame[0] - (frame[0] @ up) * up
-    if np.abs(frame[0]).max() < 1 - _OF_THE_FILE:
-        corners, _ = _sample(triangles)
+    angle = math.acos(min(1.0, float(up @ axes[2])))
+    along = axes[0] - (axes[0] @ up) * up
+    if angle > _LIES_ASKEW:
         long = _long_axis(corners.reshape(-1, 3), up)
         ways = [long, -long, np.cross(up, long), -np.cross(up, long)]
         along = max(ways, key=lambda way: float(way @ along))
     along /= np.linalg.norm(along)
-    return size * np.stack([along, np.cross(up, along), up])
+    return np.stack([along, np.cross(up, along), up]), angle
 
 
 def broad_rest(height: Array, spacing: float, plane: tuple[float, float, float]) -> bool:

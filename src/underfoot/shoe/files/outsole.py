@@ -134,6 +134,7 @@ def _outsole(
     """Return the outsole that the triangles of one sole describe."""
     remarks = list(remarks)
     axes = orientation.box_axes(mesh.triangles, chosen, told.down)
+    axes, askew = orientation.on_its_faces(mesh.triangles, axes)
     low, high = extents(mesh.triangles, axes)
     size = high - low
     stated = None if chosen.unit != "auto" else mesh.unit
@@ -142,7 +143,7 @@ def _outsole(
     )
     lag = _lag(mesh.triangles, unit, chosen.spacing)
     axes, side_remarks, alike = _sides(mesh, axes, unit, chosen, told)
-    seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing)
+    seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing, askew)
     height, repaired = cleaned(seen.lowest, seen.spacing)
     whole = height
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
@@ -267,10 +268,15 @@ def _sides(
     return turned * unit, remarks, ground.assumed
 
 
-def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, list[str]]:
-    """Return the fine view in the resting plane's frame: z = 0 is the plane."""
+def _level_view(
+    mesh: Mesh, axes: Array, spacing: float, askew: float
+) -> tuple[View, Array, list[str]]:
+    """Return the fine view in the resting plane's frame: z = 0 is the plane.
+
+    ``askew`` (rad): by how much the sole was turned onto its faces before.
+    """
     seen = view(mesh.triangles, axes, spacing)
-    total = 0.0
+    total = askew
     remarks: list[str] = []
     for _ in range(3):
         height, _ = cleaned(seen.lowest, spacing)
@@ -286,9 +292,6 @@ def _level_view(mesh: Mesh, axes: Array, spacing: float) -> tuple[View, Array, l
             break
         total += angle
         axes = turned
-        seen = view(mesh.triangles, axes, spacing)
-    if total > 0:
-        axes = orientation.on_its_faces(mesh.triangles, axes)
         seen = view(mesh.triangles, axes, spacing)
     height, _ = cleaned(seen.lowest, spacing)
     if total > 0:

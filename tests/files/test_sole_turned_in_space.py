@@ -1,0 +1,44 @@
+"""A drawn outsole turned in space is the same sole: its land, its size, its film."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from underfoot.shoe.files.mesh import Mesh
+from underfoot.shoe.files.outsole import outsole_from_mesh
+from underfoot.shoe.files.read import read_mesh
+
+HEEL = Path(__file__).parents[2] / "examples" / "measured" / "heel.stl"
+WITHIN = 0.003
+"""Share of the plan form by which the land may differ: what cells explain."""
+
+
+def turned(mesh: Mesh, rotation: Rotation) -> Mesh:
+    corners = mesh.triangles.astype(np.float64) @ rotation.as_matrix().T
+    return replace(mesh, triangles=corners.astype(np.float32))
+
+
+def land_share(mesh: Mesh) -> tuple[float, tuple[int, ...]]:
+    surface = outsole_from_mesh(mesh).surface
+    return surface.land.sum() / surface.inside.sum(), surface.land.shape
+
+
+@pytest.mark.parametrize(
+    "rotation",
+    [
+        *Rotation.random(4, random_state=7),
+        # nearer to an axis of the file than that is taken for a direction drawn along it
+        Rotation.from_euler("xyz", [16.0, 5.0, 30.0], degrees=True),
+        Rotation.from_euler("xyz", [3.0, -12.0, 100.0], degrees=True),
+    ],
+    ids=["1", "2", "3", "4", "16 deg off an axis", "12 deg off an axis"],
+)
+def test_a_sole_turned_in_space_keeps_its_land(rotation):
+    mesh = read_mesh(HEEL, "auto")
+    share, shape = land_share(mesh)
+    after, cells = land_share(turned(mesh, rotation))
+    assert after == pytest.approx(share, abs=WITHIN)
+    assert cells == shape
