@@ -48,6 +48,14 @@ _RANGES = {
     **dict.fromkeys(QUANTITIES["ptv"], (0.0, LARGEST["ptv"], "", "(PTV)")),
 }
 """Least and largest number, its unit, and headings with a unit, by the name of a column."""
+_COMPUTED = {"viscosity": "(cP)", "thickness": "(mm)", "area": "(mm^2)"}
+"""Columns from which numbers are computed, so that a unit decides them; their usual headings."""
+_SI_UNITS = {
+    **{name: si or "1" for name, (_, _, si, _) in _RANGES.items()},
+    "viscosity": "Pa*s", "thickness": "m", "area": "m^2",
+    "speed": "m/s", "walking speed": "m/s",
+}
+"""SI unit of what a column holds by its name: a unit of something else is refused."""
 _ANGLES = QUANTITIES["angle"]
 _SCALE = re.compile(
     r"(shore|asker)[ -]?(a|am|b|c|d|do|e|m|o|oo|0|00|000)?|irhd|ptv|srv|bpn|hr[a-z]|points?|scores?"
@@ -485,7 +493,7 @@ def coded_levels(
         most: Different numbers that can be levels.
         fewest: Rows, or persons, of each.
     """
-    quantities = {*_RANGES, *_ANGLES, *_MEASURED, *COUNTED}
+    quantities = {*_RANGES, *_ANGLES, *_MEASURED, *COUNTED, *_COMPUTED}
     if name in quantities or (unit and not _SCALE.fullmatch(unit)):
         return None
     rows: dict[float, list[int]] = {}
@@ -555,6 +563,9 @@ def _column(
 ) -> list[Any]:
     """Return a column in SI, or as text where not every cell is a number."""
     bad = first_text(cells, numbers)
+    if bad is not None and not unit and name in _SI_UNITS and name not in _RANGES:
+        written = _quantities(cells, _SI_UNITS[name])
+        return list(cells) if written is None else written
     if bad is not None and (name in MASS or si_unit(unit) or _is_si(unit)):
         raise InputError(
             f'line {lines[bad]}: {name} is "{cells[bad]}"',
@@ -563,6 +574,14 @@ def _column(
         )
     if bad is not None or not any(cells):
         return list(cells)
+    if name in _COMPUTED and not unit:
+        raise InputError(
+            f"{name} has no unit",
+            where=where,
+            remedy=f"Write the unit in the heading: {name} {_COMPUTED[name]}",
+        )
+    if unit and name in _SI_UNITS:
+        _refuse_other_unit(unit, _SI_UNITS[name], f"{where}, column {name}")
     factor, offset = _to_si(unit, f"{where}, column {name}")
     values = [None if number is None else number * factor + offset for number in numbers]
     low, high, si, headings = _RANGES.get(name, (-math.inf, math.inf, "", ""))
@@ -583,6 +602,29 @@ def _column(
 def body_mass_noted(noted: Mapping[str, Any]) -> float | None:
     """Return the person's mass (kg) among the conditions of a file, or None."""
     return next((float(noted[k]) for k in MASS if isinstance(noted.get(k), float)), None)
+
+
+def _quantities(cells: Sequence[str], si: str) -> list[float | None] | None:
+    """Return cells that each hold a number with its unit ("6 cP"); None where one is a word."""
+    try:
+        return [units.to_si(cell, si, where="") if cell else None for cell in cells]
+    except InputError:
+        return None
+
+
+def _refuse_other_unit(unit: str, si: str, where: str) -> None:
+    """Refuse a unit of something else than the column holds (an area in mm, a mass in cm)."""
+    if _SCALE.fullmatch(unit):
+        return
+    known = si_unit(unit)
+    plain = known[0] if known and unit not in ("g", "mN", "MN") else unit
+    if plain == si:
+        return
+    try:
+        units.to_si(f"1 {plain}", si, where=where)
+    except InputError as error:
+        allowed = "a number" if si == "1" else f"a unit of {si}"
+        raise InputError(f'is in "{unit}"', where=where, allowed=allowed) from error
 
 
 def _is_si(unit: str) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.remark import Remark, remarks, subjects
+from underfoot.core.units import plain_number
 
 from ..machines.compression import compression
 from ..machines.pin_on_disk import friction_point
@@ -109,16 +110,21 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
 
 
 def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
-    speed = draft.conditions.get("speed")
-    point = friction_point(trial, speed=speed if isinstance(speed, float) else None)
+    point, noted = friction_point(trial), draft.conditions.get("speed")
+    speed = point.speed
+    if isinstance(noted, float):
+        if speed is not None and abs(noted - speed) > SPEEDS_APART * max(noted, speed):
+            what = f"{plain_number(speed)} m/s in the log, {plain_number(noted)} m/s is noted"
+            draft.cautions.append(Remark("sliding speed", f"{what} and counts"))
+        speed = noted
     draft.add(trial.name, point.cof, main="cof")
     draft.note(point.time[-1] - point.time[0], "s", fact="duration")
     if point.normal is not None:
         draft.note(point.normal, "N", fact="normal_force")
     if point.shear is not None:
         draft.note(point.shear, "N", main="friction_force")
-    if point.speed is not None:
-        draft.note(point.speed, "m/s", main="speed", fact="sliding_speed")
+    if speed is not None:
+        draft.note(speed, "m/s", main="speed", fact="sliding_speed")
     begin, end = point.window
     cof = point.cof.value or np.nan
     draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
@@ -183,6 +189,8 @@ _KINDS: Mapping[str, Callable[[Trial, Draft, Protocol, Profile], None]] = {
 }
 
 
+SPEEDS_APART = 0.1
+"""Relative difference of the speed in a log and the one noted from which it is told; assumed."""
 STEP_KINDS = ("gait", "human_slip")
 _SETTINGS = ("filter", "gate", "gate_body_weight", "shear", "peak", "braking", "part")
 

@@ -119,7 +119,11 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
         findings += tests
     curves: dict[str, Any] = {"fits": fits}
-    wanted = [f for f in files if "viscosity" in f.conditions and {"speed", "cof"} <= {*f.main}]
+    wanted = [
+        f
+        for f in files
+        if isinstance(f.conditions.get("viscosity"), float) and {"speed", "cof"} <= {*f.main}
+    ]
     if len(wanted) >= 6:
         viscosity = [float(f.conditions["viscosity"]) for f in wanted]
         speed, cof = _speed_and_cof(wanted)
