@@ -61,7 +61,7 @@ INPUTS = {
 """Names of what the spread of a COF comes from, by the name in the draws of a law."""
 ROUGH, SMALL = ("hysteresis", "full_contact", "gap", "flow"), 0.005
 """What the rough contact adds to the spread: told however small; others from this share on."""
-FILM_ERROR = math.log(1.59)
+FILM_ERROR = math.log(1.74)
 """Standard deviation of ln F / (W - F), F the load on the film: the model's error on the untreaded
 heels of the report's slip tester (docs/studies/calibration.md), assumed of every sole. It holds the
 lengths of a heel that nobody measured: theirs were none either (benchmarks heel_shapes)."""
