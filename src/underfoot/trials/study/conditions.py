@@ -52,8 +52,11 @@ _COMPUTED = {"viscosity": "(cP)", "thickness": "(mm)", "area": "(mm^2)"}
 """Columns from which numbers are computed, so that a unit decides them; their usual headings."""
 _SI_UNITS = {
     **{name: si or "1" for name, (_, _, si, _) in _RANGES.items()},
-    "viscosity": "Pa*s", "thickness": "m", "area": "m^2",
-    "speed": "m/s", "walking speed": "m/s",
+    "viscosity": "Pa*s",
+    "thickness": "m",
+    "area": "m^2",
+    "speed": "m/s",
+    "walking speed": "m/s",
 }
 """SI unit of what a column holds by its name: a unit of something else is refused."""
 _ANGLES = QUANTITIES["angle"]

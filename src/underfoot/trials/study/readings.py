@@ -38,8 +38,16 @@ _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
 _NTH = re.compile(
-    r"((swing|reading|test|run|value|messung|schwung|wert|r|s)[ _.]?)?#?\d{1,2}", re.I
+    r"((swing|reading|test|run|value|messung|schwung|wert|lauf|versuch|ablesung|r|s)[ _.]?)?"
+    r"#?\d{1,2}",
+    re.I,
 )
+_SUMMARY = re.compile(
+    r"mean|average|median|mw|mittel(wert)?|sd|std(ev)?|(standard deviation|standardabweichung)"
+    r"|stabw|min(imum)?|max(imum)?",
+    re.IGNORECASE,
+)
+"""Labels of rows below a table that hold no reading but a number of those above."""
 _FEWEST_BESIDE = 3  # numbered columns of a record sheet
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
 _WALKERS = (
@@ -51,7 +59,14 @@ _BOARD = (
     "standard angle", "board angle", "angle of the board", "sollwinkel", "standardwinkel",
 )  # fmt: skip
 """Headings of the angle that a calibration board of the ramp has by its certificate."""
-_LABELS = (*NOTED["slider"], *NOTED["direction"], *_WALKERS, "laboratory", "sample", "date")
+_READ_BY = {
+    "operator": ("operator", "prüfer", "prüferin", "prüfperson", "bediener"),
+    "machine": ("machine", "tribometer", "device", "instrument", "gerät", "maschine"),
+    "laboratory": ("laboratory", "lab", "labor", "prüflabor"),
+}
+"""Headings of what reads a sample, by the name under which its readings are compared."""
+_LABELS = (*NOTED["slider"], *NOTED["direction"], *_WALKERS, "sample", "date",
+           *(name for names in _READ_BY.values() for name in names))  # fmt: skip
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -139,6 +154,18 @@ def reading_results(
     walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
     if walker:
         texts = {"operator" if k == walker else k: v for k, v in texts.items()}
+    for by, heads in _READ_BY.items():
+        called = [head for head in heads if head in texts]
+        if len(called) == 1 and not (by == "operator" and walker):
+            texts = {by if head == called[0] else head: v for head, v in texts.items()}
+    for i, labels in enumerate(zip(*texts.values(), strict=True)):
+        label = next(filter(None, labels), "")
+        if np.isfinite(values[i]) and _SUMMARY.fullmatch(label):
+            raise DataError(
+                f'line {lines[i]}: "{label}" is no sample but a number of others',
+                where=name,
+                remedy="Leave rows of means and standard deviations out: they are computed",
+            )
     one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
     board = next((one for one in cells if one.casefold() in _BOARD), None)
     boards = None
