@@ -28,7 +28,8 @@ SOURCE = Path(underfoot.__file__).parent
 TEXT = files("underfoot").joinpath("app", "text")
 CODE_AT = {"Message": 0, "assumed": 0, "caution": 0, "remark": 0, "Remark": 1}
 """Makers of messages, and which of their arguments is the template."""
-OWN = "core/remark.py"
+OWN = ("core/remark.py", "trials/recording/measurement.py")
+"""Where makers are made."""
 LETTERS = re.compile("[A-Za-z]{2}")
 FIELDS = re.compile(r"\{\w+[^}]*\}")
 
@@ -64,7 +65,7 @@ def trees():
     return {
         place: ast.parse(file.read_text(encoding="utf-8"))
         for file in sorted(SOURCE.rglob("*.py"))
-        if (place := file.relative_to(SOURCE).as_posix()) != OWN
+        if (place := file.relative_to(SOURCE).as_posix()) != OWN[0]
     }
 
 
@@ -104,7 +105,7 @@ def test_a_template_with_its_values_is_taken():
 
 
 def test_every_message_is_a_template_and_its_values():
-    found = {place: list(faults(tree)) for place, tree in trees().items()}
+    found = {place: list(faults(tree)) for place, tree in trees().items() if place not in OWN}
     assert not {place: lines for place, lines in found.items() if lines}
 
 
@@ -148,8 +149,8 @@ def test_all_templates_are_written_out_in_all_languages():
             values = {name: example(name, specs) for name, specs in fields(code).items()}
             text = str(Message(words, **values))
             assert "{" not in text, (language, code)
-            if LETTERS.search(FIELDS.sub("", code)):
-                assert LETTERS.search(text.replace("QX", "")), (language, code)
+            names = [value for value in values.values() if isinstance(value, str)]
+            assert all(name.lower() in text.lower() for name in names), (language, code)
 
 
 def test_a_message_keeps_template_and_values_wherever_it_goes():

@@ -248,9 +248,9 @@ def _reason(
     if plate.saturated:
         return Message("the plate is saturated")
     if stance.duration < _SHORTEST:
-        return Remark("too short for a walking step", f"{1e3 * stance.duration:.0f} ms")
+        return Remark("too short for a walking step", "{time:.0f} ms", time=1e3 * stance.duration)
     if stance.duration > _LONGEST:
-        return Remark("standing, or more than one foot", f"{stance.duration:.2f} s")
+        return Remark("standing, or more than one foot", "{time:.2f} s", time=stance.duration)
     if others:
         gap = 1e3 * abs(others[0].contact - stance.contact)
         return Remark(
@@ -284,7 +284,11 @@ def _reason(
         return two
     outside = feet.outside(stance)
     if outside > _OUTSIDE:
-        return Remark("a partial hit", f"the heel stands {1e3 * outside:.0f} mm outside the plate")
+        return Remark(
+            "a partial hit",
+            "the heel stands {way:.0f} mm outside the plate",
+            way=1e3 * outside,
+        )
     if stance.walking is None:
         return Remark.of("no walking direction", stance.direction.explanation)
     # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.

@@ -227,10 +227,11 @@ def required_friction(
     flags = plate.flags + stance.flags + _tilt_flags(step.slope, axes.ramp)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
-        text = Message(
-            "the peak lies {time:.0f} ms after the gate: the gate may have made it", time=after
+        flags += (
+            remark(
+                "the peak lies {time:.0f} ms after the gate: the gate may have made it", time=after
+            ),
         )
-        flags += (remark(text),)
     uncertainty, parts = None, "not estimated"
     if checked:
         levels = unloaded_levels(step)
