@@ -61,8 +61,9 @@ class Message(str):
 
     def __new__(cls, code: str, /, **values: Any) -> Self:
         """Return the sentence."""
-        line = super().__new__(cls, _FIELDS.vformat(code, (), values))
-        line.code, line.values = code, {name: _plain(value) for name, value in values.items()}
+        plain = {name: _plain(value) for name, value in values.items()}
+        line = super().__new__(cls, _FIELDS.vformat(code, (), plain))
+        line.code, line.values = code, plain
         return line
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -222,8 +223,8 @@ def _plain(value: Any) -> Any:
     """Return a value as JSON can hold it: no number of numpy, no generator."""
     if isinstance(value, str | Amount):
         return value
-    if hasattr(value, "item"):
-        return value.item()
+    if hasattr(value, "tolist"):
+        value = value.tolist()
     if isinstance(value, Iterable):
         return tuple(map(_plain, value))
     return value if isinstance(value, int | float | None) else str(value)

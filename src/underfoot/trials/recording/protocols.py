@@ -53,13 +53,13 @@ class Rule:
         high = Amount(self.high, unit)
         return Message("{quantity} from {low} to {high}", quantity=name, low=low, high=high)
 
-    def broken_by(self, value: float) -> Message | None:
+    def broken_by(self, value: float) -> Message:
         """Return why ``value`` breaks the rule, or nothing."""
         slack = 1e-6 * abs(value)
         below = self.low is not None and value < self.low - slack
         above = self.high is not None and value > self.high + slack
         if not (below or above):
-            return None
+            return Message("")
         return Message(
             "{quantity} {value}; rule: {rule}",
             quantity=self.quantity.replace("_", " "),

@@ -244,7 +244,7 @@ class Draft:
         facts = _values(self.numbers, "fact")
         for rule in protocol.rules:
             broken = rule.broken_by(facts[rule.quantity]) if rule.quantity in facts else None
-            if broken is not None:
+            if broken:
                 kinds.append(rule.statement())
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for number in self.numbers:
