@@ -187,13 +187,15 @@ def stored_form(value: Any) -> Any:
         return {"value": value.value, "unit": value.unit, "digits": value.digits}
     if isinstance(value, Mapping):
         return {name: stored_form(each) for name, each in value.items()}
-    return [*map(stored_form, value)] if isinstance(value, list | tuple) else value
+    if not isinstance(value, list | tuple) or _is_series(value):
+        return value
+    return [*map(stored_form, value)]
 
 
 def from_stored(value: Any) -> Any:
     """Return what ``stored_form`` made data of; texts are made anew, in the units of who asks."""
     if isinstance(value, list):
-        return [*map(from_stored, value)]
+        return value if _is_series(value) else [*map(from_stored, value)]
     if not isinstance(value, Mapping):
         return value
     parts = {name: from_stored(each) for name, each in value.items()}
@@ -204,6 +206,11 @@ def from_stored(value: Any) -> Any:
     about = parts.get("about", "")
     return (Remark(about, parts["code"], **parts["values"]) if about else
             Message(parts["code"], **parts["values"]))  # fmt: skip
+
+
+def _is_series(value: list[Any] | tuple[Any, ...]) -> bool:
+    """Whether a list is one of numbers, as of a curve: it holds no messages."""
+    return bool(value) and isinstance(value[0], float)
 
 
 class _Fields(Formatter):

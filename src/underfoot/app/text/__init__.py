@@ -52,6 +52,10 @@ class Text:
         """Return the templates of the package's messages in this language, by their code."""
         return _sentences(f"{self.language}.messages.toml")
 
+    def sentences(self) -> dict[str, str]:
+        """Return what a page puts in where it has no message: sentences, and messages as these."""
+        return {**_as_sentences(self.messages()), **self.of_package()}
+
     def script(self) -> str:
         """Return the script that tells a page its language and the words of the package."""
         return _script(self.language)
@@ -98,8 +102,7 @@ def as_json(content: Any) -> str:
 @cache
 def _script(language: str) -> str:
     text = Text(language)
-    messages = text.messages()
-    words = {"words": {**_as_sentences(messages), **text.of_package()}, "messages": messages}
+    words = {"words": text.sentences(), "messages": text.messages()}
     spoken = as_json({**words, "decimal": text("frame.decimal")})
     return f'document.documentElement.lang = "{language}"; const spoken = {spoken};'
 
