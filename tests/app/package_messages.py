@@ -34,6 +34,8 @@ MAKER = re.compile(
     r"|^(problem|Flag|Remark|assumed|caution|remark|Doubt|Table|MissingExtraError"
     r"|exactly_one|between|host_array|refuse|refuse_if)$"
 )
+TEMPLATES = {"Message", "Remark", "assumed", "caution", "remark"}
+"""Makers whose text is a template: ``test_messages`` holds these to the languages."""
 PARTS = {"what", "allowed", "remedy", "missing", "message", "reason", "note", "notes", "title"}
 OF_PYTHON = {
     *("ValueError", "TypeError", "AttributeError", "KeyError", "AssertionError", "OSError"),
@@ -216,10 +218,12 @@ def _told(piece):
     for each in ast.walk(piece.node):
         if isinstance(each, ast.Call):
             name = getattr(each.func, "id", getattr(each.func, "attr", ""))
-            if name not in OF_PYTHON:
+            if name not in OF_PYTHON and name not in TEMPLATES:
                 error = name.endswith("Error") and name != "MissingExtraError"
                 yield from ((part, error) for part in each.args if MAKER.search(name))
                 yield from ((key.value, False) for key in each.keywords if key.arg in PARTS)
+            elif name == "Remark":  # what it is about
+                yield each.args[0], False
         elif isinstance(each, ast.Return) and text and piece.file.startswith(REASONS):
             yield from [(each.value, False)] if each.value and piece.name != "__repr__" else ()
 

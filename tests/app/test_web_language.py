@@ -14,6 +14,7 @@ from package_messages import filled
 from web_app import coarsened, drawn, page_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
+from underfoot.core.remark import Message, Remark, joined
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
@@ -326,3 +327,25 @@ def test_inches_and_pounds_on_every_page(app):
         report = next((app.folder / "results").glob("*/report.html")).read_text()
         assert "lbf" in report
         assert page.complaints == []
+
+
+def test_messages_are_put_in_by_their_template_and_values(tmp_path, monkeypatch):
+    """A comma that changed in a sentence left it English in the middle of a German page."""
+    hole = Message(
+        "{count} hole{count:|s} of {area:.3g} mm² in all filled from the surface around.",
+        count=1, area=3.25,
+    )  # fmt: skip
+    said = {
+        hole: "1 Loch von zusammen 3,25 mm² aus der Fläche ringsum gefüllt.",
+        Remark("by hand", "the step is on {plate} ({why})", plate="B <1>", why="no plate A"):
+        "von Hand: der Schritt ist auf B <1> (no plate A)",
+        joined([Message("body weight"), "3.5 N"]): "des Körpergewichts; 3,5 N",
+    }  # fmt: skip
+    page_file = tmp_path / "page.html"
+    lines = "".join(f"<p>{line.__html__()}</p>" for line in said)
+    page_file.write_text(f"<html><head></head><body>{lines}</body></html>", encoding="utf-8")
+    monkeypatch.setenv(text.LANGUAGE_VARIABLE, "de")
+    text.put_language(page_file)
+    with page_of(page_file.as_uri()) as page:
+        page.wait_for_timeout(300)
+        assert page.locator("p").all_inner_texts() == list(said.values())

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import underfoot
-from underfoot.core.remark import Remark, remarks, subjects
 from underfoot.trials.recording.measurement import Choice
 
 SOURCE = Path(underfoot.__file__).parent
@@ -138,16 +137,3 @@ def test_a_choice_keeps_its_kind_and_numbers_wherever_it_goes():
     others = [Choice("bridged up to {:g} ms", number) for number in (50.0, 8.0)]
     assert Choice.range_of([choice, *others]) == "bridged up to 8 to 50 ms"
     assert Choice.range_of([choice, choice]) == choice
-
-
-def test_a_remark_knows_what_it_is_about_wherever_it_goes():
-    remark = Remark("shoe.heel", "length: 60 mm")
-    for copy in (deepcopy(remark), pickle.loads(pickle.dumps(remark)), Remark.stored(str(remark))):
-        assert (copy, copy.about, copy.what) == (
-            "shoe.heel: length: 60 mm",
-            *remark.__reduce__()[1],
-        )
-    assert subjects(remarks([remark, "the whole", remark, "the whole"])) == (
-        "shoe.heel",
-        "the whole",
-    )

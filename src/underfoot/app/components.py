@@ -10,6 +10,8 @@ from typing import Any
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
+from underfoot.core.remark import MARK, Message
+
 from .jobs import INTERRUPTED, Task
 from .session import Session
 from .text import as_json
@@ -106,7 +108,8 @@ def table(
                         line.props(f"data-{shown['shows']}={place} tabindex=0")
                     for number, cell in enumerate(row):
                         with ui.element("td" if number else "th") as made_cell:
-                            ui.label(cell.strip().replace(" %", "\u00a0%"))  # no % alone on a line
+                            whole = isinstance(cell, Message)  # no % alone on a line
+                            told(cell if whole else cell.strip().replace(" %", "\u00a0%"))
                         if not number:
                             made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
                         if action and place in rows and number == len(row) - 1:
@@ -119,7 +122,15 @@ def table(
 def sentences(lines: Sequence[str], kind: str = "") -> None:
     """Show sentences, a paragraph each."""
     for line in lines:
-        ui.label(line).classes(kind)
+        told(line).classes(kind)
+
+
+def told(text: str) -> ui.label:
+    """Return a label of a text of the package, which the page puts into its language."""
+    made = ui.label(text)
+    if isinstance(text, Message):
+        made.props[MARK] = text.page_mark()
+    return made
 
 
 def drop_zone(

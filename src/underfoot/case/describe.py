@@ -1,7 +1,7 @@
 """A case in words: what was assumed, what leaves a tested range, what differs from another."""
 
-from underfoot.core import Breach, display
-from underfoot.core.remark import Remark
+from underfoot.core import Breach
+from underfoot.core.remark import Amount, Message, Remark
 
 from .case import Case, value_text
 from .contact import HardnessOption
@@ -12,7 +12,7 @@ _NOT_PHYSICAL = ("numerics.", "sensor.", "slip.")
 
 def assumptions(case: Case) -> list[Remark]:
     """Return in words what no measurement or publication stands behind, alike ones on one line."""
-    groups: dict[tuple[str, str], list[str]] = {}
+    groups: dict[tuple[str, str], list[Message]] = {}
     for path, origin in case.origins.items():
         leaf = origin.leaf
         if path.startswith("shoe.wear.") and case.shoe.wear.depth == 0:
@@ -22,27 +22,37 @@ def assumptions(case: Case) -> list[Remark]:
         if leaf.verified and not leaf.assumed:
             continue
         section, _, key = path.rpartition(".")
-        memory = "" if leaf.verified else "from memory, not verified"
-        reason = "; ".join(filter(None, (leaf.note, leaf.erratum, leaf.source, memory)))
+        memory = "" if leaf.verified else Message("from memory, not verified")
+        parts = [*filter(None, (leaf.note, leaf.erratum, leaf.source, memory))]
+        reason = Message("{parts:; }", parts=parts) if parts else Message("assumed")
         given = value_text(origin, unit_at(path), spread=False)
-        groups.setdefault((section, reason or "assumed"), []).append(f"{key} = {given}")
+        value = Message("{key} = {value}", key=key, value=given)
+        groups.setdefault((section, reason), []).append(value)
     lines = [
-        Remark(section, f"{', '.join(keys)} ({why})") for (section, why), keys in groups.items()
+        Remark(section, "{values} ({why})", values=values, why=why)
+        for (section, why), values in groups.items()
     ]
     if case.interface.name == "composite":
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
             if roughness.rq_or_estimate is None:
                 lines.append(Remark(f"{path}.roughness", "not given, the middle of what is usual"))
             elif roughness.rq is None:
-                rq = display(roughness.rq_or_estimate or 0.0, "m")
-                told = f"rq = {rq} (1.25 Ra, Gaussian heights)"
+                rq = Amount(roughness.rq_or_estimate or 0.0, "m")
+                told = Message("rq = {rq} (1.25 Ra, Gaussian heights)", rq=rq)
                 if roughness.ra is None:
-                    told = f"rq = {rq} (Rz over 5.7; it is over 4 to 8)"
-                lines.append(Remark(f"{path}.roughness", told))
+                    told = Message("rq = {rq} (Rz over 5.7; it is over 4 to 8)", rq=rq)
+                lines.append(Remark.of(f"{path}.roughness", told))
         rq = case.effective_rq
-        value = display(rq.value or 0.0, rq.unit)
         if rq.assumed:
-            lines.append(Remark("interface", f"effective_rq = {value} ({rq.source}; {rq.note})"))
+            lines.append(
+                Remark(
+                    "interface",
+                    "effective_rq = {value} ({source}; {note})",
+                    value=Amount(rq.value or 0.0, rq.unit),
+                    source=rq.source,
+                    note=rq.note,
+                )
+            )
     return lines
 
 

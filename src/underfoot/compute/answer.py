@@ -58,7 +58,7 @@ def answer(
                 *(risk.assumptions if risk else ()),
                 *(positions.assumptions() if positions else ()),
                 *(
-                    Remark(slot, f"an object given to run, {text}")
+                    Remark(slot, "an object given to run, {text}", text=text)
                     for slot, text in objects.items()
                 ),
             )

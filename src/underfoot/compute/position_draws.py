@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import SourcedValue, content_hash, display
 from underfoot.core.arrays import Array
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Amount, Message, Remark
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.friction.propagation import normal_draws
 
@@ -82,8 +82,10 @@ class UncertainBevel:
         """Return by how much the shoe is turned against its bevel in each draw, (count,), rad."""
         return self.deviation * normal_draws(self.seed, f"bevel of heel {self.heel}", count)
 
-    def __str__(self) -> str:
-        return f"angle ±{display(math.degrees(self.deviation), '1')} deg, drawn"
+    @property
+    def message(self) -> Message:
+        """What is drawn of it."""
+        return Message("angle ±{angle} deg, drawn", angle=Amount(math.degrees(self.deviation)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,7 +263,7 @@ class TreadPositions:
 
     def _bevel_label(self) -> dict[str, str]:
         """Return that the bevel of the heel is drawn; empty where its angle counts as exact."""
-        return {"heel_bevel": str(self.bevel)} if self.bevel else {}
+        return {"heel_bevel": self.bevel.message} if self.bevel else {}
 
     def assumptions(self) -> tuple[Remark, ...]:
         """Return the band of the shoe angle, where it was used, and that of the heel's bevel."""
@@ -269,7 +271,7 @@ class TreadPositions:
         yaw = any(place.yaw for place in self.places)
         bevel = bool(self.bevel and self.bevel.assumed)
         return (
-            *(Remark("shoe.heel.profile", str(self.bevel)),) * bevel,
+            *([Remark.of("shoe.heel.profile", self.bevel.message)] if self.bevel and bevel else ()),
             *(Remark("motion.shoe_angle", "±1 deg"),) * angle,
             *(Remark("shoe.tread", "turned ±1 deg against the heel's corner"),) * yaw,
         )

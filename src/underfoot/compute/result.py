@@ -14,7 +14,7 @@ from underfoot.core import DataError, Provenance, SourcedValue, Status, Underfoo
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import checksum, whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Remark, stored_form
 
 from . import summary
 
@@ -171,8 +171,8 @@ class Result(Presentable):
             "status": status,
             **scalars,
             "labels": self.labels,
-            "breaches": list(self.breaches),
-            "assumptions": list(self.assumptions),
+            "breaches": stored_form(self.breaches),
+            "assumptions": stored_form(self.assumptions),
             "provenance": self.provenance.to_dict(),
         }
 

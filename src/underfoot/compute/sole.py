@@ -539,7 +539,7 @@ def outsole_notes(case: Case) -> list[Remark]:
     """Return in words what was found, assumed and repaired in the outsole file; else nothing."""
     if case.shoe.outsole is None:
         return []
-    return [Remark("shoe.outsole", line) for line in file_outsole(case).surface.remarks]
+    return [Remark.of("shoe.outsole", line) for line in file_outsole(case).surface.remarks]
 
 
 class OutsoleLayer(Section):

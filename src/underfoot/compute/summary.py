@@ -18,7 +18,7 @@ from underfoot.core.presentation import (
     shows_interval,
     value_text,
 )
-from underfoot.core.remark import Remark, subjects
+from underfoot.core.remark import Message, Remark, subjects
 from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
@@ -290,10 +290,12 @@ def in_words(breaches: Iterable[Remark]) -> tuple[str, ...]:
 
     A model that ``PARTS`` does not know keeps its name in front.
     """
-    lines = []
+    lines: list[Message] = []
     for breach in breaches:
         part = PARTS.get(breach.about, "")
-        named = f"{part[:1].upper()}{part[1:]}: {breach.what} [{breach.about}]"
+        named = Message(
+            "{part:capital}: {what} [{model}]", part=part, what=breach.what, model=breach.about
+        )
         lines.append(named if part else breach)
     return tuple(lines)
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .remark import Remark
-from .units import display
+from .remark import Amount, Message, Remark
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,16 +32,21 @@ class Breach:
     @property
     def remark(self) -> Remark:
         """The breach as a line of a result, about its closure."""
-        unit = self.range.unit
-        given = display(self.low, unit)
-        if self.high != self.low:
-            given += f" to {display(self.high, unit)}"
-        tested = f"{display(self.range.low, unit)} to {display(self.range.high, unit)}"
+        low, high, first, last = (
+            Amount(end, self.range.unit)
+            for end in (self.low, self.high, self.range.low, self.range.high)
+        )
+        tested = Message("{low} to {high}", low=first, high=last)
         if self.range.high == float("inf"):
-            tested = f"{display(self.range.low, unit)} or more"
-        source = f" ({self.range.source})" if self.range.source else ""
-        what = f"{self.quantity} {given} is outside the tested range {tested}{source}"
-        return Remark(self.closure, what)
+            tested = Message("{low} or more", low=first)
+        return Remark(
+            self.closure,
+            "{quantity} {given} is outside the tested range {tested}{source}",
+            quantity=self.quantity,
+            given=low if self.high == self.low else Message("{low} to {high}", low=low, high=high),
+            tested=tested,
+            source=Message(" ({source})", source=self.range.source) if self.range.source else "",
+        )
 
     def __str__(self) -> str:
         return str(self.remark)

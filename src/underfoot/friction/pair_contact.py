@@ -474,8 +474,9 @@ class PairContactLaw(UncertainInputs):
                 words.append(
                     Remark(
                         f"{part}.roughness",
-                        "not given; the friction is drawn over Rq = "
-                        f"{1e6 * low:.2g} to {1e6 * high:.2g} um",
+                        "not given; the friction is drawn over Rq = {low:.2g} to {high:.2g} um",
+                        low=1e6 * low,
+                        high=1e6 * high,
                     )
                 )
         low, high = self.pair.loss_tangent
@@ -483,14 +484,26 @@ class PairContactLaw(UncertainInputs):
             words.append(
                 Remark(
                     "shoe.material.loss_tangent",
-                    f"not given; the hysteresis is drawn over {low:g} to {high:g}",
+                    "not given; the hysteresis is drawn over {low:g} to {high:g}",
+                    low=low,
+                    high=high,
                 )
             )
         elif self.pair.hysteresis is None:
-            words.append(Remark("friction.pair", f"hysteresis from a loss tangent of {low:g}"))
+            words.append(
+                Remark(
+                    "friction.pair", "hysteresis from a loss tangent of {tangent:g}", tangent=low
+                )
+            )
         else:
-            given = f"hysteresis COF {self.pair.hysteresis:.3f} from {self.pair.hysteresis_origin}"
-            words.append(Remark("friction.pair", given))
+            words.append(
+                Remark(
+                    "friction.pair",
+                    "hysteresis COF {cof:.3f} from {origin}",
+                    cof=self.pair.hysteresis,
+                    origin=self.pair.hysteresis_origin,
+                )
+            )
         return tuple(words)
 
     @property

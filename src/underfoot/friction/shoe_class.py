@@ -24,7 +24,7 @@ from scipy.special import log_ndtr
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.arrays import Array
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 
 from .pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, PairContactLaw, PairDraws
 from .propagation import named_shares
@@ -181,18 +181,25 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     passing = float(np.mean(np.exp(np.minimum(log_weight, 0.0))))
     weight /= weight.sum()
     if 1 / (weight**2).sum() < FEWEST or (calibrated and passing < 0.05):
-        says = "; ".join(map(str, known.readings))
-        reason = (
-            "the readings of your own tester, on this sole, go before the limits of another house"
-            if calibrated
-            else "the law goes before a class that hardly any such sole has: check hardness, "
-            "roughness and tread of the sole"
+        reason = Message(
+            "the law goes before a class that hardly any such sole has: check hardness, roughness "
+            "and tread of the sole"
         )
-        note = (
-            f"{known.name} ({says}) is contradicted: what else is known of the sole "
-            f"leaves it a probability of {passing:.1%}. It was not used; {reason}."
+        if calibrated:
+            reason = Message(
+                "the readings of your own tester, on this sole, go before the limits of another "
+                "house"
+            )
+        note = Remark(
+            "shoe.class",
+            "{name} ({readings:; }) is contradicted: what else is known of the sole leaves it a "
+            "probability of {passing:.1%}. It was not used; {reason}.",
+            name=known.name,
+            readings=map(str, known.readings),
+            passing=passing,
+            reason=reason,
         )
-        kept = replace(start, notes=(*start.notes, Remark("shoe.class", note)))
+        kept = replace(start, notes=(*start.notes, note))
         return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing, contradicted=True)
     generator = np.random.default_rng(seed)
     ends = (np.arange(COUNT) + generator.random()) / COUNT
@@ -205,10 +212,17 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
         if calibrated
         else ", without a measurement of this sole on this floor"
     )
-    note = f"{known.name} ({known.source}): " + "; ".join(map(str, known.readings))
-    note += " is not reached" if known.fails else ""
-    note += f". Before that was known, {passing:.0%} of such soles would have it."
-    kept = replace(kept, basis=basis, notes=(*start.notes, Remark("shoe.class", note)))
+    note = Remark(
+        "shoe.class",
+        "{name} ({source}): {readings:; }{failing}. Before that was known, {passing:.0%} of such "
+        "soles would have it.",
+        name=known.name,
+        source=known.source,
+        readings=map(str, known.readings),
+        failing=Message(" is not reached") if known.fails else "",
+        passing=passing,
+    )
+    kept = replace(kept, basis=basis, notes=(*start.notes, note))
     return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing)
 
 

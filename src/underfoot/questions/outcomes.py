@@ -18,7 +18,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Remark, stored_form
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -86,7 +86,7 @@ class Outcome:
         """Return the outcome as JSON, without its maps."""
         plain = asdict(replace(self, maps={}))
         del plain["maps"]
-        return json.dumps(plain)
+        return json.dumps(stored_form(plain))
 
     @classmethod
     def from_text(cls, text: str) -> Outcome:

@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.core import Breach, InputError
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
+from underfoot.core.remark import Message
 
 from ._kernels.regions import carried_on
 from .ball_joint import BallJoint
@@ -161,7 +162,7 @@ class SoleSurface(_Areas):
     spacing: float
     outline: Array
     name: str = "sole"
-    remarks: tuple[str, ...] = field(default=())
+    remarks: tuple[Message, ...] = field(default=())
     base: Array | None = None
     cut: CutCells | None = None
     removed: Array | None = None

@@ -14,7 +14,17 @@ from underfoot.case import Case
 from underfoot.core.errors import UnderfootError
 from underfoot.core.presentation import is_wide, percent, probability_text
 
-from ..components import SoleView, folded, interruption, scale, sentences, table, task_line, title
+from ..components import (
+    SoleView,
+    folded,
+    interruption,
+    scale,
+    sentences,
+    table,
+    task_line,
+    title,
+    told,
+)
 from ..inputs import Input, sliders
 from ..jobs import DONE, Task
 from ..session import Session, address, problem_parts
@@ -202,11 +212,11 @@ class _Answer:
             if not (self.folder / "report.html").exists():
                 cautions.insert(0, self.text("answer.no_report"))
             for caution in cautions:
-                ui.label(caution).classes("caution")
+                told(caution).classes("caution")
         with self.reasons, ui.element("div").classes("answer-card"):
             self.beside = ui.element("div")
             self._beside(answer)
-            ui.label(answer["limit"]).classes("soft")
+            told(answer["limit"]).classes("soft")
 
     def _under(self) -> dict[str, str]:
         """Return floor and contaminant of what was computed, which no name of a variant tells."""

@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.case import Case, assumptions, unit_at
 from underfoot.core import display
 
-from ..components import interruption, refilled, task_line
+from ..components import interruption, refilled, task_line, told
 from ..session import Session
 
 EFFECTS = "underfoot.app.work:effects"
@@ -56,10 +56,10 @@ def _filled(session: Session, name: str, again: Any) -> None:
             )
             if effect and largest:
                 ui.element("div").classes("effect").style(f"width: {100 * effect / largest:.0f}%")
-            ui.label(each["reason"]).classes("soft")
+            told(each["reason"]).classes("soft")
     with ui.expansion(text("assumptions.all"), value=effects is None).classes("plain"):
         for line in assumptions(case):
-            ui.label(line).classes("soft")
+            told(line).classes("soft")
 
 
 def _label(session: Session, path: str) -> str:

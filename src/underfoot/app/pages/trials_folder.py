@@ -12,8 +12,9 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
+from underfoot.core.remark import joined
 
-from ..components import sentences, table, task_line, title
+from ..components import sentences, table, task_line, title, told
 from ..jobs import Task
 from ..session import Session
 from ..trials_study import Study
@@ -161,7 +162,7 @@ class FolderView:
             words = [self.text("trials.edited", count=card["edits"])] if card["edits"] else []
             if card["verdict"] != "accepted":
                 words += card["reasons"][:1]
-            ui.label("; ".join(words)).classes("reason")
+            told(joined(words)).classes("reason")
 
     async def report(self) -> None:
         """Write the report and show the way to it."""

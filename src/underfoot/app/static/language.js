@@ -115,6 +115,27 @@ function isKnown(part, depth) {
   return isOwn(part) || !/[A-Za-z]{4}/.test(part) || inLanguage(part, depth + 1) !== withDecimals(part) || exactWords.has(part.trim());
 }
 
+// A message of the package: the template of its code in the language, with its values.
+function messageInLanguage({ about, code, values }) {
+  const template = spoken.messages[code] ?? code;
+  const said = template.replace(/\{(\w+)(?::([^}]*))?\}/g, (_, name, form) => valueInLanguage(values[name], form));
+  return about ? `${isOwn(about) ? about : inLanguage(about)}: ${said}` : said;
+}
+
+function valueInLanguage(value, form = "") {
+  if (Array.isArray(value)) return value.map((each) => valueInLanguage(each)).join(form || ", ");
+  if (form.includes("|")) return form.split("|")[value === "1" ? 0 : 1];
+  const said = typeof value === "object" ? messageInLanguage(value) : isOwn(value) ? value : inLanguage(value);
+  return form === "capital" ? capital(said) : said;
+}
+
+// The text of an element that holds template and values; a template without words is the same in all.
+function elementInLanguage(element, text) {
+  const message = element.dataset.message && JSON.parse(element.dataset.message);
+  const known = message && (message.code in spoken.messages || !/[A-Za-z]{2}/.test(message.code.replace(/\{\w+[^}]*\}/g, "")));
+  return known ? messageInLanguage(message).replaceAll(" %", "\u00a0%") : inLanguage(text);
+}
+
 function speakAll(root) {
   if (root.nodeType === Node.TEXT_NODE) { speakText(root); return; }
   if (root.nodeType !== Node.ELEMENT_NODE || root.closest(UNSPOKEN)) return;
@@ -128,7 +149,7 @@ const UNSPOKEN = "[translate=no], script, style, pre, code, textarea";
 function speakText(node) {
   const text = node.data;
   if (written.get(node) === text || !node.parentElement || node.parentElement.closest(UNSPOKEN)) return;
-  const other = inLanguage(text);
+  const other = elementInLanguage(node.parentElement, text);
   written.set(node, other);
   if (other !== text) node.data = other;
 }

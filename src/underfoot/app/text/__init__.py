@@ -3,8 +3,9 @@
 ``en.toml``, ``de.toml``: what the app says, by key. ``de.package.toml``: what the package says
 (results, remarks, catalogue, errors), by the English sentence; ``{}`` stands for a part that
 changes, ``{0}``, ``{1}`` for these parts in the other language. ``en.package.toml``: the same of
-sentences that name options of the command line, which the app has fields for. The browser puts
-these in.
+sentences that name options of the command line, which the app has fields for.
+``de.messages.toml``: the messages of the package (``core.remark.Message``), by the template that is
+their code, with the same fields. The browser puts these in.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import tomllib
 from collections.abc import Mapping
 from functools import cache
@@ -44,8 +46,15 @@ class Text:
 
     def of_package(self) -> dict[str, str]:
         """Return the sentences of the package in this language, by their English."""
-        file = FOLDER.joinpath(f"{self.language}.package.toml")
-        return tomllib.loads(file.read_text("utf-8")) if file.is_file() else {}
+        return _sentences(f"{self.language}.package.toml")
+
+    def messages(self) -> dict[str, str]:
+        """Return the templates of the package's messages in this language, by their code."""
+        return _sentences(f"{self.language}.messages.toml")
+
+    def sentences(self) -> dict[str, str]:
+        """Return what a page puts in where it has no message: sentences, and messages as these."""
+        return {**_as_sentences(self.messages()), **self.of_package()}
 
     def script(self) -> str:
         """Return the script that tells a page its language and the words of the package."""
@@ -93,8 +102,48 @@ def as_json(content: Any) -> str:
 @cache
 def _script(language: str) -> str:
     text = Text(language)
-    spoken = as_json({"words": text.of_package(), "decimal": text("frame.decimal")})
+    words = {"words": text.sentences(), "messages": text.messages()}
+    spoken = as_json({**words, "decimal": text("frame.decimal")})
     return f'document.documentElement.lang = "{language}"; const spoken = {spoken};'
+
+
+_FIELD = re.compile(r"\{(\w+)(?::([^}]*))?\}")
+_LEAST = 12
+"""Letters that a template has besides its fields, to be known again in a line of several."""
+
+
+def _as_sentences(messages: Mapping[str, str]) -> dict[str, str]:
+    """Return messages as sentences, by which text of old results and of joined lines is known."""
+    sentences: dict[str, str] = {}
+    for code, words in messages.items():
+        if len(re.findall("[A-Za-z]", _FIELD.sub("", code))) < _LEAST:
+            continue
+        for many in (True, False) if "|" in code else (True,):
+            names: list[str] = []
+
+            def put(field: re.Match[str], many: bool = many, names: list[str] = names) -> str:
+                if "|" in (field[2] or ""):
+                    return field[2].split("|")[many]
+                names.append(field[1])
+                return "{}"
+
+            english = _FIELD.sub(put, code).strip()
+            places = {name: place for place, name in reversed([*enumerate(names)])}
+
+            def back(
+                field: re.Match[str], many: bool = many, places: dict[str, int] = places
+            ) -> str:
+                if "|" in (field[2] or ""):
+                    return field[2].split("|")[many]
+                return f"{{{places[field[1]]}}}"
+
+            sentences[english] = _FIELD.sub(back, words).strip()
+    return sentences
+
+
+def _sentences(name: str) -> dict[str, str]:
+    file = FOLDER.joinpath(name)
+    return tomllib.loads(file.read_text("utf-8")) if file.is_file() else {}
 
 
 @cache

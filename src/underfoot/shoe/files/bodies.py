@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, unknown_name
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.remark import assumed
+from underfoot.core.remark import ASSUMED, Message, Remark, assumed
 
 from .._kernels.components import MOST_FACES, components, extents_of_bodies
 from .carriers import carried
@@ -45,6 +45,9 @@ _COARSE = 300  # cells along a body
 _BOX, _PLATE = 1e-3, 0.2  # of a box's surface; height of a plate over its width
 
 
+_AWAY = Message("Ground side: away from the rest of the file")
+
+
 @dataclass(frozen=True, slots=True)
 class Found:
     """The triangles of the outsole, and what told them.
@@ -59,8 +62,8 @@ class Found:
 
     meshes: tuple[Mesh, ...]
     down: Array | None
-    remarks: tuple[str, ...]
-    ground: str = "Ground side: away from the rest of the file."
+    remarks: tuple[Message, ...]
+    ground: Message = _AWAY
     ground_assumed: bool = False
 
 
@@ -133,7 +136,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     return found
 
 
-def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask, list[str]]:
+def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask, list[Message]]:
     """Return the mesh with each group of bodies as one, which are kept, and what was joined."""
     assert mesh.body is not None
     first, number = np.unique(group, return_inverse=True)
@@ -144,10 +147,14 @@ def _joined(mesh: Mesh, group: NDArray[np.intp], keep: Mask) -> tuple[Mesh, Mask
         members = [mesh.bodies[n] for n in np.flatnonzero(number == each)]
         names.append(" + ".join(dict.fromkeys(filter(None, members))))
         if len(members) > 1:
-            listed = f": {_listed(named)}" if (named := [n for n in members if n]) else ""
+            named = [name for name in members if name]
             told.append(
-                f"{len(members)} bodies are one sole, lugs and what they hang on{listed}; told by "
-                "the contact of their faces."
+                Message(
+                    "{count} bodies are one sole, lugs and what they hang on{names}; told by the "
+                    "contact of their faces.",
+                    count=len(members),
+                    names=Message(": {names}", names=_listed(named)) if named else "",
+                )
             )
     together = np.bincount(number, keep) > 0
     body = np.asarray(number[mesh.body], dtype=np.int32)
@@ -162,7 +169,7 @@ def _part(mesh: Mesh, keep: Mask) -> Mesh:
     return replace(mesh, triangles=mesh.triangles[chosen], body=mesh.body[chosen])
 
 
-def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
+def _without_strays(mesh: Mesh) -> tuple[Mesh, list[Message]]:
     corners = mesh.triangles.reshape(-1, 3)
     sample = corners[:: max(1, corners.shape[0] // 100_000)]
     sample = sample[np.isfinite(sample).all(axis=1)]
@@ -176,17 +183,18 @@ def _without_strays(mesh: Mesh) -> tuple[Mesh, list[str]]:
         return mesh, []
     faces = off.reshape(-1, 3).any(axis=1)
     places = np.unique(corners[off], axis=0) + np.array(mesh.origin)
-    place = ", ".join(f"{value:.6g}" for value in places[0])
-    remark = (
-        f"{places.shape[0]} stray corner{'s' if places.shape[0] > 1 else ''} far off all others, "
-        f"{'the first ' if places.shape[0] > 1 else ''}at ({place}) in the file, left out with "
-        f"{np.count_nonzero(faces)} faces."
+    remark = Message(
+        "{count} stray {count:corner|corners} far off all others, {count:|the first }at ({place}) "
+        "in the file, left out with {faces} faces.",
+        count=places.shape[0],
+        place=[f"{value:.6g}" for value in places[0]],
+        faces=np.count_nonzero(faces),
     )
     body = None if mesh.body is None else mesh.body[~faces]
     return replace(mesh, triangles=mesh.triangles[~faces], body=body), [remark]
 
 
-def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     """Leave out specks of a scan that lie apart from all that has a size."""
     speck = keep & (bodies.area < _ISLAND * bodies.area[keep].sum())
     rest = keep & ~speck
@@ -197,7 +205,9 @@ def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
     off = speck & (gap > _APART * float((high - low).max()))
     if not off.any():
         return keep, []
-    return keep & ~off, [f"{np.count_nonzero(off)} specks apart from all else were left out."]
+    return keep & ~off, [
+        Message("{count} specks apart from all else were left out.", count=np.count_nonzero(off))
+    ]
 
 
 def _measured(mesh: Mesh) -> _Bodies:
@@ -243,7 +253,7 @@ def _matching(names: tuple[str, ...], wanted: str) -> Mask:
 
 def _named(
     bodies: _Bodies, group: NDArray[np.intp], settings: FileSettings, where: str
-) -> tuple[Mask, list[str]]:
+) -> tuple[Mask, list[Message]]:
     """Return the bodies that the user or their names tell to be outsole; all if none are told.
 
     A body that is one with another (the same number in ``group``) is told with it.
@@ -258,34 +268,37 @@ def _named(
         if not keep.any():
             named = {name for name, is_there in zip(bodies.names, sized, strict=True) if is_there}
             raise unknown_name("body", settings.solid, named, where=where)
-        return keep, [_taken(bodies, keep, sized, "as chosen")]
+        return keep, [_taken(bodies, keep, sized, Message("as chosen"))]
     other = np.array([_other(name) for name in bodies.names])
     by_name = np.array([bool(OUTSOLE_NAMES.search(name)) for name in bodies.names]) & ~other
     by_name, other = with_group(by_name), ~with_group(~other)
     if (by_name & sized).any():
         if (sized & ~by_name).any():
-            return by_name & sized, [_taken(bodies, by_name & sized, sized, "by name")]
+            return by_name & sized, [_taken(bodies, by_name & sized, sized, Message("by name"))]
         return sized, []
     if sized.any() and not (sized & ~other).any():
         raise _no_outsole([n for n, t in zip(bodies.names, sized, strict=True) if t], where)
     if (other & sized).any():
-        return sized & ~other, [_taken(bodies, sized & ~other, sized, "by the others' names")]
+        return sized & ~other, [
+            _taken(bodies, sized & ~other, sized, Message("by the others' names"))
+        ]
     return sized, []
 
 
-def _taken(bodies: _Bodies, keep: Mask, sized: Mask, how: str) -> str:
+def _taken(bodies: _Bodies, keep: Mask, sized: Mask, how: Message) -> Message:
     left = _listed([n for n, k, t in zip(bodies.names, keep, sized, strict=True) if t and not k])
     taken = _listed([n for n, k in zip(bodies.names, keep, strict=True) if k])
-    return f"Outsole {how}: {taken}" + (f"; left out: {left}." if left else ".")
+    rest = Message("; left out: {names}", names=left) if left else ""
+    return Message("Outsole {how}: {names}{rest}.", how=how, names=taken, rest=rest)
 
 
-def _listed(names: list[str]) -> str:
-    quoted = [f'"{name}"' for name in dict.fromkeys(names)]
-    more = f" and {len(quoted) - 4} more" if len(quoted) > 4 else ""
-    return ", ".join(quoted[:4]) + more
+def _listed(names: list[str]) -> Message:
+    quoted = [Message('"{name}"', name=name) for name in dict.fromkeys(names)]
+    more = Message(" and {count} more", count=len(quoted) - 4) if len(quoted) > 4 else ""
+    return Message("{names}{more}", names=quoted[:4], more=more)
 
 
-def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     """Return the bodies without slender ones that stand out upright, and where those stand."""
     size = bodies.size
     slender = keep & (size[:, 2] > _SLENDER * size[:, :2].max(axis=1))
@@ -301,16 +314,17 @@ def _without_supports(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
         return keep, []
     first = int(np.flatnonzero(slender)[0])
     middle = (bodies.low[first] + bodies.high[first]) / 2 @ bodies.axes
-    place = ", ".join(f"{value:.4g}" for value in middle)
-    count = int(slender.sum())
-    return keep & ~slender, [
-        f"{count} slender bod{'ies' if count > 1 else 'y'} (print supports), up to "
-        f"{size[slender, :2].max():.3g} thick, {'the first ' if count > 1 else ''}at ({place}) in "
-        "the file, left out."
-    ]
+    told = Message(
+        "{count} slender {count:body|bodies} (print supports), up to {thickness:.3g} thick, "
+        "{count:|the first }at ({place}) in the file, left out.",
+        count=slender.sum(),
+        thickness=size[slender, :2].max(),
+        place=[f"{value:.4g}" for value in middle],
+    )
+    return keep & ~slender, [told]
 
 
-def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
+def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     """Return the bodies without flat boxes as large as the rest: a build plate, a table."""
     length, width, height = bodies.size.T
     box = 2 * (length * width + (length + width) * height)
@@ -329,7 +343,9 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[str]]:
         return keep, []
     rest = keep & ~plates
     named = _listed([n for n, p in zip(bodies.names, plates, strict=True) if p])
-    return rest, [assumed(f"{named} is a plate under or over the sole and was left out.")]
+    return rest, [
+        assumed("{names} is a plate under or over the sole and was left out.", names=named)
+    ]
 
 
 def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:
@@ -352,7 +368,7 @@ def _pair(bodies: _Bodies, keep: Mask) -> tuple[Mask, Mask] | None:
 
 
 def _of_pair(
-    mesh: Mesh, pair: tuple[Mask, Mask], settings: FileSettings, where: str, remarks: list[str]
+    mesh: Mesh, pair: tuple[Mask, Mask], settings: FileSettings, where: str, remarks: list[Message]
 ) -> Found:
     if settings.side == "auto":
         raise DataError(
@@ -362,13 +378,15 @@ def _of_pair(
             remedy='Choose one with --side left or --side right (in a case: side = "left"), or '
             "export one alone",
         )
-    told = f"Of the pair in the file the {settings.side} shoe was taken, as chosen."
+    told = Message(
+        "Of the pair in the file the {side} shoe was taken, as chosen.", side=settings.side
+    )
     return Found(tuple(_part(mesh, one) for one in pair), None, (*remarks, told))
 
 
 def _without_stack(
     mesh: Mesh, bodies: _Bodies, keep: Mask, settings: FileSettings
-) -> tuple[Mask, Array | None, list[str]]:
+) -> tuple[Mask, Array | None, list[Message]]:
     """Return the bodies of the outsole of a stack, where the ground is, and how it was told."""
     sorted_size = np.sort(bodies.size, axis=1)[:, ::-1]
     longest = float(sorted_size[keep, 0].max())
@@ -401,15 +419,17 @@ def _without_stack(
     below = shares[0] == most if sure else upward
     group = groups[0] if below else groups[1]
     down = None if settings.down in DIRECTIONS else -up if below else up
-    how = (
-        f"determined as the end of the stack that carries the tread (channels over {most:.0%} of "
-        f"it, {least:.0%} at the other end)"
-        if sure
-        else "the lower one of the file; no tread tells"
-    )
-    taken = _taken(bodies, group, keep, "of a stack of bodies")
-    told = f"{taken[:-1]}. It is {how}."
-    return group, down, [told if sure else assumed(told)]
+    how = Message("the lower one of the file; no tread tells")
+    if sure:
+        how = Message(
+            "determined as the end of the stack that carries the tread (channels over {most:.0%} "
+            "of it, {least:.0%} at the other end)",
+            most=most,
+            least=least,
+        )
+    taken = _taken(bodies, group, keep, Message("of a stack of bodies"))
+    told = Remark("" if sure else ASSUMED, "{taken} It is {how}.", taken=taken, how=how)
+    return group, down, [told]
 
 
 def _level_with(bodies: _Bodies, number: int, axis: int) -> Mask:
@@ -457,13 +477,15 @@ def _beside(outsole: Found, bodies: _Bodies, keep: Mask, others: Mask) -> Found:
     if (telling & shoe).any():
         return replace(outsole, down=away)
     if (telling & floor).any():
-        return replace(outsole, down=-away, ground="Ground side: towards the floor in the file.")
+        return replace(
+            outsole, down=-away, ground=Message("Ground side: towards the floor in the file")
+        )
     mesh, (length, width) = outsole.meshes[0], (box[1] - box[0])[:2]
     unit = mesh.unit or likely_unit(float(length), float(width))
     shares = _treads(mesh, bodies.axes, axis, unit, float(length))
     towards = shares[0] > shares[1] if offset[axis] > 0 else shares[1] > shares[0]
     if _clear(shares) and towards:
-        told = "the ground side is the one with the tread, towards the rest of the file."
+        told = Message("the ground side is the one with the tread, towards the rest of the file")
         return replace(outsole, down=-away, ground=told, ground_assumed=True)
     return replace(outsole, down=away)
 

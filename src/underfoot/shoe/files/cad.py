@@ -1,5 +1,6 @@
 """STEP, IGES and BREP: surfaces that OCC reads and Netgen turns into triangles."""
 
+import json
 import os
 import pickle
 import re
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from underfoot.core import Cache, DataError, InputError, content_hash
 from underfoot.core.files import checksum
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message, from_stored, stored_form
 
 from .mesh import Mesh
 from .settings import length_unit
@@ -73,7 +75,7 @@ def read_cad(path: Path, kind: str, unit: str = "auto") -> Mesh:
             "body": mesh.body,
             "unit": np.array(mesh.unit or np.nan),
             "bodies": np.array(mesh.bodies, dtype=np.str_),
-            "remarks": np.array(mesh.remarks, dtype=np.str_),
+            "remarks": np.array([json.dumps(stored_form(line)) for line in mesh.remarks], np.str_),
         }
         cache.store(key, stored)
     stated = float(stored["unit"])
@@ -81,7 +83,7 @@ def read_cad(path: Path, kind: str, unit: str = "auto") -> Mesh:
         stored["triangles"],
         kind,
         None if np.isnan(stated) else stated,
-        tuple(str(line) for line in stored["remarks"]),
+        tuple(from_stored(json.loads(str(line))) for line in stored["remarks"]),
         tuple(str(name) for name in stored["bodies"]),
         stored["body"],
     )
@@ -219,11 +221,18 @@ def _meshed(path: Path, kind: str, unit: str) -> Mesh:
             if _area(drawn) > meshed:
                 triangles, body = drawn, drawn_body
                 remarks.append(
-                    "Some of its surfaces could not be meshed finely; the coarser triangles for "
-                    "drawing were taken: roundings may be off by tenths of a millimetre."
+                    Message(
+                        "Some of its surfaces could not be meshed finely; the coarser "
+                        "triangles for drawing were taken: roundings may be off by tenths "
+                        "of a millimetre."
+                    )
                 )
             if lost > _LOST_SHARE:
-                remarks.append(f"{lost:.1%} of the area of its surfaces could not be meshed.")
+                remarks.append(
+                    Message(
+                        "{lost:.1%} of the area of its surfaces could not be meshed.", lost=lost
+                    )
+                )
     if triangles.shape[0] == 0:
         raise DataError(
             f"the surfaces of the {kind} file could not be turned into triangles",
@@ -299,14 +308,20 @@ def _names(geometry: Any) -> tuple[str, ...]:
     return tuple(str(solid.name or parts.get(solid, "")) for solid in solids)
 
 
-def _inventory(kind: str, solids: int, faces: int) -> str:
-    surfaces = f"{faces} surface" + ("s" if faces != 1 else "")
+def _inventory(kind: str, solids: int, faces: int) -> Message:
     if solids == 0:
-        return (
-            f"The {kind} file holds {surfaces} and no solid; a height map needs no solid, so the "
-            "surfaces were taken as they are."
+        return Message(
+            "The {kind} file holds {faces} {faces:surface|surfaces} and no solid; a height map "
+            "needs no solid, so the surfaces were taken as they are.",
+            kind=kind,
+            faces=faces,
         )
-    return f"The {kind} file holds {solids} solid" + ("s" if solids > 1 else "") + f", {surfaces}."
+    return Message(
+        "The {kind} file holds {solids} {solids:solid|solids}, {faces} {faces:surface|surfaces}.",
+        kind=kind,
+        solids=solids,
+        faces=faces,
+    )
 
 
 def _corners(

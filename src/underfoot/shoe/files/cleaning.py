@@ -3,6 +3,7 @@
 import numpy as np
 
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 
 from .._kernels.covering_discs import local_width
 from .._kernels.regions import carried_on, distance_to, grown, pieces, rim, without_holes
@@ -23,9 +24,9 @@ _ALONG = 0.35  # of the sides of a ledge: along the rim
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
 
 
-def cleaned(height: Array, spacing: float) -> tuple[Array, list[str]]:
+def cleaned(height: Array, spacing: float) -> tuple[Array, list[Message]]:
     """Return the height map without stray parts, small holes and spikes, and a remark for each."""
-    remarks: list[str] = []
+    remarks: list[Message] = []
     height, new = _without_stray_parts(height, spacing)
     remarks += new
     height, new = _without_holes(height, spacing)
@@ -34,7 +35,7 @@ def cleaned(height: Array, spacing: float) -> tuple[Array, list[str]]:
     return height, remarks + new
 
 
-def _without_stray_parts(height: Array, spacing: float) -> tuple[Array, list[str]]:
+def _without_stray_parts(height: Array, spacing: float) -> tuple[Array, list[Message]]:
     inside = np.isfinite(height)
     parts, count = pieces(inside, diagonal=True)
     if count <= 1:
@@ -48,14 +49,21 @@ def _without_stray_parts(height: Array, spacing: float) -> tuple[Array, list[str
     height = np.where(keep[parts], height, np.nan)
     remarks = []
     if gone:
-        strays = f"{gone} separate piece" + ("s" if gone > 1 else "")
-        remarks.append(f"{strays} of {area:.3g} mm² beside the sole left out.")
+        remarks.append(
+            Message(
+                "{count} separate {count:piece|pieces} of {area:.3g} mm² beside the sole left out.",
+                count=gone,
+                area=area,
+            )
+        )
     if np.count_nonzero(keep) > 1:
-        remarks.append(f"The sole has {np.count_nonzero(keep)} separate parts.")
+        remarks.append(
+            Message("The sole has {count} separate parts.", count=np.count_nonzero(keep))
+        )
     return height, remarks
 
 
-def _without_holes(height: Array, spacing: float) -> tuple[Array, list[str]]:
+def _without_holes(height: Array, spacing: float) -> tuple[Array, list[Message]]:
     inside = np.isfinite(height)
     holes = without_holes(inside) & ~inside
     if not holes.any():
@@ -72,20 +80,27 @@ def _without_holes(height: Array, spacing: float) -> tuple[Array, list[str]]:
         area = float(sizes[small].sum()) * 1e6
         many = int(np.count_nonzero(small))
         remarks.append(
-            f"{many} hole{'s' if many > 1 else ''} of {area:.3g} mm² in all filled from the "
-            "surface around."
+            Message(
+                "{count} hole{count:|s} of {area:.3g} mm² in all filled from the surface around.",
+                count=many,
+                area=area,
+            )
         )
     large = int(count - np.count_nonzero(small))
     if large:
         area = float(sizes[1:][~small[1:]].sum()) * 1e6
         remarks.append(
-            f"{large} hole{'s' if large > 1 else ''} larger than 100 mm² ({area:.3g} mm² in all) "
-            "kept as openings of the sole."
+            Message(
+                "{count} hole{count:|s} larger than 100 mm² ({area:.3g} mm² in "
+                "all) kept as openings of the sole.",
+                count=large,
+                area=area,
+            )
         )
     return height, remarks
 
 
-def _without_spikes(height: Array) -> tuple[Array, list[str]]:
+def _without_spikes(height: Array) -> tuple[Array, list[Message]]:
     from scipy.ndimage import grey_closing
 
     inside = np.isfinite(height)
@@ -101,14 +116,18 @@ def _without_spikes(height: Array) -> tuple[Array, list[str]]:
         return height, []
     count = int(np.count_nonzero(spikes))
     return np.where(spikes, closed, height), [
-        f"{count} cell{'s' if count > 1 else ''} that stood out by more than 1 mm (narrower than "
-        f"{_SPIKE_CELLS} cells) levelled as spikes of the scan."
+        Message(
+            "{count} cell{count:|s} that stood out by more than 1 mm (narrower "
+            "than {cells} cells) levelled as spikes of the scan.",
+            count=count,
+            cells=_SPIKE_CELLS,
+        )
     ]
 
 
 def without_ledges(
     height: Array, land: Mask, base: Array, spacing: float, channel_depth: float
-) -> tuple[Array, Mask, list[str]]:
+) -> tuple[Array, Mask, list[Message]]:
     """Return the height map without ledges along the rim, which of them are channels, and remarks.
 
     A ledge is land at the rim that stands more than 1 mm over what lies beside it: it never meets
@@ -172,8 +191,12 @@ def without_ledges(
         np.where(gone, np.nan, height),
         cut_open,
         [
-            f"A ledge along the rim, more than 1 mm above the sole beside it ({area:.3g} mm²), was "
-            "left out of the plan form: it never meets the floor."
+            Message(
+                "A ledge along the rim, more than 1 mm above the sole beside it "
+                "({area:.3g} mm²), was left out of the plan form: it never meets "
+                "the floor.",
+                area=area,
+            )
         ],
     )
 

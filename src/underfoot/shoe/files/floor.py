@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.remark import assumed
+from underfoot.core.remark import Message, assumed
 
 from .._kernels.components import MOST_FACES, components
 from .._kernels.regions import grown, shrunk, without_specks
@@ -32,7 +33,7 @@ _SPECK = 20  # cells
 _TILT = 1e-4  # rad: what is level within it stays as it lies
 
 
-def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | None, list[str]]:
+def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | None, list[Message]]:
     """Return the mesh without a floor plane, where the ground is, and what was seen of a plane.
 
     A floor plane: level, and seen beyond the plan form of all else, over 2 % of it beside a body
@@ -69,15 +70,17 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     heights = mesh.triangles @ axes[2].astype(np.float32)
     in_plane = (np.abs(heights - np.float32(level)) <= half).all(axis=1)
     size = np.ptp(mesh.triangles[in_plane].reshape(-1, 3) @ axes[:2].T, axis=0)
-    what = f"level plane of {size[0]:.4g} x {size[1]:.4g} that reaches beyond all else in the file"
+    plane: dict[str, Any] = {"length": size[0], "width": size[1]}
     risen = float(np.median((seen.lowest - level)[rest]))
     towards = risen * float(np.median(seen.facing[beyond])) > 0
     if not settings.cut_floor and (land or not (solid or towards)):
-        told = (
-            f"a {what} is part of the sole. If it is a floor or a table, cut it with --cut-floor "
-            "(in a case: cut_floor = true)."
+        told = assumed(
+            "a level plane of {length:.4g} x {width:.4g} that reaches beyond all else in the file "
+            "is part of the sole. If it is a floor or a table, cut it with --cut-floor (in a case: "
+            "cut_floor = true).",
+            **plane,
         )
-        return mesh, None, [assumed(told)]
+        return mesh, None, [told]
     beside = _within(mesh.triangles.mean(axis=1), seen, ~rest if solid else beyond)
     level_with = np.minimum(np.abs(seen.lowest - level), np.abs(seen.highest - level))[rest] <= half
     if not solid:
@@ -91,13 +94,24 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     if apart.any():
         cut = apart
     elif not (solid or land):
-        cut, lost = cut | in_plane, " What of the sole lies in it is lost."
+        cut, lost = cut | in_plane, Message(" What of the sole lies in it is lost.")
         if settings.down == "auto":
             down = axes[2] * np.sign(risen)
     body = None if mesh.body is None else mesh.body[~cut]
-    how = "was cut as floor" if settings.cut_floor else "was taken as floor and cut"
-    told = f"{what} {how} ({np.count_nonzero(cut)} faces).{lost}"
-    told = f"A {told}" if settings.cut_floor else assumed(f"a {told}")
+    plane |= {"faces": np.count_nonzero(cut), "lost": lost}
+    told = (
+        Message(
+            "A level plane of {length:.4g} x {width:.4g} that reaches beyond all else in the file "
+            "was cut as floor ({faces} faces).{lost}",
+            **plane,
+        )
+        if settings.cut_floor
+        else assumed(
+            "a level plane of {length:.4g} x {width:.4g} that reaches beyond all else in the file "
+            "was taken as floor and cut ({faces} faces).{lost}",
+            **plane,
+        )
+    )
     return replace(mesh, triangles=mesh.triangles[~cut], body=body), down, [told]
 
 

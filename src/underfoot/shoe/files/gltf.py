@@ -13,6 +13,7 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from .mesh import AGAIN, MOST_UNFOLDED, Body, MeshFile, Unmet
 
@@ -279,7 +280,7 @@ class _Asset:
             )
         return np.fromfile(beside, dtype=np.uint8)
 
-    def _unit(self, bodies: list[Body]) -> tuple[float | None, tuple[str, ...]]:
+    def _unit(self, bodies: list[Body]) -> tuple[float | None, tuple[Message, ...]]:
         with np.errstate(invalid="ignore"):
             corners = [
                 body.vertices.astype(np.float64) @ body.placement[:3, :3].T + body.placement[:3, 3]
@@ -291,7 +292,11 @@ class _Asset:
             size = float(np.ptp(np.concatenate(corners), axis=0).max())
         if _SHORTEST <= size <= _LONGEST:
             return 1.0, ()
-        return None, (f"glTF is in metres, which would make this file {size:.4g} m long.",)
+        return None, (
+            Message(
+                "glTF is in metres, which would make this file {length:.4g} m long.", length=size
+            ),
+        )
 
     def _error(self, what: str, remedy: str = AGAIN, allowed: str | None = None) -> DataError:
         return DataError(what, where=self.where, allowed=allowed, remedy=remedy)

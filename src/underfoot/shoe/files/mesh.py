@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 AGAIN = "It may be cut short or damaged: export the outsole again"
 MOST_UNFOLDED = 20_000_000
@@ -95,7 +96,7 @@ class MeshFile:
     bodies: Sequence[Body]
     unit: float | None = None
     unmet: tuple[Unmet, ...] = ()
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +118,7 @@ class Mesh:
     triangles: NDArray[np.float32]
     format: str
     unit: float | None = None
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[Message, ...] = ()
     bodies: tuple[str, ...] = ()
     body: NDArray[np.int32] | None = None
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -157,8 +158,11 @@ def assembled(file: MeshFile, where: str) -> Mesh:
     labels = _labels(shown)
     several = len(shown) > 1
     named = several or bool(labels[0])
-    told = [f"{_kinds(left)} left out."] if left else []
-    told += [f"Not done, as the file may do without: {each.what}." for each in file.unmet]
+    told = [Message("{bodies} left out.", bodies=_kinds(left))] if left else []
+    told += [
+        Message("Not done, as the file may do without: {what}.", what=each.what)
+        for each in file.unmet
+    ]
     return Mesh(
         triangles=soups[0] if not several else np.concatenate(soups),
         format=file.format,
@@ -182,17 +186,23 @@ def _check(body: Body, kind: str, where: str) -> None:
         )
 
 
-def _kinds(left: Iterable[Body]) -> str:
+def _kinds(left: Iterable[Body]) -> Message:
     """Return bodies that are no visible model by what they are, in words."""
     groups: dict[str, list[str]] = {}
     for body in left:
         groups.setdefault(body.kind if body.kind != "model" else "hidden", []).append(body.label)
     words = []
     for kind, names in groups.items():
-        known = ", ".join(f'"{name}"' for name in list(dict.fromkeys(filter(None, names)))[:4])
-        bodies = f"{len(names)} {kind} bod{'ies' if len(names) > 1 else 'y'}"
-        words.append(f"{bodies} ({known})" if known else bodies)
-    return " and ".join(words)
+        known = [Message('"{name}"', name=name) for name in dict.fromkeys(filter(None, names))][:4]
+        words.append(
+            Message(
+                "{count} {kind} {count:body|bodies}{names}",
+                count=len(names),
+                kind=kind,
+                names=Message(" ({names})", names=known) if known else "",
+            )
+        )
+    return Message("{bodies: and }", bodies=words)
 
 
 def _labels(bodies: Sequence[Body]) -> list[str]:
@@ -208,7 +218,7 @@ def _labels(bodies: Sequence[Body]) -> list[str]:
     ]
 
 
-def _origin(bodies: Sequence[Body], where: str) -> tuple[Array, list[str]]:
+def _origin(bodies: Sequence[Body], where: str) -> tuple[Array, list[Message]]:
     """Return where coordinates count from and a remark where the file holds them coarsely."""
     with np.errstate(over="ignore", invalid="ignore"):
         sampled = []
@@ -224,14 +234,18 @@ def _origin(bodies: Sequence[Body], where: str) -> tuple[Array, list[str]]:
     size = float((high - low).max())
     step = max(_step(body) for body in bodies)
     if size > 0 and step > _COARSE * size:
-        told = f"its coordinates hold steps of {step:.2g}, {step / size:.1e} of its length"
+        steps = Message(
+            "its coordinates hold steps of {step:.2g}, {share:.1e} of its length",
+            step=step,
+            share=step / size,
+        )
         if step > _TOO_COARSE * size:
             raise DataError(
-                f"{told}: so far from the origin single precision loses the tread",
+                f"{steps}: so far from the origin single precision loses the tread",
                 where=where,
                 remedy="Move it to the origin in the program it comes from, and export again",
             )
-        return middle, [f"So far from the origin {told}."]
+        return middle, [Message("So far from the origin {steps}.", steps=steps)]
     return (middle if float(np.abs(middle).max()) > _FAR * size else np.zeros(3)), []
 
 

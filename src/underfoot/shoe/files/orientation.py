@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 
 from .._kernels.covering_discs import local_width
 from .._kernels.regions import shrunk, without_specks
@@ -154,12 +155,12 @@ def _extents(points: Array, angles: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A decision: its sign (1 keep, -1 turn), how it was made ("" when stated by the user), and
-    whether that is a guess.
+    """A decision: its sign (1 keep, -1 turn), how it was made ("" when stated by the user; no full
+    stop), and whether that is a guess.
     """
 
     sign: int
-    remark: str
+    remark: Message
     assumed: bool = False
 
 
@@ -171,10 +172,10 @@ def ground_side(seen: View, settings: FileSettings) -> Choice:
     surface without thickness the side its normals point to; else the file's own lower side.
     """
     if settings.down in DIRECTIONS:
-        return Choice(-1, "")
+        return Choice(-1, Message(""))
     choice = _ground_side(seen)
     if settings.down == "flip":
-        return Choice(-choice.sign, "Ground side: turned over by the option down = flip.")
+        return Choice(-choice.sign, Message("Ground side: turned over by the option down = flip"))
     return choice
 
 
@@ -191,18 +192,22 @@ def _ground_side(seen: View) -> Choice:
             sign = 1 if shares[0] > shares[1] else -1
             return Choice(
                 sign,
-                f"Ground side: determined from the tread, channels over {most:.0%} of it, "
-                f"{least:.0%} on the other side.",
+                Message(
+                    "Ground side: determined from the tread, channels over {most:.0%} of it, "
+                    "{least:.0%} on the other side",
+                    most=most,
+                    least=least,
+                ),
             )
     if abs(rise) > _RIM_RISE:
-        remark = "Ground side: determined from the rim, which turns up from the floor."
+        remark = Message("Ground side: determined from the rim, which turns up from the floor")
         return Choice(1 if rise > 0 else -1, remark)
     if thin and abs(turned - 0.5) > 0.25:
-        remark = "Ground side: the side to which the normals of the scan point."
+        remark = Message("Ground side: the side to which the normals of the scan point")
         return Choice(1 if turned < 0.5 else -1, remark)
     return Choice(
         1 if _file_side(seen) else -1,
-        "the ground side is the lower one of the file; both sides look alike.",
+        Message("the ground side is the lower one of the file; both sides look alike"),
         assumed=True,
     )
 
@@ -247,32 +252,42 @@ def toe_end(plan: Mask, spacing: float, settings: FileSettings) -> Choice:
         plan: The plan form on cells of ``spacing`` (m).
     """
     if settings.forward in DIRECTIONS:
-        return Choice(1, "")
+        return Choice(1, Message(""))
     choice = _toe_end(plan, spacing)
     if settings.forward == "flip":
-        return Choice(-choice.sign, "Heel end: swapped by the option forward = flip.")
+        return Choice(-choice.sign, Message("Heel end: swapped by the option forward = flip"))
     return choice
 
 
 def _toe_end(plan: Mask, spacing: float) -> Choice:
-    remedy = '; forward = "flip" (--forward flip) swaps heel and toe.'
     length, width = (np.ptp(np.nonzero(plan)[n]) * spacing for n in (0, 1))
     cut = cut_ends(plan, 0, spacing)
     offset = off_centre(plan, 0)
     if cut[0] != cut[1] and length < _WHOLE * width:
         forepart = width > _WIDEST_HEEL or length > HEEL[1]
-        kind = "forepart, cut at its rear" if forepart else "heel piece, cut at its front"
-        size = f"{length * 1e3:.0f} x {width * 1e3:.0f} mm"
-        return Choice(
-            1 if cut[0] == forepart else -1, f"a {kind}, by its size of {size}{remedy}", True
+        kind = Message("heel piece, cut at its front")
+        if forepart:
+            kind = Message("forepart, cut at its rear")
+        told = Message(
+            'a {kind}, by its size of {length:.0f} x {width:.0f} mm; forward = "flip" (--forward '
+            "flip) swaps heel and toe",
+            kind=kind,
+            length=length * 1e3,
+            width=width * 1e3,
         )
+        return Choice(1 if cut[0] == forepart else -1, told, True)
     if abs(offset) < OFF_CENTRE or all(cut):
         return Choice(
-            1 if offset >= 0 else -1, f"which end is the heel; both look alike{remedy}", True
+            1 if offset >= 0 else -1,
+            Message(
+                'which end is the heel; both look alike; forward = "flip" (--forward flip) '
+                "swaps heel and toe"
+            ),
+            True,
         )
     return Choice(
         1 if offset > 0 else -1,
-        "Heel end: determined from the plan form, which is rounder or narrower there.",
+        Message("Heel end: determined from the plan form, which is rounder or narrower there"),
     )
 
 
@@ -330,7 +345,7 @@ def off_centre(plan: Mask, axis: int) -> float:
     return (centroid - middle) / (places[-1] - places[0] + 1)
 
 
-def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, str]:
+def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, Message]:
     """Return "left", "right" or "" (not determined) and a remark on how it was determined.
 
     The middle line of a sole bends towards the inner side of the foot: c, the coefficient of
@@ -338,7 +353,7 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, st
     right foot. Determined when the sagitta |c| L^2 / 4 is more than 0.6 % of the length L.
     """
     if settings.foot != "auto":
-        return settings.foot, ""
+        return settings.foot, Message("")
     rows = np.nonzero(plan.any(axis=1))[0]
     rows = rows[int(0.03 * rows.size) : rows.size - int(0.03 * rows.size)]
     y = np.arange(plan.shape[1], dtype=float)
@@ -346,9 +361,9 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, st
     length = float(rows[-1] - rows[0])
     bend = float(np.polyfit(rows / length, middle, 2)[0]) / 4 / length
     if abs(bend) < _BEND:
-        return "", "The foot is not determined: the plan form is nearly symmetric."
+        return "", Message("The foot is not determined: the plan form is nearly symmetric.")
     foot = "right" if bend > 0 else "left"
-    return foot, f"Foot: {foot}, from the bend of the plan form."
+    return foot, Message("Foot: {foot}, from the bend of the plan form.", foot=foot)
 
 
 def standing_share(height: Array, spacing: float) -> float:
@@ -384,10 +399,12 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
     order = np.argsort(shares)[::-1]
     best = frames[int(order[0])]
     if shares[order[0]] > _STANDS * shares[order[1]]:
-        return best, Choice(
-            1, f"Ground side: the side that stands flat, {shares[order[0]]:.0%} of it on the floor."
+        told = Message(
+            "Ground side: the side that stands flat, {share:.0%} of it on the floor",
+            share=shares[order[0]],
         )
-    return best, Choice(1, "the ground side is the one that stands flattest.", True)
+        return best, Choice(1, told)
+    return best, Choice(1, Message("the ground side is the one that stands flattest"), True)
 
 
 LEVEL = math.radians(0.05)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
-from underfoot.core.remark import assumed
+from underfoot.core.remark import ASSUMED, Message, Remark, assumed
 
 from ..geometry import SoleSurface, centred
 from ..tread_measures import (
@@ -126,7 +126,7 @@ def _outsole(
     mesh: Mesh,
     sound: Soundness,
     told: Found,
-    remarks: list[str],
+    remarks: list[Message],
     chosen: FileSettings,
     name: str,
     where: str,
@@ -165,7 +165,7 @@ def _outsole(
     if chosen.mirror:
         height, thickness = height[:, ::-1], thickness[:, ::-1]
         foot = {"left": "right", "right": "left", "": ""}[foot]
-        remarks.append("Mirrored: the other shoe of the pair.")
+        remarks.append(Message("Mirrored: the other shoe of the pair."))
     low, high = extents(mesh.triangles, axes)
     shape = Shape(
         height=height,
@@ -224,7 +224,7 @@ def _lag(triangles: NDArray[np.float32], unit: float, spacing: float) -> int:
 
 def _sides(
     mesh: Mesh, axes: Array, unit: float, chosen: FileSettings, told: Found
-) -> tuple[Array, list[str], bool]:
+) -> tuple[Array, list[Message], bool]:
     """Return the axes forward, left, up (rows, m per unit of the file), how they were found, and
     whether the ground side is a guess.
     """
@@ -258,9 +258,13 @@ def _sides(
     if toe.sign < 0:
         along, across = -along, -across
     turned = np.stack([along, across, thin])
-    remarks = [
-        (assumed if choice.assumed else str)(
-            f"{choice.remark[:-1]} ({name} is {orientation.named_direction(axis)} of the file)."
+    remarks: list[Message] = [
+        Remark(
+            ASSUMED if choice.assumed else "",
+            "{how} ({name} is {axis} of the file).",
+            how=choice.remark,
+            name=name,
+            axis=orientation.named_direction(axis),
         )
         for choice, name, axis in ((ground, "down", -thin), (toe, "forward", along))
         if choice.remark
@@ -270,14 +274,14 @@ def _sides(
 
 def _level_view(
     mesh: Mesh, axes: Array, spacing: float, askew: float
-) -> tuple[View, Array, list[str]]:
+) -> tuple[View, Array, list[Message]]:
     """Return the fine view in the resting plane's frame: z = 0 is the plane.
 
     ``askew`` (rad): by how much the sole was turned onto its faces before.
     """
     seen = view(mesh.triangles, axes, spacing)
     total = askew
-    remarks: list[str] = []
+    remarks: list[Message] = []
     for _ in range(3):
         height, _ = cleaned(seen.lowest, spacing)
         plane = orientation.resting_plane(height, spacing)
@@ -286,8 +290,10 @@ def _level_view(
             break
         if angle > _MOST_TURN and not orientation.broad_rest(height, spacing, plane):
             remarks.append(
-                f"It would rest {math.degrees(angle):.0f}° off level, on few points: left as it "
-                "lies."
+                Message(
+                    "It would rest {angle:.0f}° off level, on few points: left as it lies.",
+                    angle=math.degrees(angle),
+                )
             )
             break
         total += angle
@@ -295,16 +301,25 @@ def _level_view(
         seen = view(mesh.triangles, axes, spacing)
     height, _ = cleaned(seen.lowest, spacing)
     if total > 0:
-        told = f"turned by {math.degrees(total):.2g}° so that it rests on its lowest lugs"
-        other = orientation.other_rest(height, spacing)
+        turn, other = math.degrees(total), orientation.other_rest(height, spacing)
         if other is None:
-            remarks.append(f"{told.capitalize()}; toe spring is kept.")
+            remarks.append(
+                Message(
+                    "Turned by {turn:.2g}° so that it rests on its lowest lugs; toe spring is "
+                    "kept.",
+                    turn=turn,
+                )
+            )
         else:  # a file that lies level says itself which of them is the floor's
             share, angle = other
             remarks.append(
                 assumed(
-                    f"{told}; a face of {share:.0%} of it, {math.degrees(angle):.2g}° off, could "
-                    "stand on the floor as well. Lay the file level in CAD to choose."
+                    "turned by {turn:.2g}° so that it rests on its lowest lugs; a face of "
+                    "{share:.0%} of it, {angle:.2g}° off, could stand on the floor as well. Lay "
+                    "the file level in CAD to choose.",
+                    turn=turn,
+                    share=share,
+                    angle=math.degrees(angle),
                 )
             )
     a, b, c = orientation.resting_plane(height, spacing)
@@ -318,7 +333,7 @@ def _level_view(
 
 def _region(
     height: Array, spacing: float, chosen: FileSettings, where: str
-) -> tuple[Array, tuple[slice, slice], list[str]]:
+) -> tuple[Array, tuple[slice, slice], list[Message]]:
     length = height.shape[0] * spacing
     everything = (slice(None), slice(None))
     if chosen.region == "whole" and chosen.region_length is None:
@@ -352,17 +367,25 @@ def _region(
     block = (cut, slice(int(columns[0]), int(columns[-1]) + 1))
     if count == height.shape[0]:
         return height[block], block, []
-    name = "forepart" if chosen.region == "forepart" else "rear"
-    remarks = [
-        f"Cut to the {name} {count * spacing * 1e3:.4g} mm of {length * 1e3:.4g} mm; channels that "
-        "cross the cut count as open there."
-    ]
-    return height[block], block, remarks
+    lengths = {"length": count * spacing * 1e3, "whole": length * 1e3}
+    if chosen.region == "forepart":
+        told = Message(
+            "Cut to the forepart {length:.4g} mm of {whole:.4g} mm; channels that cross the cut "
+            "count as open there.",
+            **lengths,
+        )
+    else:
+        told = Message(
+            "Cut to the rear {length:.4g} mm of {whole:.4g} mm; channels that cross the cut count "
+            "as open there.",
+            **lengths,
+        )
+    return height[block], block, [told]
 
 
 def _surface(
     height: Array, spacing: float, name: str, lag: int
-) -> tuple[SoleSurface, list[str], TreadMap]:
+) -> tuple[SoleSurface, list[Message], TreadMap]:
     tread = tread_map(height, spacing, lag=lag)
     lugs = tread.tread_depth[tread.tread_depth > 0]
     deep = float(np.median(lugs)) if lugs.size else 0.0
@@ -373,30 +396,44 @@ def _surface(
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
     y = centred(height.shape[1], spacing)
     remarks.append(
-        f"Land is what stands within {tread.level * 1e3:.2g} mm of the floor side; channels are "
-        "deeper."
+        Message(
+            "Land is what stands within {height:.2g} mm of the floor side; channels are deeper.",
+            height=tread.level * 1e3,
+        )
     )
     if tread.noise > _NOISY:
         points = _POINTS_NOISE * tread.noise
-        off = "; planes through the land take it off" if tread.noise > QUIET else ""
+        off = Message("; planes through the land take it off") if tread.noise > QUIET else ""
         remarks.append(
-            f"The scan's points carry noise of {points * 1e6:.0f} um (standard deviation){off}."
+            Message(
+                "The scan's points carry noise of {noise:.0f} um (standard deviation){off}.",
+                noise=points * 1e6,
+                off=off,
+            )
         )
         height = without_noise(height, tread.land, tread.noise, spacing, lag)
     arch = arch_area(tread, inside, spacing)
     if arch > _ARCH * np.count_nonzero(inside) * spacing**2:
         remarks.append(
-            f"Hollows wider than {WIDEST_CHANNEL * 1e3:.0f} mm ({arch * 1e4:.3g} cm², an arch) are "
-            "no land; they don't count in depth and width of the channels."
+            Message(
+                "Hollows wider than {width:.0f} mm ({area:.3g} cm², an arch) are "
+                "no land; they don't count in depth and width of the channels.",
+                width=WIDEST_CHANNEL * 1e3,
+                area=arch * 1e4,
+            )
         )
     below = np.where(inside, height - tread.base, np.nan)
     lower = lower_lugs(below, inside & ~tread.land, spacing)
     if np.count_nonzero(lower) > _ARCH * np.count_nonzero(inside):
         less = float(np.median(below[lower])) * 1e3
         remarks.append(
-            f"Lugs that stand {less:.2g} mm lower than those around "
-            f"them ({np.count_nonzero(lower) * spacing**2 * 1e4:.3g} cm²) are no land; channels "
-            "beside them count with their own depth and width."
+            Message(
+                "Lugs that stand {depth:.2g} mm lower than those around them "
+                "({area:.3g} cm²) are no land; channels beside them count with "
+                "their own depth and width.",
+                depth=less,
+                area=np.count_nonzero(lower) * spacing**2 * 1e4,
+            )
         )
     surface = SoleSurface(
         x=x,

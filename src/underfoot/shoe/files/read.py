@@ -14,6 +14,7 @@ import numpy as np
 from underfoot.core import DataError, InputError, nearest_match
 from underfoot.core.optional import optional_module
 from underfoot.core.registry import offered
+from underfoot.core.remark import Message
 from underfoot.core.text import decoded
 
 from .cad import read_cad
@@ -123,8 +124,16 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
     if bad:
         raise DataError(f"a corner of {bad} faces is no number", where=str(path), remedy=AGAIN)
     if content != promised:
-        named = f"is named {path.suffix} but holds" if path.suffix else "has no ending and holds"
-        remark = f"The file {named} {content}; it was read as {content}."
+        remark = Message(
+            "The file is named {ending} but holds {content}; it was read as {content}.",
+            ending=path.suffix,
+            content=content,
+        )
+        if not path.suffix:
+            remark = Message(
+                "The file has no ending and holds {content}; it was read as {content}.",
+                content=content,
+            )
         mesh = replace(mesh, remarks=(remark, *mesh.remarks))
     return mesh
 

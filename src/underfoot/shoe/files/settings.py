@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.remark import assumed
+from underfoot.core.remark import Message, assumed
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
 """Units of length a file may be in, m."""
@@ -98,7 +98,7 @@ def length_unit(
     in_file: float | None = None,
     where: str,
     longest: float = 0.5,
-) -> tuple[float, str]:
+) -> tuple[float, Message]:
     """Return the file's unit in m and a remark on how it was determined.
 
     Parameters:
@@ -110,9 +110,11 @@ def length_unit(
     Raises:
         InputError: No unit makes it as long as a sole, or the chosen unit makes it absurd.
     """
-    unit, by, origin = in_file, "by the unit in the file", "as stated in the file"
+    unit, by = in_file, "by the unit in the file"
+    origin = Message("as stated in the file")
     if chosen != "auto":
-        unit, by, origin = UNITS[chosen], f"in {chosen}", f"{chosen} (chosen)"
+        unit, by = UNITS[chosen], f"in {chosen}"
+        origin = Message("{unit} (chosen)", unit=chosen)
     if unit is not None:
         if not _SHORTEST <= length * unit <= longest:
             raise InputError(
@@ -121,7 +123,9 @@ def length_unit(
                 allowed=f"20 mm to {_length(longest)}",
                 remedy=_suggestion(length, width),
             )
-        return unit, f"Unit: {origin}; length {_length(length * unit)}."
+        return unit, Message(
+            "Unit: {origin}; length {length}.", origin=origin, length=_length(length * unit)
+        )
     likely = _likely(length, width)
     if not likely:
         lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
@@ -137,16 +141,23 @@ def length_unit(
     kind = next(
         name
         for name, (_, high) in (
-            ("heel piece", HEEL),
-            ("forepart or small sole", PIECE),
-            ("sole", SOLE),
+            (Message("heel piece"), HEEL),
+            (Message("forepart or small sole"), PIECE),
+            (Message("sole"), SOLE),
         )
         if metres <= high
     )
-    remark = f"unit {name} (the file states none); length {_length(metres)}, that of a {kind}."
+    other = ""
     if len(likely) > 1:
-        remark += f" It could also be {likely[1]} ({_length(length * UNITS[likely[1]])})."
-    return UNITS[name], assumed(remark)
+        size = _length(length * UNITS[likely[1]])
+        other = Message(" It could also be {unit} ({length}).", unit=likely[1], length=size)
+    return UNITS[name], assumed(
+        "unit {unit} (the file states none); length {length}, that of a {kind}.{other}",
+        unit=name,
+        length=_length(metres),
+        kind=kind,
+        other=other,
+    )
 
 
 def _likely(length: float, width: float) -> list[str]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from .mesh import Body, Mesh, MeshFile
 from .view import soundness
@@ -59,7 +60,11 @@ def read_stl(path: Path) -> MeshFile:
             where=str(path),
             remedy="Export or copy it again",
         )
-    remark = f"{spare} bytes after the last of {promised} faces were left aside."
+    remark = Message(
+        "{spare} bytes after the last of {promised} faces were left aside.",
+        spare=spare,
+        promised=promised,
+    )
     return _binary(path, promised, (remark,))
 
 
@@ -69,7 +74,7 @@ def _is_binary(head: bytes, promised: int, spare: int) -> bool:
     return odd and (spare >= 0 or promised < 0 or b"\0" in head)
 
 
-def _binary(path: Path, count: int, remarks: tuple[str, ...] = ()) -> MeshFile:
+def _binary(path: Path, count: int, remarks: tuple[Message, ...] = ()) -> MeshFile:
     records = np.fromfile(path, dtype=_FACET, count=count, offset=_HEADER)
     corners = np.ascontiguousarray(records["corners"], dtype=np.float32)
     return MeshFile("STL (binary)", [Body(corners.reshape(-1, 3))], remarks=remarks)
@@ -109,8 +114,10 @@ def _text(path: Path) -> MeshFile:
                 "endsolid",
             )
         remarks = (
-            "The text ends without the end mark endsolid; it was read, as its facets leave no "
-            "surface open.",
+            Message(
+                "The text ends without the end mark endsolid; it was read, as its "
+                "facets leave no surface open."
+            ),
         )
     return MeshFile("STL (text)", _solids(data, numbers), remarks=remarks)
 

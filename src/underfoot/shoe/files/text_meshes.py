@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .mesh import AGAIN, Body, MeshFile, Unmet
 from .polygons import triangulated
@@ -105,7 +106,7 @@ def read_obj(path: Path) -> MeshFile:
     remarks = ()
     if unknown:
         few = ", ".join(sorted(unknown)[:4])
-        remarks = (f"Lines of the OBJ that begin with {few} were left out.",)
+        remarks = (Message("Lines of the OBJ that begin with {few} were left out.", few=few),)
     return MeshFile("OBJ", bodies, unmet=tuple(unmet), remarks=remarks)
 
 

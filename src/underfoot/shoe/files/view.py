@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 
 from .._kernels.components import MOST_FACES, closed_bodies
 from .._kernels.height_buffer import extents as _extents
@@ -100,26 +101,34 @@ class Soundness:
         """True when every edge has at least two faces."""
         return self.open_edges == 0
 
-    def remarks(self) -> tuple[str, ...]:
+    def remarks(self) -> tuple[Message, ...]:
         """Return the tolerated defects, a sentence each."""
         inward = int(self.closed and not self.turned_edges and self.volume < 0)
         counted = (
-            (self.open_edges, "{} open edges were tolerated: the height map needs no closed body."),
-            (inward, "The normals point inward; tolerated, heights do not depend on them."),
-            (
-                self.turned_edges,
-                "Along {} edges neighbouring faces are turned opposite ways; "
-                "tolerated, since heights don't depend on normals.",
+            Message(
+                "{count} open edges were tolerated: the height map needs no closed body.",
+                count=self.open_edges,
             ),
-            (
-                self.crowded_edges,
-                "{} edges have more than two faces; tolerated, the lowest face counts.",
+            Message("The normals point inward; tolerated, heights do not depend on them."),
+            Message(
+                "Along {count} edges neighbouring faces are turned opposite ways; tolerated, since "
+                "heights don't depend on normals.",
+                count=self.turned_edges,
             ),
-            (self.duplicates, "{} faces are there twice; the copies change nothing."),
-            (self.degenerate, "{} faces without area were ignored."),
-            (self.not_finite, "{} faces with a corner that is not a number were left out."),
+            Message(
+                "{count} edges have more than two faces; tolerated, the lowest face counts.",
+                count=self.crowded_edges,
+            ),
+            Message(
+                "{count} faces are there twice; the copies change nothing.", count=self.duplicates
+            ),
+            Message("{count} faces without area were ignored.", count=self.degenerate),
+            Message(
+                "{count} faces with a corner that is not a number were left out.",
+                count=self.not_finite,
+            ),
         )
-        return tuple(text.format(count) for count, text in counted if count)
+        return tuple(line for line in counted if line.values.get("count", inward))
 
 
 def soundness(mesh: Mesh, where: str) -> Soundness:
@@ -163,24 +172,28 @@ def _duplicates(faces: NDArray[np.uint64]) -> int:
     return int(np.count_nonzero((faces[1:] == faces[:-1]) & (faces[1:] != 0)))
 
 
-def view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple[str, ...]:
+def view_remarks(seen: View, sound: Soundness, mesh: Mesh, where: str) -> tuple[Message, ...]:
     """Return what is tolerated about normals and bodies of a mesh that is seen from below.
 
     Raises:
         DataError: The view and the mesh disagree; see ``_agreement``.
     """
-    remarks: list[str] = []
+    remarks: list[Message] = []
     covered = seen.covered
     up = float(np.count_nonzero(seen.facing > 0)) / max(1, np.count_nonzero(covered))
     inward = sound.closed and not sound.turned_edges and sound.volume < 0
     if up > 0.5 and not inward:
-        remarks.append("Normals of the ground side point into the sole (inverted); tolerated.")
+        remarks.append(
+            Message("Normals of the ground side point into the sole (inverted); tolerated.")
+        )
     elif 0.01 < up <= 0.5 and not inward:
-        remarks.append(f"Normals are turned over {up:.0%} of the ground side; tolerated.")
+        remarks.append(
+            Message("Normals are turned over {share:.0%} of the ground side; tolerated.", share=up)
+        )
     return (*remarks, *_agreement(seen, sound, mesh, where))
 
 
-def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str]:
+def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[Message]:
     """Return a remark where bodies overlap or faces lie double.
 
     Raises:
@@ -227,6 +240,11 @@ def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[str
     if not crossed:
         return []
     return [
-        f"The surface crosses itself, or bodies overlap, on {crossed} of {met} lines through the "
-        "sole; tolerated, the lowest surface counts."
+        Message(
+            "The surface crosses itself, or bodies overlap, on {crossed} of "
+            "{met} lines through the sole; tolerated, the lowest surface "
+            "counts.",
+            crossed=crossed,
+            met=met,
+        )
     ]

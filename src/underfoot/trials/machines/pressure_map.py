@@ -7,15 +7,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
+from underfoot.core.remark import Message
 
 from ..recording.axes import Axes, axes_of
-from ..recording.measurement import Measurement, remark
+from ..recording.measurement import Measurement, remark_of
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
 from ..recording.trial import Channel, Marker, Trial
 
 NARROW = 1.5  # spacings; pressure bumps narrower than this can hide between scans
 OUTER_SHARE = 0.02
 _BASELINE = 100
+
+
+_SATURATED = Message("the sensor is saturated: the peak is a lower bound")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +42,7 @@ class PressureScan:
     speed_change: float
     baseline_sd: float
     sample_load: float
-    flags: tuple[str, ...] = ()
+    flags: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,24 +134,40 @@ def pressure_scan(
         )
     first = int(np.flatnonzero(under)[0])
     quiet = inside & (np.arange(len(at)) < first)
-    flags: list[str] = []
+    flags: list[Message] = []
     if quiet.sum() < _BASELINE:
-        flags.append(f"baseline of {int(quiet.sum())} samples before the shoe reaches the sensor")
+        flags.append(
+            Message(
+                "baseline of {count} samples before the shoe reaches the sensor",
+                count=int(quiet.sum()),
+            )
+        )
     rest = sensor.values[quiet] if quiet.sum() >= 10 else np.zeros(1)
     baseline, deviation = float(rest.mean()), float(rest.std())
     if saturated(sensor.values, sensor.rate):
-        flags.append("the sensor is saturated: the peak is a lower bound")
+        flags.append(_SATURATED)
     if filled[seen].any():
-        flags.append(f"{int(filled[seen].sum())} frames of the marker were bridged")
+        flags.append(
+            Message("{count} frames of the marker were bridged", count=int(filled[seen].sum()))
+        )
     speed = np.interp(at[under], time, velocity)
     pressure = sensor.values[under] - baseline
     mean_speed = float(speed.mean())
     change = float(np.ptp(speed) / mean_speed)
     if change > 0.2:
-        flags.append(f"the speed varies by {100 * change:.0f} %: Eq. 27 takes it as steady")
+        flags.append(
+            Message(
+                "the speed varies by {change:.0f} %: Eq. 27 takes it as steady", change=100 * change
+            )
+        )
     if along[under].max() < front - 0.01 or along[under].min() > back + 0.01:
-        ends = f"{1e3 * along[under].min():.0f} to {1e3 * along[under].max():.0f} mm"
-        flags.append(f"scanned from {ends} only")
+        flags.append(
+            Message(
+                "scanned from {low:.0f} to {high:.0f} mm only",
+                low=1e3 * along[under].min(),
+                high=1e3 * along[under].max(),
+            )
+        )
     line_load = float(np.sum(pressure * speed) / sensor.rate)
     lateral = float(np.interp(at[under], time, sideways).mean())
     numbers = lateral, mean_speed, change, deviation, line_load
@@ -194,17 +214,32 @@ def pressure_map(
     outer = abs(loads[0] * widths[0]) + abs(loads[-1] * widths[-1])
     outer_share = float(outer / abs(load)) if load else 0.0
     change = _half_spacing(lateral, loads, load)
-    flags = [f"{scan.trial}: {flag}" for scan in ordered for flag in scan.flags]
+    told = [(scan.trial, flag) for scan in ordered for flag in scan.flags]
+    flags = [Message("{trial}: {flag}", trial=trial, flag=flag) for trial, flag in told]
+    peak_flags = [
+        line for line, (_, flag) in zip(flags, told, strict=True) if flag.code == _SATURATED.code
+    ]
     if load > 5 * sensor_error and outer_share > OUTER_SHARE:
         flags.append(
-            f"the outermost scans carry {100 * outer_share:.0f} % of the load: "
-            "pressure reaches beyond the scanned width"
+            Message(
+                "the outermost scans carry {share:.0f} % of the load: pressure "
+                "reaches beyond the scanned width",
+                share=100 * outer_share,
+            )
         )
     mean_gap = float(gaps.mean())
     if spacing and abs(mean_gap / spacing - 1.0) > 0.05:
-        flags.append(f"scans lie {1e3 * mean_gap:.1f} mm apart, not {1e3 * spacing:.1f} mm")
+        flags.append(
+            Message(
+                "scans lie {gap:.1f} mm apart, not {spacing:.1f} mm",
+                gap=1e3 * mean_gap,
+                spacing=1e3 * spacing,
+            )
+        )
     if gaps.max() > 1.5 * np.median(gaps):
-        flags.append(f"a gap of {1e3 * gaps.max():.0f} mm between scans: one may be missing")
+        flags.append(
+            Message("a gap of {gap:.0f} mm between scans: one may be missing", gap=1e3 * gaps.max())
+        )
     choices = {
         "load": "sum of p dx v dt (Eq. 27), baseline subtracted",
         "dx": f"{1e3 * spacing:g} mm, given" if spacing else "from the measured lateral places",
@@ -222,10 +257,9 @@ def pressure_map(
     which = int(np.argmax([scan.pressure.max() for scan in ordered]))
     top = int(np.argmax(ordered[which].pressure))
     peak = float(ordered[which].pressure[top])
-    peak_flags = [f for f in flags if "saturated" in f]
     deviation = ordered[which].baseline_sd
     if peak < 5 * deviation:
-        peak_flags.append("within the noise: below 5 standard deviations of the baseline")
+        peak_flags.append(Message("within the noise: below 5 standard deviations of the baseline"))
     if inlet_diameter:
         lost = _inlet_loss(pressure, which, grid, float(ordered[which].along[top]), inlet_diameter)
         if lost is not None:
@@ -234,10 +268,10 @@ def pressure_map(
             )
     largest = Measurement(
         "peak fluid pressure", peak, "Pa", deviation, n=len(ordered),
-        flags=tuple(map(remark, peak_flags)), conventions=choices,
+        flags=tuple(map(remark_of, peak_flags)), conventions=choices,
     )  # fmt: skip
     whole = Measurement(
-        "fluid load", load, "N", sensor_error, n=len(ordered), flags=tuple(map(remark, flags)),
+        "fluid load", load, "N", sensor_error, n=len(ordered), flags=tuple(map(remark_of, flags)),
         conventions=choices,
     )  # fmt: skip
     forward = float(ordered[which].along[top])

@@ -111,13 +111,17 @@ def pressure_pulse(
     if len(quiet) < 20:
         return without(f"{len(quiet)} samples before contact are no baseline (500 needed)")
     if len(quiet) < BASELINE_SAMPLES:
-        flags = (remark(f"baseline of {len(quiet)} samples: 500 keep false alarms at 0.1 %"),)
+        flags = (
+            remark("baseline of {count} samples: 500 keep false alarms at 0.1 %", count=len(quiet)),
+        )
     mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))
     inside = (time >= contact) & (time <= (until if until is not None else time[-1]))
     if not (inside & np.isfinite(values)).any():
         return without("no samples after contact")
     if np.isnan(values[inside]).any():
-        flags += (remark(f"{int(np.isnan(values[inside]).sum())} samples without a number"),)
+        flags += (
+            remark("{count} samples without a number", count=int(np.isnan(values[inside]).sum())),
+        )
     if saturated(values, channel.rate):
         flags += (remark("the sensor is saturated: the peak is a lower bound"),)
     over = np.where(inside, values - mean, np.nan)

@@ -126,8 +126,12 @@ def relaxation_reading(
     fall = float(f[peak] - final)
     flags: tuple[Flag, ...] = ()
     if fall > 0 and abs(still) > max(0.02 * fall, 3 * noise / np.sqrt(len(tail))):
-        share = f"{100 * abs(still) / fall:.0f} % of the relaxation"
-        flags = (caution(f"still falling by {share} in the last tenth of the hold"),)
+        flags = (
+            caution(
+                "still falling by {share:.0f} % of the relaxation in the last tenth of the hold",
+                share=100 * abs(still) / fall,
+            ),
+        )
     choices = {"sign": "compression positive", "zero": "force before contact subtracted"}
     meant = {**choices, "final force": "mean over the last tenth of the hold"}
     settled = noise / float(np.sqrt(len(tail)))

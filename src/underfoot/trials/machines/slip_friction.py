@@ -60,11 +60,11 @@ def mean_friction(
     part, across = normal[start : start + count], shear[start : start + count]
     if not (np.isfinite(part).all() and np.isfinite(across).all()):
         return without("samples without a number inside the window")
-    falls = f"the normal force falls to {part.min():.0f} N in the window"
+    fallen = caution("the normal force falls to {force:.0f} N in the window", force=part.min())
     if part.min() < 0.2 * target:
-        return without(falls)
+        return without(fallen.message)
     ratio = across / part
-    flags = (caution(falls),) if part.min() < 0.9 * target else ()
+    flags = (fallen,) if part.min() < 0.9 * target else ()
     error = _standard_error(ratio)
     reason = "" if error is not None else "too few samples for a scatter"
     value = float(ratio.mean())

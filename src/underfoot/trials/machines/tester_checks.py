@@ -9,6 +9,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.measurement import Flag
 from ..recording.signals import longest_run, runs, unloaded
 from ..recording.tester_calibration import TesterCalibration
@@ -81,7 +83,7 @@ def slide_flags(
     check = _Slide(slide, plate, up)
     count = int(check.inside.sum())
     if count < 10:
-        words = f"{count} samples in the window: are clock and rate right?"
+        words = Message("{count} samples in the window: are clock and rate right?", count=count)
         return (*flags, Flag("rate", words, True, count, 10, "1"))
     flags += [
         *check.zero(), *check.size(), *check.channels(), *check.window(), *check.course(),
@@ -95,14 +97,22 @@ def scan_flags(scan: PressureScan, record: TesterCalibration | None = None) -> t
     flags: list[Flag] = []
     peak, least, noise = float(scan.pressure.max()), float(scan.pressure.min()), scan.baseline_sd
     if -least > max(2.0 * peak, 8.0 * noise):
-        flags.append(Flag("pressure", f"the pressure falls by {-least:.3g} Pa: wrong sign?"))
+        flags.append(
+            Flag(
+                "pressure", Message("the pressure falls by {fall:.3g} Pa: wrong sign?", fall=-least)
+            )
+        )
     elif 8.0 * noise < peak < LOW_PRESSURE.value:
-        words = f"a clear peak of {peak:.3g} Pa only: is the unit right?"
+        words = Message("a clear peak of {peak:.3g} Pa only: is the unit right?", peak=peak)
         flags.append(LOW_PRESSURE.flag(peak, words))
     known = record.channel("pressure").noise if record else None
     if record and known and noise:
         ratio = noise / (known * record.channel("pressure").factor)
-        words = f"noise of the pressure {noise:.3g} Pa, on record {known:.3g} Pa: unit or gain?"
+        words = Message(
+            "noise of the pressure {noise:.3g} Pa, on record {known:.3g} Pa: unit or gain?",
+            noise=noise,
+            known=known,
+        )
         flags += NOISE.above(max(ratio, 1.0 / ratio), words)
     return tuple(flags)
 
@@ -154,7 +164,9 @@ class _Slide:
         error = error * np.sqrt(1.0 / len(x) + time.mean() ** 2 / float(x @ x))
         levels.append(np.where(np.abs(at) > 4.0 * error, at, 0.0))
         effect = max(abs(a) + self.cof * abs(n) for a, n in levels) / self.level
-        words = f"the unloaded level moves COF by {effect:.3f}: zero or drift"
+        words = Message(
+            "the unloaded level moves COF by {effect:.3f}: zero or drift", effect=effect
+        )
         yield from ZERO.above(effect, words)
 
     def size(self) -> Iterator[Flag]:
@@ -165,11 +177,18 @@ class _Slide:
             self._noise(self.along) / math.sqrt(len(window)), 1e-9
         )
         if len(rest) > 10 and standing_out < DEAD.value:
-            yield DEAD.flag(standing_out, "the friction does not stand out of the unloaded channel")
+            yield DEAD.flag(
+                standing_out, Message("the friction does not stand out of the unloaded channel")
+            )
         elif self.cof < LOW.value:
-            yield LOW.flag(self.cof, f"COF {self.cof:.3f}: a dead channel or a wrong unit?")
+            yield LOW.flag(
+                self.cof, Message("COF {cof:.3f}: a dead channel or a wrong unit?", cof=self.cof)
+            )
         elif self.cof > HIGH.value:
-            yield HIGH.flag(self.cof, f"COF {self.cof:.2f}: channels exchanged or a wrong unit?")
+            yield HIGH.flag(
+                self.cof,
+                Message("COF {cof:.2f}: channels exchanged or a wrong unit?", cof=self.cof),
+            )
 
     def channels(self) -> Iterator[Flag]:
         """Flag samples that no instrument gives: clipped, held, interpolated, in coarse steps."""
@@ -184,18 +203,29 @@ class _Slide:
             part = np.unique(self.force[self.inside, i])
             idle = np.unique(self.force[self.rest, i])
             if len(idle) == 1 and self.rest.sum() > 20 and len(part) > 30:
-                text = f"the unloaded force along {name} is one number: a dead band or zeroed?"
+                text = Message(
+                    "the unloaded force along {name} is one number: a dead band or zeroed?",
+                    name=name,
+                )
                 yield Flag("scatter", text, True, 0.0)
             quantum = float(np.min(np.diff(idle))) if 1 < len(idle) < 30 else 0.0
             coarse = quantum > 0.0 and len(part) < 30
             share = self.cof if i == upward else abs(float(self.axis[i]))
             carries = i == upward or share > 0.5
             if len(part) <= 2 and (not coarse or (carries and len(idle) >= 4)):
-                text = f"the force along {name} does not scatter in the window: held or clipped"
+                text = Message(
+                    "the force along {name} does not scatter in the window: held or clipped",
+                    name=name,
+                )
                 yield Flag("scatter", text, True, 0.0)
             elif coarse and len(part) <= 3:
                 size = 0.5 * quantum * share / self.level
-                text = f"steps of {quantum:.3g} N along {name} hide {size:.3f} of COF"
+                text = Message(
+                    "steps of {quantum:.3g} N along {name} hide {effect:.3f} of COF",
+                    quantum=quantum,
+                    name=name,
+                    effect=size,
+                )
                 yield from STEP.above(size, text)
             fine = fine and not coarse
             seen = self.force[self.inside, i] if coarse else values
@@ -204,23 +234,32 @@ class _Slide:
             ends = stuck if coarse and i == upward and stuck > _STUCK else ends
             scatters = len(part) > 2 or ends > _STUCK
             if scatters and ends * len(seen) >= 5 and (not coarse or (carries and ends > 0.5)):
-                text = f"{100 * ends:.0f} % of the samples along {name} lie at their extreme"
+                text = Message(
+                    "{share:.0f} % of the samples along {name} lie at their extreme",
+                    share=100 * ends,
+                    name=name,
+                )
                 yield from CLIPPED.above(ends, text)
             if coarse:
                 continue
             bend = np.abs(np.diff(values, 2)) < 0.02 * float(np.std(steps))
             line = longest_run(bend & (steps[1:] != 0.0)) / self.rate
             straight = max(float(np.mean(bend)), STRAIGHT.value + 1e-9 if line > 0.02 else 0.0)
-            text = f"the samples along {name} lie on straight lines: interpolated"
+            text = Message(
+                "the samples along {name} lie on straight lines: interpolated", name=name
+            )
             yield from STRAIGHT.above(straight, text)
         pairs = np.column_stack((self.along[:-1], self.along[1:]))[self.loaded[1:]]
         crossing = np.abs(pairs[pairs.prod(axis=1) < 0.0]).min(axis=1).max(initial=0.0)
-        text = "the friction leaps from one side to the other: does its range wrap?"
+        text = Message("the friction leaps from one side to the other: does its range wrap?")
         yield from WRAPPED.above(crossing / max(float(np.abs(pairs).max()), 1.0), text)
         held = longest_run(still) + 1
         idle = longest_run((np.diff(self.force[self.rest], axis=0) == 0.0).all(axis=1))
         if held >= 4 + 2 * idle and held / self.rate >= (HELD.value if fine else 0.05):
-            yield HELD.flag(held / self.rate, f"all forces stand still for {held} samples")
+            yield HELD.flag(
+                held / self.rate,
+                Message("all forces stand still for {samples} samples", samples=held),
+            )
 
     def window(self) -> Iterator[Flag]:
         """Flag a mean that does not stand for its window."""
@@ -230,21 +269,28 @@ class _Slide:
             return
         away = abs(float(ratio.mean()) - float(np.median(ratio)))
         if away > 0.004:
-            text = f"outliers move the mean COF by {away:.3f} against the median"
+            text = Message("outliers move the mean COF by {away:.3f} against the median", away=away)
             yield from OUTLIERS.above(away / self.cof, text)
         change = abs(float(np.polyfit(np.linspace(-0.5, 0.5, len(ratio)), ratio, 1)[0]))
         if change > 0.01:
-            text = f"COF changes by {change:.3f} along the window: the mean depends on it"
+            text = Message(
+                "COF changes by {change:.3f} along the window: the mean depends on it",
+                change=change,
+            )
             yield from TREND.above(change / self.cof, text)
         along = self.along[self.inside]
         x = np.linspace(-1.0, 1.0, len(along))
         scatter = float(np.std(along - np.polyval(np.polyfit(x, along, 2), x)))
         noise = self._noise(self.along)
         if 0.0 < 1.7 * noise < 0.01 * float(along.mean()) and scatter < 1.2 * noise:
-            text = "sliding adds nothing to the noise of the friction channel: clipped or made up?"
+            text = Message(
+                "sliding adds nothing to the noise of the friction channel: clipped or made up?"
+            )
             yield QUIET.flag(scatter / noise, text)
         swing = float(np.std(self.normal[self.inside])) / self.level
-        yield from SWING.above(swing, f"the normal force swings by {100 * swing:.0f} %")
+        yield from SWING.above(
+            swing, Message("the normal force swings by {swing:.0f} %", swing=100 * swing)
+        )
 
     def course(self) -> Iterator[Flag]:
         """Flag more than one slide, a shoe that stops, and a clock that can't be right."""
@@ -253,7 +299,7 @@ class _Slide:
         loads = [run for run in loads if run[1] - run[0] > 0.1 * (loads[0][1] - loads[0][0])]
         count, speed = len(loads), self.slide.speed
         lasting = float(self.loaded.sum()) / self.rate
-        text = f"{lasting:.3g} s under load: is the clock right?"
+        text = Message("{lasting:.3g} s under load: is the clock right?", lasting=lasting)
         yield from SLOWEST.above(lasting, text)
         if speed is not None:
             size = np.abs(np.nan_to_num(speed.values))
@@ -266,11 +312,16 @@ class _Slide:
             if inside.any() and size[inside].mean() > 0:
                 lowest = float(size[inside].min() / size[inside].mean())
                 if lowest < STOPS.value:
-                    yield STOPS.flag(lowest, "the shoe starts or stops within the window")
+                    yield STOPS.flag(lowest, Message("the shoe starts or stops within the window"))
             length = float(size[loaded].sum()) / speed.rate
-            yield from LONGEST.above(length, f"a slide of {length:.3g} m: clock or unit of speed?")
+            yield from LONGEST.above(
+                length, Message("a slide of {length:.3g} m: clock or unit of speed?", length=length)
+            )
         if count > 1:
-            text = f"{count} slides in the file: the number is that of the first; cut the others"
+            text = Message(
+                "{count} slides in the file: the number is that of the first; cut the others",
+                count=count,
+            )
             yield Flag("slides", text, True, count, 1.0, "1")
 
     def crosstalk(self) -> Iterator[Flag]:
@@ -298,9 +349,10 @@ class _Slide:
             and abs(bend) < 2.0 * error + 0.1 * abs(rise)
         ):
             slope = float(along @ share / (share @ share)) / self.level
-            words = (
-                f"before the shoe slides the friction is {100 * slope:.1f} % of the normal force, "
-                "in proportion: crosstalk?"
+            words = Message(
+                "before the shoe slides the friction is {share:.1f} % of the "
+                "normal force, in proportion: crosstalk?",
+                share=100 * slope,
             )
             yield from CROSSTALK.above(abs(slope), words)
 
@@ -311,15 +363,28 @@ class _Slide:
             top = float(np.nanpercentile(np.abs(values[self.loaded]), 99))
             if channel.range:
                 share = top / (channel.range * channel.factor)
-                yield from FULL.above(share, f"the {name} force reaches the channel's range")
+                yield from FULL.above(
+                    share, Message("the {name} force reaches the channel's range", name=name)
+                )
             if top > 1.1 * channel.highest:
-                words = f"{name} force of {top:.0f} N: calibrated up to {channel.highest:.0f} N"
+                words = Message(
+                    "{name} force of {force:.0f} N: calibrated up to {highest:.0f} N",
+                    name=name,
+                    force=top,
+                    highest=channel.highest,
+                )
                 yield Flag("calibration", words, True, top, channel.highest, "N")
             noise = self._noise(values)
             if channel.noise and noise:
                 ratio = noise / (channel.noise * channel.factor)
-                words = f"noise of the {name} force {noise:.2g} N, on record {channel.noise:.2g} N"
-                yield from NOISE.above(max(ratio, 1.0 / ratio), f"{words}: unit or gain?")
+                words = Message(
+                    "noise of the {name} force {noise:.2g} N, on record {known:.2g} N: unit or "
+                    "gain?",
+                    name=name,
+                    noise=noise,
+                    known=channel.noise,
+                )
+                yield from NOISE.above(max(ratio, 1.0 / ratio), words)
 
 
 def _joined(parts: list[tuple[int, int]], gap: int) -> list[tuple[int, int]]:

@@ -15,7 +15,7 @@ from underfoot.core import InputError, Progress, UnderfootError, silent
 from underfoot.core.files import checksum
 from underfoot.core.html import environment
 from underfoot.core.provenance import package_version, program_hash
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 
 from ..recording.protocols import protocol
 from ..study import analyse_folder
@@ -102,7 +102,8 @@ def bundle_faults(bundle: Path) -> list[Remark]:
         chosen = protocol(settings["protocol"], own).with_settings(settings["method"])
         again = analyse_folder(bundle / RECORDINGS, chosen, **settings["options"])
     except UnderfootError as error:
-        return [*faults, Remark(RECORDINGS, f"the analysis can't be made again ({error})")]
+        what = Message("the analysis can't be made again ({error})", error=str(error))
+        return [*faults, Remark.of(RECORDINGS, what)]
     if settings["versions"] == _versions() and not any(
         Path(name).parts[0] == RECORDINGS for name in changed
     ):
@@ -114,11 +115,15 @@ def bundle_faults(bundle: Path) -> list[Remark]:
     new = csv_text(measurement_table(again.files)).splitlines()
     different = sum(a != b for a, b in zip(old, new, strict=False)) + abs(len(old) - len(new))
     if different:
-        what = (
-            f"{different} of {len(new) - 1} numbers come out differently; made with underfoot "
-            f"{settings['versions'].get('underfoot')}, checked with {package_version('underfoot')}"
+        what = Message(
+            "{different} of {count} numbers come out differently; made with underfoot {made}, "
+            "checked with {present}",
+            different=different,
+            count=len(new) - 1,
+            made=str(settings["versions"].get("underfoot")),
+            present=package_version("underfoot"),
         )
-        faults.append(Remark(numbers.relative_to(bundle).as_posix(), what))
+        faults.append(Remark.of(numbers.relative_to(bundle).as_posix(), what))
     return faults
 
 
@@ -133,13 +138,15 @@ def changed_files(bundle: Path) -> list[Remark]:
     pairs = [line.split("  ", 1) for line in lines]
     written = {pair[1]: pair[0] for pair in pairs if len(pair) == 2}
     faults = [
-        Remark(SUMS, f"line {number} is no checksum of a file")
+        Remark(SUMS, "line {number} is no checksum of a file", number=number)
         for number, pair in enumerate(pairs, start=1)
         if len(pair) < 2
     ]
     there = {path.relative_to(bundle).as_posix(): path for path in _files(bundle)}
     faults += [Remark(name, "missing") for name in sorted(written.keys() - there.keys())]
-    faults += [Remark(name, f"not in {SUMS}") for name in sorted(there.keys() - written.keys())]
+    faults += [
+        Remark(name, "not in {file}", file=SUMS) for name in sorted(there.keys() - written.keys())
+    ]
     faults += [
         Remark(name, "changed") for name in sorted(written.keys() & there.keys())
         if checksum(there[name]) != written[name]

@@ -23,6 +23,7 @@ from underfoot.core.html import embedded, environment, png
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
+from underfoot.core.remark import joined
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
@@ -294,7 +295,7 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
         "rows": [[_shown(row[i], table.heads[i]) for i in filled] for row in rows],
-        "below": ["; ".join(str(row[i]) for i in below if row[i]) for row in rows],
+        "below": [joined(row[i] for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
             for i in filled

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording import plates
 from ..recording.axes import axis_vector
@@ -479,7 +480,7 @@ def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: floa
         places = raw.numbers("FORCE_PLATFORM", "CORNERS")
         corners = _of_plate(places, index, "CORNERS", 2, (3, 4)).T * scale
         corners, crossed = plates.ordered_corners(corners, down=_z_points_down(places))
-        flag = Flag("corners", "its corners come in crossed order: re-ordered")
+        flag = Flag("corners", Message("its corners come in crossed order: re-ordered"))
         axes = plates.plate_axes(corners)
         origin = _of_plate(raw.numbers("FORCE_PLATFORM", "ORIGIN"), index, "ORIGIN", 1) * scale
         if origin.shape != (3,) or not np.isfinite(origin).all():

@@ -11,6 +11,7 @@ import numpy as np
 from underfoot.core import InputError, display
 from underfoot.core.deprecation import renamed
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
 
 class Choice(str):
@@ -69,7 +70,7 @@ MEAN_OF_STEPS = "mean of the steps"
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """Something a reader must know beside a number: the check's name and what was seen, in words.
+    """Something a reader must know beside a number: the check's name and what was seen.
 
     ``matters`` is True when the number needs caution: the step and its file are then no longer
     "accepted". ``measured`` and ``limit``, in ``unit``, are what was seen and what is allowed (None
@@ -79,7 +80,7 @@ class Flag:
     """
 
     name: str
-    message: str
+    message: Message
     matters: bool = True
     measured: float | None = None
     limit: float | None = None
@@ -97,13 +98,18 @@ UNNAMED = "caution"
 """Name of a flag of no check: what it says is all that it is."""
 
 
-def caution(message: str) -> Flag:
-    """Return a flag that makes a number a caution."""
-    return Flag(UNNAMED, message)
+def caution(code: str, /, **values: Any) -> Flag:
+    """Return a flag that makes a number a caution, of a template and its values."""
+    return Flag(UNNAMED, Message(code, **values))
 
 
-def remark(message: str) -> Flag:
-    """Return a flag that is told and changes no verdict."""
+def remark(code: str, /, **values: Any) -> Flag:
+    """Return a flag that is told and changes no verdict, of a template and its values."""
+    return remark_of(Message(code, **values))
+
+
+def remark_of(message: Message) -> Flag:
+    """Return the flag that tells a message and changes no verdict."""
     return Flag("remark", message, matters=False)
 
 
@@ -211,7 +217,7 @@ class Measurement(Presentable):
         """Return plain data for JSON and tables."""
         return {
             **{part.name: getattr(self, part.name) for part in fields(self)},
-            "flags": [asdict(flag) for flag in self.flags],
+            "flags": [{**asdict(flag), "message": flag.message} for flag in self.flags],
             "conventions": dict(self.conventions),
         }
 
@@ -231,7 +237,15 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     values = np.array([m.value for m in measurements if m.value is not None])
     name = name or first.name
     lost = len(measurements) - len(values)
-    flags = (remark(f"{lost} of {len(measurements)} without a value are left out"),) if lost else ()
+    flags = (
+        (
+            remark(
+                "{lost} of {count} without a value are left out", lost=lost, count=len(measurements)
+            ),
+        )
+        if lost
+        else ()
+    )
     if not len(values):
         return Measurement.not_estimated(
             name, first.reason, unit=first.unit, flags=flags, conventions=shared

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from .measurement import Flag, remark
 from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
@@ -205,13 +206,18 @@ def finished_plate(
     seen = list(flags)
     lost = ~np.isfinite(along(force, np.ones(3)))  # faster than all()
     if lost.any():
-        seen.append(Flag("missing samples", f"{int(lost.sum())} samples without a number"))
+        seen.append(
+            Flag(
+                "missing samples",
+                Message("{count} samples without a number", count=int(lost.sum())),
+            )
+        )
     vertical = along(force, up)
     with_load = vertical[~lost] if lost.any() else vertical
     if with_load.size and _upside_down(with_load):
         force, vertical = -force, -vertical
         moment = None if moment is None else -moment
-        words = "signs reversed: the file holds the force on the plate"
+        words = Message("signs reversed: the file holds the force on the plate")
         seen.append(Flag(REVERSED, words, matters=False))
     baseline, samples = None, 0
     empty = unloaded(vertical, rate)
@@ -227,21 +233,23 @@ def finished_plate(
             moment = np.subtract(moment, less, out=moment if in_place else None)
         across = float(np.linalg.norm(baseline - (baseline @ up) * up))
         if across > SHEAR_WARNING:
-            seen.append(remark(f"shear baseline of {across:.1f} N was subtracted"))
+            seen.append(remark("shear baseline of {across:.1f} N was subtracted", across=across))
     else:
-        text = "baseline not subtracted: the plate is never unloaded for long enough"
+        text = Message("baseline not subtracted: the plate is never unloaded for long enough")
         seen.append(Flag("baseline", text))
     del with_load
     channels = (force if raw is None else raw).T  # one after the other is held once more
     cut = any(saturated(np.ascontiguousarray(channel), rate) for channel in channels)
     if cut:
-        seen.append(Flag("saturated", "saturated: a channel stays at its extreme value"))
+        seen.append(Flag("saturated", Message("saturated: a channel stays at its extreme value")))
     peak = float(np.nanmax(np.abs(along(force, up)), initial=0.0))
     if peak > _IMPLAUSIBLE:
-        text = f"peak vertical force {peak:.0f} N is implausible: is the unit right?"
+        text = Message(
+            "peak vertical force {peak:.0f} N is implausible: is the unit right?", peak=peak
+        )
         seen.append(Flag("size", text, True, peak, _IMPLAUSIBLE, "N"))
     elif 0.05 < peak < _LOADED:
-        text = f"never loaded beyond {peak:.1f} N: unused, or is the unit right?"
+        text = Message("never loaded beyond {peak:.1f} N: unused, or is the unit right?", peak=peak)
         seen.append(Flag("size", text, True, peak, _LOADED, "N"))
     elif peak <= 0.05:
         seen.append(remark("never loaded"))

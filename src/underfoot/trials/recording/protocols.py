@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
-from underfoot.core import InputError, content_hash, display, to_si, unknown_name
+from underfoot.core import InputError, content_hash, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry, Leaf
+from underfoot.core.remark import Amount, Message
 
 KINDS = {
     "pin_on_disk": "pin on disk, COF against speed",
@@ -39,24 +40,32 @@ class Rule:
     assumed: bool
     note: str = ""
 
-    def statement(self) -> str:
+    def statement(self) -> Message:
         """Return the rule in words."""
-        unit = QUANTITIES[self.quantity]
-        low, high = (None if v is None else display(v, unit) for v in (self.low, self.high))
-        bounds = f"from {low} to {high}"
-        if low is None or high is None:
-            bounds = f"at most {high}" if low is None else f"at least {low}"
-        return f"{self.quantity.replace('_', ' ')} {bounds}"
+        name, unit = self.quantity.replace("_", " "), QUANTITIES[self.quantity]
+        if self.low is None:
+            assert self.high is not None  # a rule has a limit
+            high = Amount(self.high, unit)
+            return Message("{quantity} at most {high}", quantity=name, high=high)
+        low = Amount(self.low, unit)
+        if self.high is None:
+            return Message("{quantity} at least {low}", quantity=name, low=low)
+        high = Amount(self.high, unit)
+        return Message("{quantity} from {low} to {high}", quantity=name, low=low, high=high)
 
-    def broken_by(self, value: float) -> str:
+    def broken_by(self, value: float) -> Message:
         """Return why ``value`` breaks the rule, or nothing."""
         slack = 1e-6 * abs(value)
         below = self.low is not None and value < self.low - slack
         above = self.high is not None and value > self.high + slack
         if not (below or above):
-            return ""
-        unit = QUANTITIES[self.quantity]
-        return f"{self.quantity.replace('_', ' ')} {display(value, unit)}; rule: {self.statement()}"
+            return Message("")
+        return Message(
+            "{quantity} {value}; rule: {rule}",
+            quantity=self.quantity.replace("_", " "),
+            value=Amount(value, QUANTITIES[self.quantity]),
+            rule=self.statement(),
+        )
 
 
 @dataclass(frozen=True, slots=True)

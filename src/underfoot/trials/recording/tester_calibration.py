@@ -11,6 +11,7 @@ import numpy as np
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import read_toml
+from underfoot.core.remark import Message
 
 from .measurement import Flag
 
@@ -90,21 +91,40 @@ class TesterCalibration:
         A check of the day outside the tolerance is named ``FAILED``: the reading is not to be used.
         """
         if noted in (None, ""):
-            text = "no date is noted: calibration and daily check can't be referred to"
+            text = Message("no date is noted: calibration and daily check can't be referred to")
             return (Flag("calibration", text),)
         day = day_of(noted, where='condition "date"')
         if not self.date <= day <= (self.valid_until or day):
-            end = f" to {self.valid_until}" if self.valid_until else ""
-            return (Flag("calibration", f"tested {day}, the calibration holds {self.date}{end}"),)
+            end = Message(" to {day}", day=self.valid_until) if self.valid_until else ""
+            return (
+                Flag(
+                    "calibration",
+                    Message(
+                        "tested {day}, the calibration holds {start}{end}",
+                        day=day,
+                        start=self.date,
+                        end=end,
+                    ),
+                ),
+            )
         that_day = [check for check in self.checks if check.date == day]
         failed = [check for check in that_day if abs(check.error) > check.allowed]
         if failed:
             worst = max(failed, key=lambda check: abs(check.error))
-            text = f"the check of {day} failed: {'; '.join(check.description for check in failed)}"
+            text = Message(
+                "the check of {day} failed: {checks:; }",
+                day=day,
+                checks=(check.description for check in failed),
+            )
             return (Flag(FAILED, text, True, worst.error, worst.allowed, "1"),)
         missing = {check.channel for check in self.checks} - {c.channel for c in that_day}
         if missing:
-            return (Flag("calibration", f"no check of {', '.join(sorted(missing))} on {day}"),)
+            return (
+                Flag(
+                    "calibration",
+                    Message("no check of {channels} on {day}", channels=sorted(missing), day=day),
+                ),
+            )
         return ()
 
 

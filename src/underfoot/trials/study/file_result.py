@@ -8,7 +8,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from underfoot.core.remark import remarks, subjects
+from underfoot.core.remark import Message, remarks, subjects
 
 from ..recording.measurement import UNNAMED, Choice, Flag, Measurement
 from ..recording.protocols import Protocol
@@ -204,8 +204,8 @@ class Draft:
         self.conditions = dict(conditions)
         self.numbers: list[Number] = []
         self.curves: dict[str, Any] = {}
-        self.cautions: list[str] = []
-        self.refusals: list[str] = []
+        self.cautions: list[Message] = []
+        self.refusals: list[Message] = []
         self.edits: list[LoggedEdit] = []
         self.steps: list[StepResult] = []
         self.body: dict[str, float] = {}
@@ -243,13 +243,16 @@ class Draft:
         kinds = list(subjects(remarks([*self.refusals, *self.cautions])))
         facts = _values(self.numbers, "fact")
         for rule in protocol.rules:
-            broken = rule.quantity in facts and rule.broken_by(facts[rule.quantity])
+            broken = rule.broken_by(facts[rule.quantity]) if rule.quantity in facts else None
             if broken:
                 kinds.append(rule.statement())
                 (self.refusals if rule.severity == "refuse" else self.cautions).append(broken)
         for number in self.numbers:
             flags = number.caution_flags
-            self.cautions += [f"{number.item}: {flag.message}" for flag in flags]
+            self.cautions += [
+                Message("{item}: {message}", item=number.item, message=flag.message)
+                for flag in flags
+            ]
             kinds += [flag.message if flag.name == UNNAMED else flag.name for flag in flags]
         verdict = REFUSED if self.refusals else CAUTION if self.cautions else ACCEPTED
         return FileResult(

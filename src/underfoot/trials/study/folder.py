@@ -11,6 +11,7 @@ from typing import Any
 from underfoot.core import Progress, UnderfootError, content_hash, silent, unknown_name
 from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
+from underfoot.core.remark import Message, from_stored, stored_form
 
 from ..readers import Profile, read_trials, with_channels
 from ..recording.protocols import Protocol
@@ -185,7 +186,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     path = store / f"{key}.json"
     try:
         kept = json.loads(path.read_text(encoding="utf-8"))
-        return [FileResult.from_dict(one) for one in kept]
+        return [FileResult.from_dict(from_stored(one)) for one in kept]
     except (OSError, ValueError, TypeError, KeyError):
         pass
     results = _analysed(checksums[0], *job[:6])
@@ -193,7 +194,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     handle, part = tempfile.mkstemp(dir=store, suffix=".part")
     with os.fdopen(handle, "w", encoding="utf-8") as stream:
         # faster than json.dump
-        stream.write(json.dumps([one.as_dict() for one in results], default=list))
+        stream.write(json.dumps([stored_form(one.as_dict()) for one in results], default=list))
     os.replace(part, path)
     return results
 
@@ -215,7 +216,7 @@ def _analysed(
     trials, refusals, notes = recording_trials(files, profile)
     if not trials:
         return [FileResult(name, checksum, REFUSED, tuple(refusals), conditions=noted)]
-    notes += [f"left out: {reason}" for reason in refusals]
+    notes += [Message("left out: {reason}", reason=reason) for reason in refusals]
     if protocol.kind not in STEP_KINDS:
         _check_whole_edits(edits, len(trials), protocol)
     results = []
@@ -224,7 +225,13 @@ def _analysed(
         own = body_mass(trial)
         if mass is not None:
             if own and abs(own / mass - 1.0) > _OTHER_MASS:
-                notes.append(f"mass {mass:g} kg by the conditions, {own:g} kg in the recording")
+                notes.append(
+                    Message(
+                        "mass {noted:g} kg by the conditions, {recorded:g} kg in the recording",
+                        noted=mass,
+                        recorded=own,
+                    )
+                )
             trial = replace(trial, settings={**trial.settings, "body mass (kg)": f"{mass:g}"})
         steps = protocol.kind in STEP_KINDS
         trial = trial.with_edits(*(edit for edit in edits if steps or edit.step == number))
@@ -237,19 +244,25 @@ def _analysed(
             error.what = f"{label}: {error.what}"
             raise
         except UnderfootError as error:
-            draft.refusals.append(str(error))
+            draft.refusals.append(Message("{error}", error=str(error)))
         except Exception as error:
             # One odd file must not end the work on hundreds of others; the cause is kept.
-            draft.refusals.append(f"the analysis failed ({type(error).__name__}: {error})")
+            draft.refusals.append(
+                Message(
+                    "the analysis failed ({kind}: {error})",
+                    kind=type(error).__name__,
+                    error=str(error),
+                )
+            )
         results.append(draft.finished(protocol))
     return results
 
 
 def recording_trials(
     files: Sequence[Path], profile: Profile
-) -> tuple[list[Trial], list[str], list[str]]:
+) -> tuple[list[Trial], list[str], list[Message]]:
     """Return the trials in the files of one recording, why files can't be read, and notes."""
-    notes: list[str] = []
+    notes: list[Message] = []
     trials: list[Trial] = []
     refusals: list[str] = []
     for file in files:
@@ -263,7 +276,9 @@ def recording_trials(
         elif len(trials) == len(read) == 1:
             trials = [joined(trials[0], read[0])]
         else:
-            notes.append(f"{file.name} holds {len(read)} trials: not joined")
+            notes.append(
+                Message("{file} holds {count} trials: not joined", file=file.name, count=len(read))
+            )
     return trials, refusals, notes
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
@@ -93,7 +94,7 @@ class _Check:
     """Mean of the readings on a check surface with one slider, and why it fails, or ""."""
 
     slider: str
-    description: str
+    description: Message
     failed: bool
 
 
@@ -301,10 +302,20 @@ def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
     mean = float(np.nanmean(values))
     low, high = _SURFACES[surface].get(slider, (0, 0))
     if not high:
-        return _Check(slider, f"{surface} read {mean:.1f} with an unknown slider", True)
+        text = Message(
+            "{surface} read {mean:.1f} with an unknown slider", surface=surface, mean=mean
+        )
+        return _Check(slider, text, True)
     failed = not low - 0.5 <= mean <= high + 0.5
-    text = f"slider {slider} on {surface} read {mean:.1f} ({low} to {high})"
-    return _Check(slider, f"check failed: {text}" if failed else text, failed)
+    text = Message(
+        "slider {slider} on {surface} read {mean:.1f} ({low} to {high})",
+        slider=slider,
+        surface=surface,
+        mean=mean,
+        low=low,
+        high=high,
+    )
+    return _Check(slider, Message("check failed: {text}", text=text) if failed else text, failed)
 
 
 def _one_sample(
@@ -325,46 +336,82 @@ def _one_sample(
     readings = counted[-last:] if last and len(counted) > last else counted
     draft.note(len(readings), "1", fact="repeats")
     if not len(readings):
-        draft.refusals.append("no reading is left after zero and conditioning runs")
+        draft.refusals.append(Message("no reading is left after zero and conditioning runs"))
         return
     flags = []
     if last and len(counted) not in (last, last + drop):
-        several = f" or {last + drop} with the {drop} of conditioning" if drop else ""
-        many = "readings" if len(counted) > 1 else "reading"
-        used = f"{len(counted)} {many}, {len(readings)} of them used"
-        flags.append(caution(f"{used}; expected are {last}{several}"))
+        more = {"all": last + drop, "conditioning": drop}
+        several = Message(" or {all} with the {conditioning} of conditioning", **more)
+        flags.append(
+            caution(
+                "{count} {count:reading|readings}, {used} of them used; expected are "
+                "{last}{several}",
+                count=len(counted),
+                used=len(readings),
+                last=last,
+                several=several if drop else "",
+            )
+        )
     fewest = int(protocol.number("fewest", "1", 0.0))
     if len(readings) < fewest:
-        flags.append(caution(f"{len(readings)} readings; expected are {fewest} of each walker"))
+        flags.append(
+            caution(
+                "{count} readings; expected are {fewest} of each walker",
+                count=len(readings),
+                fewest=fewest,
+            )
+        )
     low, high, words = _MISTAKEN[quantity]
     if low <= float(readings.min()) and float(readings.max()) < high and high > 0:
-        text = f"readings of {readings.min():g} to {readings.max():g}: {words}"
+        text = Message(
+            "readings of {low:g} to {high:g}: {what}",
+            low=readings.min(),
+            high=readings.max(),
+            what=words,
+        )
         (draft.cautions if quantity == "cof" else draft.refusals).append(text)
     widest = protocol.number("widest", "1", 0.0)
     if widest and float(np.ptp(readings)) > widest:
         flags.append(
-            caution(f"readings differ by {np.ptp(readings):g}, expected at most {widest:g}")
+            caution(
+                "readings differ by {range:g}, expected at most {widest:g}",
+                range=np.ptp(readings),
+                widest=widest,
+            )
         )
     rise = drift(readings)
     if rise is not None:
-        way = "rise" if rise > 0 else "fall"
-        words = f"readings {way} by {100 * abs(rise):.0f} % from the first to the last"
-        flags.append(caution(f"{words}: is the floor cleaned, does the fluid dry, does it wear?"))
+        flags.append(
+            caution(
+                "readings {way} by {change:.0f} % from the first to the last: is the floor "
+                "cleaned, does the fluid dry, does it wear?",
+                way=Message("rise") if rise > 0 else Message("fall"),
+                change=100 * abs(rise),
+            )
+        )
     missing = [
         asked
         for asked in protocol.texts("noted")
         if not any(heading in draft.conditions for heading in NOTED.get(asked, (asked,)))
     ]
     if missing:
-        flags.append(caution(f"not noted: {', '.join(missing)}"))
+        flags.append(caution("not noted: {names}", names=missing))
     if quantity == "ptv" and _slider(draft.conditions) not in ("", "96", "55", "57"):
-        flags.append(caution(f'unknown slider "{_slider(draft.conditions)}": 96 or 55?'))
+        flags.append(
+            caution('unknown slider "{slider}": 96 or 55?', slider=_slider(draft.conditions))
+        )
     if quantity == "ptv" and abs(offset) > 1.0:
-        flags.append(caution(f"the zero run reads {offset:.1f}: the pendulum was not at zero"))
+        flags.append(
+            caution("the zero run reads {offset:.1f}: the pendulum was not at zero", offset=offset)
+        )
     spread = standard_deviation(readings)
     value, middle = float(readings.mean()) - offset, float(np.median(readings)) - offset
     if value < 0.0 or (value == 0.0 and quantity == "cof"):
-        draft.refusals.append(f"a mean of {value:g}: no floor reads that; sign, zero or decimals?")
+        draft.refusals.append(
+            Message(
+                "a mean of {value:g}: no floor reads that; sign, zero or decimals?", value=value
+            )
+        )
     away = ", ".join(f"{v:g}" for v in counted[: len(counted) - len(readings)])
     conventions = {
         "readings": f"mean of {len(readings)} of {len(counted)}; median {middle:.4g}",
@@ -390,14 +437,24 @@ def _one_sample(
         state = " ".join(str(draft.conditions.get(key, "")) for key in NOTED["condition"])
         scheme = class_scheme(name, dry=bool(_DRY.search(state)))
         if scheme.quantity != quantity:
-            draft.cautions.append(f"{scheme.title} is about {scheme.quantity}, not {quantity}")
+            draft.cautions.append(
+                Message(
+                    "{scheme} is about {about}, not {quantity}",
+                    scheme=scheme.title,
+                    about=scheme.quantity,
+                    quantity=quantity,
+                )
+            )
         else:
             draft.sample = Sample(scheme=scheme.name)
             if scheme.class_of(middle) != scheme.class_of(value):
-                words = (
-                    f"{scheme.class_of(middle)} by the median, {scheme.class_of(value)} by the mean"
+                flags.append(
+                    caution(
+                        "{middle} by the median, {mean} by the mean",
+                        middle=scheme.class_of(middle),
+                        mean=scheme.class_of(value),
+                    )
                 )
-                flags.append(caution(words))
     unit = "deg" if quantity == "angle" else "1"
     about = (len(readings), tuple(flags), conventions, spread)
     draft.add("sample", Measurement(quantity, value, unit, *scatter, *about), main=quantity)

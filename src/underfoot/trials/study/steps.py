@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
-from underfoot.core.remark import Remark, remarks, subjects
+from underfoot.core.remark import Message, Remark, remarks, subjects
 from underfoot.core.units import plain_number
 
 from ..machines.compression import compression
@@ -46,7 +46,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
         analysed_steps(trial, draft, protocol, profile)
         return
     for edit in trial.edits:
-        draft.refusals.append(Remark("excluded by hand", edit.why))
+        draft.refusals.append(Remark("excluded by hand", "{why}", why=edit.why))
         draft.edits.append(LoggedEdit(draft.file, edit.what, "used", "excluded", edit.why))
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
@@ -77,7 +77,7 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
         plate = slide_plate(trial, axes.up, record)
         cof = replace(cof, flags=(*cof.flags, *slide_flags(slide, plate, axes.up, record)))
     else:
-        draft.refusals.append(Remark("no COF", cof.reason))
+        draft.refusals.append(Remark.of("no COF", cof.reason))
     draft.add("slide", cof, main="cof")
     refer_to(record, draft)
     for fact, value in slide.facts.items():
@@ -94,7 +94,7 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     try:
         scan = pressure_scan(trial, sensor, marker, position=position)
     except DataError as error:
-        draft.cautions.append(Remark("no pressure scan", error.what))
+        draft.cautions.append(Remark.of("no pressure scan", error.what))
         return
     draft.cautions += list(scan.flags)
     highest = float(scan.pressure.max())
@@ -299,8 +299,8 @@ class _Walk:
 def _gait(walk: _Walk) -> None:
     if not _required(walk, walk.stances):
         reasons = dict.fromkeys(step.reason for step in walk.draft.steps if step.reason)
-        why = "; ".join(reasons or ["no peak found"])
-        walk.draft.refusals.append(Remark("no clean step", why))
+        why = [*reasons] or [Message("no peak found")]
+        walk.draft.refusals.append(Remark("no clean step", "{reasons:; }", reasons=why))
 
 
 def _human_slip(walk: _Walk) -> None:
@@ -323,7 +323,7 @@ def _human_slip(walk: _Walk) -> None:
             reason = stance.reason or "a later contact with the slippery plate"
             draft.steps.append(_step(walk, stance, reason=reason))
     if not usable:
-        draft.refusals.append(on_plate[0].reason)
+        draft.refusals.append(Message.plain(on_plate[0].reason))
         return
     stance = usable[0]
     side = str(draft.conditions.get("side", "")).casefold()
@@ -358,9 +358,13 @@ def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits
     draft.add(item, slip.peak_speed, main="peak_slipping_speed")
     draft.add(item, slip.distance, main="slip_distance")
     draft.add(item, slip.margin, main="slip_margin")
-    draft.cautions += [f"{item}: {flag.message}" for flag in course.flags if flag.matters]
+    draft.cautions += [
+        Message("{item}: {message}", item=item, message=flag.message)
+        for flag in course.flags
+        if flag.matters
+    ]
     if slip.slipped is None:
-        draft.refusals.append(slip.peak_speed.reason)
+        draft.refusals.append(Message.plain(slip.peak_speed.reason))
     else:
         draft.note(slip.slipped, "1", main="slip")
     step = replace(
@@ -386,7 +390,7 @@ def _sensors(walk: _Walk, slip: Slip, walking: np.ndarray) -> None:
     try:
         reading = sensor_array_reading(trial, slip, sensors, up=up, walking=walking)
     except UnderfootError as error:
-        draft.cautions.append(Remark("pressures", error.what))
+        draft.cautions.append(Remark.of("pressures", error.what))
         return
     draft.add("sensor array", reading.peak, main="peak_pressure")
     draft.note(float(reading.crossed), "1", main="crossed_array")

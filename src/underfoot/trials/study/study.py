@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import UnderfootError
+from underfoot.core.remark import Message, joined
 
 from ..machines.pressure_map import PressureScan, pressure_map
 from ..machines.stribeck_fit import METHODS as FIT_METHODS
@@ -185,7 +186,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             ("adhesion", split.adhesion),
             *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
         ):
-            rows.append((*pair, name, m.value, m.uncertainty, m.n, "; ".join(map(str, m.flags))))
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, joined(m.flags)))
         for fluid, m in split.lubricated_adhesion.items():
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
@@ -255,9 +256,9 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
     wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
     for group, members in tables.grouped(files, keys).items():
         label = ", ".join(group) or "all files"
-        broken = wanted.broken_by(float(len(members))) if wanted is not None else ""
+        broken = wanted.broken_by(float(len(members))) if wanted is not None else None
         if broken:
-            notes.append(f"{label}: {broken}")
+            notes.append(Message("{label}: {broken}", label=label, broken=broken))
         scans = [PressureScan(f.file, **_scan(f)) for f in members if "scan" in f.curves]
         if len(scans) < 2:
             continue
@@ -265,25 +266,25 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
             protocol.number(name, "m", 0.0) or None for name in ("scan_spacing", "inlet_diameter")
         )
         try:
-            joined = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
+            mapped = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
         except UnderfootError as error:
             notes.append(f"{label}: no map ({error.what})")
             continue
-        load, change = joined.load, joined.half_spacing_change
-        place = (1e3 * (p.value or 0.0) for p in (joined.peak_along, joined.peak_lateral))
+        load, change = mapped.load, mapped.half_spacing_change
+        place = (1e3 * (p.value or 0.0) for p in (mapped.peak_along, mapped.peak_lateral))
         rows.append(
             (label, len(scans), load.value, load.uncertainty,
-             tables.scaled("peak_pressure", joined.peak.value), *place, 100 * joined.outer_share,
-             None if change is None else 100 * change, "; ".join(map(str, load.flags)),
+             tables.scaled("peak_pressure", mapped.peak.value), *place, 100 * mapped.outer_share,
+             None if change is None else 100 * change, joined(load.flags),
              load.conventions.get("inlet", ""))
         )  # fmt: skip
-        thin = max(1, len(joined.along) // 200)
+        thin = max(1, len(mapped.along) // 200)
         numbers = ("load", "peak", "peak_along", "peak_lateral")
         maps.append(
-            {"label": label, "lateral": joined.lateral.tolist(),
-             "along": joined.along[::thin].tolist(),
-             "pressure": np.nan_to_num(joined.pressure[:, ::thin]).tolist(),
-             **{name: getattr(joined, name).value for name in numbers}}
+            {"label": label, "lateral": mapped.lateral.tolist(),
+             "along": mapped.along[::thin].tolist(),
+             "pressure": np.nan_to_num(mapped.pressure[:, ::thin]).tolist(),
+             **{name: getattr(mapped, name).value for name in numbers}}
         )  # fmt: skip
     made = [condition_table(files, keys, ("cof",), person=_sample(files))]
     if rows:

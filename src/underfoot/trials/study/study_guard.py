@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..machines.slip_friction import UNCALIBRATED
 from ..recording.protocols import Protocol
 from ..statistics import drift, names_persons, told_apart
@@ -54,12 +56,12 @@ _MOST = 0.5  # share of the files from which a condition counts as meant for all
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """One doubt about a study: what, in words, the files it is about, and whether they are out.
+    """One doubt about a study: what, the files it is about, and whether they are out.
 
     Files of an ``out`` doubt take no part in means and tests.
     """
 
-    message: str
+    message: Message
     files: tuple[str, ...]
     out: bool = False
 
@@ -90,24 +92,32 @@ def guarded_files(
             numbers_of[numbers].append(i)
     equal = [*bytes_of.values(), *numbers_of.values()]
     doubts: list[Doubt] = []
-    refused: dict[int, tuple[str, str]] = {}
+    refused: dict[int, tuple[Message, Message]] = {}
     for members in _joined([*equal, *_with_same_steps(recordings)], len(recordings)):
         alike = ("bytes", bytes_of), ("numbers", numbers_of)
         shared = next((name for name, kind in alike if members in kind.values()), "steps")
-        what = f"the same {shared}"
+        what = Message("the same {shared}", shared=shared)
         names = tuple(recordings[i][0].file for i in members)
         noted = [_noted(recordings[i][0]) for i in members]
         same = all(one == noted[0] for one in noted)
-        words = f"{what} as {names[0]}, which counts"
+        words = Message("{what} as {file}, which counts", what=what, file=names[0])
         if not same:
-            words = f"{what}, noted differently: nobody knows whose they are, none counts"
+            words = Message(
+                "{what}, noted differently: nobody knows whose they are, none counts", what=what
+            )
         doubts.append(Doubt(words, names[1:] if same else names, True))
         listed = ", ".join(names[:_NAMED]) + (" ..." if len(names) > _NAMED else "")
         refused |= dict.fromkeys(
             members[1:] if same else members,
-            (f"{what} as {names[0]}", f"{what} as another file")
+            (
+                Message("{what} as {file}", what=what, file=names[0]),
+                Message("{what} as another file", what=what),
+            )
             if same
-            else (f"{what} under {listed}, noted differently", f"{what}, noted differently"),
+            else (
+                Message("{what} under {files}, noted differently", what=what, files=listed),
+                Message("{what}, noted differently", what=what),
+            ),
         )
     files = [
         replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
@@ -223,10 +233,20 @@ def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
         if not lacking:
             continue
         if len(having) >= _MOST * len(files):
-            words = f'"{key}" is noted for {len(having)} of {len(files)} files, not for these'
+            words = Message(
+                '"{key}" is noted for {count} of {all} files, not for these',
+                key=key,
+                count=len(having),
+                all=len(files),
+            )
             yield Doubt(words, _names(lacking), True)
         else:
-            words = f'"{key}" is noted for {len(having)} of {len(files)} files only: no factor'
+            words = Message(
+                '"{key}" is noted for {count} of {all} files only: no factor',
+                key=key,
+                count=len(having),
+                all=len(files),
+            )
             yield Doubt(words, _names(having))
 
 
@@ -236,7 +256,12 @@ def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
         having = len(files) - len(lacking)
         number = any(isinstance(one.conditions.get(key), float) for one in files)
         if number and lacking and having >= _MOST * len(files):
-            words = f'"{key}" is noted for {having} of {len(files)} files, not for these'
+            words = Message(
+                '"{key}" is noted for {count} of {all} files, not for these',
+                key=key,
+                count=having,
+                all=len(files),
+            )
             yield Doubt(words, _names(lacking))
 
 
@@ -257,9 +282,15 @@ def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]
             lacks = [level for level, n in usual.items() if n >= 1 and not one[level]]
             crowd = [level for level, n in one.items() if n >= 2 * max(usual[level], 1.0)]
             if lacks and crowd:
-                words = (
-                    f'{who} has {one[crowd[0]]} trials with {key} "{crowd[0]}" and none with '
-                    f'"{sorted(lacks)[0]}": the others {usual[crowd[0]]:g} with each?'
+                words = Message(
+                    '{who} has {count} trials with {key} "{level}" and none with "{other}": the '
+                    "others {usual:g} with each?",
+                    who=who,
+                    count=one[crowd[0]],
+                    key=key,
+                    level=crowd[0],
+                    other=sorted(lacks)[0],
+                    usual=usual[crowd[0]],
                 )
                 named = [o for o in having if str(o.conditions[person]) == who]
                 yield Doubt(words, _names([o for o in named if o.conditions[key] == crowd[0]]))
@@ -278,10 +309,14 @@ def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     limit = max(_SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
     for one, away in zip(having, left, strict=True):
         if abs(away) > limit:
-            words = f"RCOF {one.main['rcof']:.3f}, {100 * np.expm1(away):+.0f} % against the other"
-            yield Doubt(
-                f"{words} trials of {one.conditions[person]}: gain, or another?", (one.file,)
+            words = Message(
+                "RCOF {rcof:.3f}, {change:+.0f} % against the other trials of "
+                "{who}: gain, or another?",
+                rcof=one.main["rcof"],
+                change=100 * np.expm1(away),
+                who=one.conditions[person],
             )
+            yield Doubt(words, (one.file,))
 
 
 def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -295,7 +330,15 @@ def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
             for usual, m in counts.items():
                 other = plain_spelling(usual, person=key in PERSON)
                 if m >= max(2, 3 * n) and _one_slip(plain, other):
-                    words = f'{key} "{rare}" ({n}) is one letter from "{usual}" ({m})'
+                    words = Message(
+                        '{key} "{rare}" ({rare_count}) is one letter from "{usual}" '
+                        "({usual_count})",
+                        key=key,
+                        rare=rare,
+                        rare_count=n,
+                        usual=usual,
+                        usual_count=m,
+                    )
                     yield Doubt(words, _names([o for o in having if o.conditions[key] == rare]))
 
 
@@ -318,8 +361,16 @@ def _words_exchanged(files: Sequence[FileResult]) -> Iterator[Doubt]:
             if not _same_in_another_order(first, second):
                 continue
             both = [[o for o in having if str(o.conditions[key]) == one] for one in (first, second)]
-            named = f'"{first}" ({len(both[0])}) and "{second}" ({len(both[1])})'
-            yield Doubt(f"{key} {named} are the same words: one level?", _names(min(both, key=len)))
+            words = Message(
+                '{key} "{first}" ({first_count}) and "{second}" ({second_count}) '
+                "are the same words: one level?",
+                key=key,
+                first=first,
+                first_count=len(both[0]),
+                second=second,
+                second_count=len(both[1]),
+            )
+            yield Doubt(words, _names(min(both, key=len)))
 
 
 def _same_in_another_order(first: str, second: str) -> bool:
@@ -360,7 +411,8 @@ def _confounded(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     factors = {key: [str(one.conditions[key]) for one in files] for key in every}
     if len(factors) > 1:
         for one in told_apart(factors)[1]:
-            yield Doubt(f"{one}: what is found for one may be of the other", ("all",))
+            words = Message("{pair}: what is found for one may be of the other", pair=one)
+            yield Doubt(words, ("all",))
 
 
 def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -370,11 +422,23 @@ def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
             continue
         for what, means in gone_with(having, key, person).items():
             low, high = min(means, key=means.__getitem__), max(means, key=means.__getitem__)
-            words = f'{key} "{high}" was walked at {means[high]:.2f} m/s, "{low}" at '
-            words += f"{means[low]:.2f} m/s: RCOF changes with speed"
+            words = Message(
+                '{key} "{high}" was walked at {fast:.2f} m/s, "{low}" at '
+                "{slow:.2f} m/s: RCOF changes with speed",
+                key=key,
+                high=high,
+                fast=means[high],
+                low=low,
+                slow=means[low],
+            )
             if what == "place":
-                words = f'{key} "{low}" was walked early in the session, "{high}" late: order and '
-                words += f"{key} can't be told apart"
+                words = Message(
+                    '{key} "{low}" was walked early in the session, "{high}" late: '
+                    "order and {key} can't be told apart",
+                    key=key,
+                    low=low,
+                    high=high,
+                )
             yield Doubt(words, _names([o for o in having if o.conditions[key] in (low, high)]))
 
 
@@ -393,9 +457,18 @@ def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doub
     lettered = Counter(who[:-1] for (who,) in own if who[-1:].isalpha())
     both = [stem for stem, two in sides.items() if len(two) > 1 and lettered[stem] <= 2]
     if any(sure[stem] for stem in both) or (len(both) > 1 and 4 * len(both) > len(own)):
-        many = f"{len(both)} persons are" if len(both) > 1 else "one person is"
-        words = f"{many} noted twice, by side ({both[0]}): left and right of one "
-        words += "person are no two persons; note the side in a column of its own"
+        words = Message(
+            "one person is noted twice, by side ({who}): left and right of one person are no two "
+            "persons; note the side in a column of its own",
+            who=both[0],
+        )
+        if len(both) > 1:
+            words = Message(
+                "{count} persons are noted twice, by side ({who}): left and right of one person "
+                "are no two persons; note the side in a column of its own",
+                count=len(both),
+                who=both[0],
+            )
         yield Doubt(words, ("all",))
 
 
@@ -445,8 +518,13 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
         half = 0.5 * sum(counts)
         chance = float(np.exp(-most) * lost**half / gamma(half + 1.0))
         if most - lost > np.log(_ODDS) and chance * len(pairs) < _CHANCE:
-            words = f"{one} and {other} have one body: {len(shared)} measures of it agree as those "
-            words += "of one person's trials do; one person under two names?"
+            words = Message(
+                "{who} and {other} have one body: {count} measures of it agree as "
+                "those of one person's trials do; one person under two names?",
+                who=one,
+                other=other,
+                count=len(shared),
+            )
             yield Doubt(words, _names([f for f in files if str(f.conditions.get(person)) == other]))
 
 
@@ -471,8 +549,14 @@ def _levels_exchanged(files: Sequence[FileResult], person: str) -> Iterator[Doub
                 mean, spread = float(np.mean(others)), float(np.std(others, ddof=1))
                 turned = abs(difference + mean) < 3.0 * spread < 0.75 * abs(mean)
                 if turned and abs(difference - mean) > _SCATTERS * spread:
-                    words = f'{who} has "{first}" and "{second}" ({key}) the other way round than '
-                    words += "all others: labels exchanged?"
+                    words = Message(
+                        '{who} has "{first}" and "{second}" ({key}) the other way round '
+                        "than all others: labels exchanged?",
+                        who=who,
+                        first=first,
+                        second=second,
+                        key=key,
+                    )
                     named = [o for o in having if str(o.conditions.get(person)) == who]
                     yield Doubt(
                         words, _names([o for o in named if o.conditions[key] in (first, second)])
@@ -501,8 +585,14 @@ def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Do
                     logs = [np.log(o.main["rcof"]) for o in those]
                     near = abs(value - np.mean(logs)) < 3.0 * scatter
                     if other == who and label != level and len(logs) > 1 and near:
-                        words = f'noted as {key} "{level}", reads as "{label}" of {who}'
-                        yield Doubt(f"{words}: another label?", (one.file,))
+                        words = Message(
+                            'noted as {key} "{level}", reads as "{label}" of {who}: another label?',
+                            key=key,
+                            level=level,
+                            label=label,
+                            who=who,
+                        )
+                        yield Doubt(words, (one.file,))
                         break
 
 
@@ -513,7 +603,12 @@ def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
         rare = [level for level, n in counts.items() if n == 1]
         if usual >= 3 and 0 < len(rare) <= 0.5 * len(counts) and key != "date":
             for level in rare:
-                words = f'{key} "{level}" has one trial, the others {usual:g}'
+                words = Message(
+                    '{key} "{level}" has one trial, the others {usual:g}',
+                    key=key,
+                    level=level,
+                    usual=usual,
+                )
                 yield Doubt(words, _names([o for o in having if o.conditions[key] == level]))
 
 
@@ -525,7 +620,10 @@ def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
             apart = len(numbers) > 1 and max(numbers) > (1.0 + limit) * min(numbers)
             if apart or (len(noted) > 1 and not numbers):
                 listed = ", ".join(f"{v:g}" if isinstance(v, float) else v for v in sorted(noted))
-                yield Doubt(f"{key} of {who} is noted as {listed}", _names(own))
+                words = Message(
+                    "{key} of {who} is noted as {values}", key=key, who=who, values=listed
+                )
+                yield Doubt(words, _names(own))
 
 
 def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
@@ -554,13 +652,24 @@ def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt
         beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
         distances, wrong = (sum(not _kind(name) for name in part) for part in (one, beyond))
         texts = [
-            f"{_MEASURED[name]} {100 * v:+.0f} %" for name, v in beyond.items() if name in _MEASURED
+            Message("{measure} {change:+.0f} %", measure=_MEASURED[name], change=100 * v)
+            for name, v in beyond.items()
+            if name in _MEASURED
         ]
         if wrong > max(1, 0.3 * distances):
-            texts.append(f"{wrong} of {distances} distances of markers")
+            texts.append(
+                Message(
+                    "{wrong} of {distances} distances of markers", wrong=wrong, distances=distances
+                )
+            )
         if texts:
-            words = f"another person in the place of {who}? {'; '.join(texts)} against the others"
-            yield Doubt(words + _nearest(dict(measured[who])[file], who, usual), (file,))
+            words = Message(
+                "another person in the place of {who}? {texts:; } against the others{nearest}",
+                who=who,
+                texts=texts,
+                nearest=_nearest(dict(measured[who])[file], who, usual),
+            )
+            yield Doubt(words, (file,))
 
 
 def _kind(measure: str) -> str:
@@ -580,7 +689,7 @@ def _nearest(body: Mapping[str, float], who: str, usual: Mapping[str, Mapping[st
         if other != who and shared:
             distances[other] = max(shared)
     best = min(distances, key=lambda name: distances[name], default="")
-    return f", nearest {best}" if best and distances[best] < _LEAST else ""
+    return Message(", nearest {who}", who=best) if best and distances[best] < _LEAST else ""
 
 
 def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
@@ -604,12 +713,16 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
                 continue
             if abs(mean) > _SURE * float(np.std(logs, ddof=1)) / count**0.5:
                 share = 100.0 * (float(np.exp(mean)) - 1.0)
-                words = (
-                    f"{what} is {share:+.0f} % on {first} against {second} in {count} recordings"
+                words = Message(
+                    "{what} is {share:+.0f} % on {first} against {second} in {count} "
+                    "recordings: a gain, crosstalk or compression of one of them?",
+                    what=what,
+                    share=share,
+                    first=first,
+                    second=second,
+                    count=count,
                 )
-                yield Doubt(
-                    f"{words}: a gain, crosstalk or compression of one of them?", _names(files)
-                )
+                yield Doubt(words, _names(files))
 
 
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
@@ -624,8 +737,14 @@ def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]
         for one in own:
             away = abs(one.main.get("cof", middle) - middle)
             if away > max(6.0 * usual, 0.15 * middle):
-                words = f"COF {one.main['cof']:.3f} against {middle:.3f} of the other repeats"
-                yield Doubt(f"{', '.join(level)}: {words}: gain or sample?", (one.file,))
+                words = Message(
+                    "{level}: COF {cof:.3f} against {usual:.3f} of the other repeats: "
+                    "gain or sample?",
+                    level=level,
+                    cof=one.main["cof"],
+                    usual=middle,
+                )
+                yield Doubt(words, (one.file,))
 
 
 def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
@@ -635,25 +754,33 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
         places = run_numbers(own)
         rise = drift([one.main["cof"] for one in sorted(own, key=lambda f: places[f.file])])
         if rise is not None:
-            way = "rises" if rise > 0 else "falls"
-            words = f"COF {way} by {100 * abs(rise):.0f} % from the first run to the last: is the "
-            words += "floor cleaned, does the fluid dry, does the sole wear?"
-            yield Doubt(f"{', '.join(level) or 'all runs'}: {words}", _names(own))
+            words = Message(
+                "{level}: COF {way} by {change:.0f} % from the first run to the last: is the floor "
+                "cleaned, does the fluid dry, does the sole wear?",
+                level=list(level) or Message("all runs"),
+                way=Message("rises") if rise > 0 else Message("falls"),
+                change=100 * abs(rise),
+            )
+            yield Doubt(words, _names(own))
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Yield the checks that need a person, each once."""
     said = [m.conventions for one in files for m in one.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
-        words = "no calibration record (calibration.toml): the tester's gain can't be judged"
+        words = Message(
+            "no calibration record (calibration.toml): the tester's gain can't be judged"
+        )
         yield Doubt(words, ("all",))
     any_machine = protocol.kind == "readings" and not protocol.text("classes")
     unnamed = [
         f for f in files if "cof" in f.main and not any(n in f.conditions for n in _MACHINES)
     ]
     if any_machine and len(unnamed) == len(files) > 0:
-        words = '"machine" is noted for no reading: another machine gives another COF, and how far '
-        words += "machines differ is not estimated"
+        words = Message(
+            '"machine" is noted for no reading: another machine gives another '
+            "COF, and how far machines differ is not estimated"
+        )
         yield Doubt(words, ("all",))
     if protocol.text("quantity") == "ptv":
         lacking = [
@@ -663,4 +790,5 @@ def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[
             if any(c.get(key) == without for c in said)
         ]  # fmt: skip
         if lacking:
-            yield Doubt(f"not in the table: {', '.join(lacking)} of the pendulum", ("all",))
+            words = Message("not in the table: {names} of the pendulum", names=lacking)
+            yield Doubt(words, ("all",))

@@ -8,7 +8,7 @@ import numpy as np
 
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.presentation import p_text
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 from underfoot.core.units import plain_number
 
 from .. import statistics
@@ -294,16 +294,25 @@ def varying(
     for name, levels in factors.items():
         several = set(levels)
         if statistics.names_persons(levels, persons):
-            what = "each person has one of their own: its effect is not estimated"
-            left.append(Remark(name, what))
+            left.append(
+                Remark(name, "each person has one of their own: its effect is not estimated")
+            )
             continue
         if 1 < len(several) < len(levels):
             compared[name] = levels
             continue
-        known = f'at one value only, "{levels[0]}"' if len(several) == 1 else "once at each value"
-        known = known if several else "nowhere"
-        what = f"{quantity_name(response)} is known {known}: the effect of {name} is not estimated"
-        left.append(Remark(name, what))
+        known = Message("once at each value") if several else Message("nowhere")
+        if len(several) == 1:
+            known = Message('at one value only, "{level}"', level=levels[0])
+        left.append(
+            Remark(
+                name,
+                "{response} is known {known}: the effect of {name} is not estimated",
+                response=quantity_name(response),
+                known=known,
+                name=name,
+            )
+        )
     return compared, left
 
 

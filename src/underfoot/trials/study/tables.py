@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from underfoot.core import UnderfootError
+from underfoot.core.remark import joined
 
 from .. import statistics
 from ..recording.measurement import MEAN_OF_STEPS
@@ -250,7 +251,7 @@ def file_table(files: Sequence[FileResult]) -> Table:
             one.verdict,
             *(scaled(name, one.main.get(name)) for name in numbers),
             *(one.conditions.get(name) for name in conditions),
-            "; ".join(one.reasons),
+            joined(one.reasons),
         )
         for one in files
     )
@@ -271,7 +272,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
             str(one.conditions.get(person, "")),
             *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
             "yes" if m.caution_flags else "",
-            "; ".join(flag.message for flag in m.flags),
+            joined(flag.message for flag in m.flags),
             "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
         for one in files
@@ -327,7 +328,7 @@ def steps_table(files: Iterable[FileResult]) -> Table:
     for one in files:
         for step in one.steps:
             values = [getattr(step, name) for name in _STEP_COLUMNS]
-            texts = ["; ".join(map(str, v)) if isinstance(v, tuple) else v for v in values]
+            texts = [joined(v) if isinstance(v, tuple) else v for v in values]
             rows.append((one.file, *texts))
     heads = (Column("file", always=True), *_STEP_COLUMNS.values())
     note = "All that is known of a step is in tables/steps_wide.csv and steps_long.csv."
@@ -480,7 +481,7 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
         for step in one.steps:
             head = (one.file, one.verdict, *own, step.number)
             texts = [getattr(step, name) or "" for name in _TEXTS]
-            cautions = "; ".join(step.cautions)
+            cautions = joined(step.cautions)
             wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
             long += [
                 (*head, step.side, step.verdict, name, getattr(step, name), unit)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
@@ -124,7 +124,9 @@ def _named(contacts: Sequence[Stance], edit: Edit) -> int:
 def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance:
     by_hand = (*stance.by_hand, edit.what)
     if edit.what == "exclude":
-        return replace(stance, reason=Remark("excluded by hand", edit.why), by_hand=by_hand)
+        return replace(
+            stance, reason=Remark("excluded by hand", "{why}", why=edit.why), by_hand=by_hand
+        )
     if edit.what == "side":
         if stance.side == edit.value:
             text = f"step {stance.number} is the {edit.value} foot already"
@@ -169,7 +171,7 @@ def _on_plate(contacts: list[Stance], at: int, edit: Edit) -> list[Stance]:
         words = f"step {named.number} is on {edit.value} alone: the edit changes nothing"
         raise EditError(words, where=edit.where)
     out = list(contacts)
-    other = Remark("by hand", f"the step is on {edit.value} ({edit.why})")
+    other = Remark("by hand", "the step is on {plate} ({why})", plate=edit.value, why=edit.why)
     for i in together:
         reason = out[i].reason if out[i].plate == edit.value else other
         out[i] = replace(out[i], reason=reason, by_hand=(*out[i].by_hand, "plate"))
@@ -238,39 +240,57 @@ def _reason(
     part = plate.force[stance.start : stance.stop]
     vertical = part @ walk.up
     if stance.start == 0 and "contact" not in stance.by_hand:
-        return "begins before the record"
+        return Message("begins before the record")
     if stance.stop == len(plate.force):
-        return "ends after the record"
+        return Message("ends after the record")
     if not np.isfinite(part).all():
-        return "samples without a number"
+        return Message("samples without a number")
     if plate.saturated:
-        return "the plate is saturated"
+        return Message("the plate is saturated")
     if stance.duration < _SHORTEST:
-        return Remark("too short for a walking step", f"{1e3 * stance.duration:.0f} ms")
+        return Remark("too short for a walking step", "{time:.0f} ms", time=1e3 * stance.duration)
     if stance.duration > _LONGEST:
-        return Remark("standing, or more than one foot", f"{stance.duration:.2f} s")
+        return Remark("standing, or more than one foot", "{time:.2f} s", time=stance.duration)
     if others:
         gap = 1e3 * abs(others[0].contact - stance.contact)
-        what = f"{gap:.0f} ms from the contact on {others[0].plate}"
-        return Remark("one foot on both, or a jump", what)
+        return Remark(
+            "one foot on both, or a jump",
+            "{gap:.0f} ms from the contact on {plate}",
+            gap=gap,
+            plate=others[0].plate,
+        )
     expected = weight.newtons if weight else 0.9 * usual_peak
     if stance.peak < 0.7 * expected:
-        of = "body weight" if weight else "the usual peak"
-        share = 100 * stance.peak / expected
-        return Remark("partial", f"peak {stance.peak:.0f} N is {share:.0f} % of {of}")
+        return Remark(
+            "partial",
+            "peak {peak:.0f} N is {share:.0f} % of {of}",
+            peak=stance.peak,
+            share=100 * stance.peak / expected,
+            of=Message("body weight") if weight else Message("the usual peak"),
+        )
     ratio = stance.peak / float(vertical.mean())
     if ratio > 2.2 or (weight and stance.peak > 2.0 * expected):
-        times = f"{stance.peak / expected:.1f} times body weight" if weight else ""
-        times = times or f"{ratio:.1f} times the mean"
-        return Remark("an impact, not a walking step", f"peak {stance.peak:.0f} N, {times}")
+        times = Message("{ratio:.1f} times the mean", ratio=ratio)
+        if weight:
+            times = Message("{ratio:.1f} times body weight", ratio=stance.peak / expected)
+        return Remark(
+            "an impact, not a walking step",
+            "peak {peak:.0f} N, {times}",
+            peak=stance.peak,
+            times=times,
+        )
     two = _two_feet(stance, feet)
     if two:
         return two
     outside = feet.outside(stance)
     if outside > _OUTSIDE:
-        return Remark("a partial hit", f"the heel stands {1e3 * outside:.0f} mm outside the plate")
+        return Remark(
+            "a partial hit",
+            "the heel stands {way:.0f} mm outside the plate",
+            way=1e3 * outside,
+        )
     if stance.walking is None:
-        return Remark("no walking direction", stance.direction.explanation)
+        return Remark.of("no walking direction", stance.direction.explanation)
     # Walking up a slope, gravity along the surface hides the braking: it is sought horizontally.
     along = part @ walk.axes.ramp.gravity(walk.up, stance.walking)[1]
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
@@ -304,7 +324,7 @@ def no_contact_reason(walk: Walkway) -> str:
 
 def _two_feet(stance: Stance, feet: "_Feet") -> str:
     if {"left", "right"} <= set(feet.on_plate(stance)):
-        return "both heels are on the plate"
+        return Message("both heels are on the plate")
     plate, way, up = feet.plate, stance.walking, feet.up
     if plate.centre_of_pressure is None or way is None:
         return ""
@@ -321,8 +341,12 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     # A foot set down at an angle to the path lets the centre of pressure move across.
     turning = 1.0 if feet.walk.trial.markers else 0.5
     if along > _FOOT_LENGTH or sideways > _FOOT_WIDTH + 0.5 * along * turning:
-        moves = f"moves {1e3 * along:.0f} mm along and {1e3 * sideways:.0f} mm across"
-        return Remark("more than one foot", f"the centre of pressure {moves}")
+        return Remark(
+            "more than one foot",
+            "the centre of pressure moves {along:.0f} mm along and {sideways:.0f} mm across",
+            along=1e3 * along,
+            sideways=1e3 * sideways,
+        )
     return ""
 
 

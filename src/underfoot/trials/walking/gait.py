@@ -9,6 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
 from ..recording.axes import Ramp
 from ..recording.measurement import Flag, Measurement, remark
@@ -226,8 +227,11 @@ def required_friction(
     flags = plate.flags + stance.flags + _tilt_flags(step.slope, axes.ramp)
     after = 1e3 * (at - passed[0]) / plate.rate
     if after < 2.0:
-        text = f"the peak lies {after:.0f} ms after the gate: the gate may have made it"
-        flags += (remark(text),)
+        flags += (
+            remark(
+                "the peak lies {time:.0f} ms after the gate: the gate may have made it", time=after
+            ),
+        )
     uncertainty, parts = None, "not estimated"
     if checked:
         levels = unloaded_levels(step)
@@ -283,9 +287,12 @@ def _tilt_flags(slope: float | None, ramp: Ramp) -> tuple[Flag, ...]:
     stated = ramp.angle if ramp.plate_frame == "horizontal" else 0.0
     if slope is None or abs(slope - stated) <= _TILT:
         return ()
-    text = (
-        f"the plate's corners slope by {math.degrees(slope):.1f} deg along the walk and its forces "
-        f"are taken as on a slope of {math.degrees(stated):.1f} deg: check the angle of the ramp"
+    text = Message(
+        "the plate's corners slope by {slope:.1f} deg along the walk and "
+        "its forces are taken as on a slope of {stated:.1f} deg: check the "
+        "angle of the ramp",
+        slope=math.degrees(slope),
+        stated=math.degrees(stated),
     )
     return (Flag("plate slope", text, True, abs(slope - stated), _TILT, "rad"),)
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.measurement import Flag
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, frames_between, low_passed
 from ..recording.trial import Marker
@@ -196,10 +198,10 @@ def slip_course(
     misstep = _misstep(step)
     flags = _toe_flags(toe, limits)
     if trailing is not None and trailing > limits.microslip:
-        text = f"the trailing foot slides by {1e3 * trailing:.0f} mm"
+        text = Message("the trailing foot slides by {way:.0f} mm", way=1e3 * trailing)
         flags += (Flag("trailing foot", text, True, trailing, limits.microslip, "m"),)
     if misstep:
-        flags += (Flag("misstep", f"misstep: {misstep}"),)
+        flags += (Flag("misstep", Message("misstep: {misstep}", misstep=misstep)),)
     return SlipCourse(body, why, toe, trailing, misstep, flags)
 
 
@@ -214,7 +216,7 @@ def push_off_flags(step: Step) -> tuple[Flag, ...]:
 def _toe_flags(way: float | None, limits: OutcomeLimits) -> tuple[Flag, ...]:
     if way is None or way <= limits.microslip:
         return ()
-    text = f"the toe slides by {1e3 * way:.0f} mm: a toe slip"
+    text = Message("the toe slides by {way:.0f} mm: a toe slip", way=1e3 * way)
     return (Flag("toe slip", text, True, way, limits.microslip, "m"),)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 
 from ..recording.measurement import Flag, remark
 
@@ -105,12 +105,15 @@ def unlikely_flags(
         value = features[law.feature]
         likelihood = law.likelihood(value, speed)
         if likelihood < UNLIKELY:
-            rare = (
-                f"1 step in {1.0 / likelihood:.0f}" if likelihood > 1e-5 else "no step in 100 000"
-            )
-            text = (
-                f"{law.feature} {law.shown(value):.3g}, where sound steps have "
-                f"{law.shown(law.mean):.3g}: as far out lies {rare}"
+            rare = Message("no step in 100 000")
+            if likelihood > 1e-5:
+                rare = Message("1 step in {steps:.0f}", steps=1.0 / likelihood)
+            text = Message(
+                "{feature} {value:.3g}, where sound steps have {usual:.3g}: as far out lies {rare}",
+                feature=law.feature,
+                value=law.shown(value),
+                usual=law.shown(law.mean),
+                rare=rare,
             )
             limit = law.shown(law.limit(value, speed))
             flags.append(
@@ -118,7 +121,9 @@ def unlikely_flags(
             )
     for need, (what, missed) in _NEEDS.items():
         if not any(one.needs == need and one.feature in features for one in known):
-            flags.append(remark(f"without {what} {missed} can't be judged"))
+            flags.append(
+                remark("without {what} {missed} can't be judged", what=what, missed=missed)
+            )
     return tuple(flags)
 
 
@@ -132,9 +137,13 @@ def impossible(
     for one in references() if known is None else known:
         value = features.get(one.feature)
         if one.bound and value is not None and one.likelihood(value, speed) < IMPOSSIBLE:
-            usual = one.shown(one.mean)
-            what = f"{one.shown(value):.3g} is impossible (sound steps {usual:.3g})"
-            return Remark(one.feature, f"{what}: gain, unit or axes of the forces?")
+            return Remark(
+                one.feature,
+                "{value:.3g} is impossible (sound steps {usual:.3g}): gain, unit or axes of the "
+                "forces?",
+                value=one.shown(value),
+                usual=one.shown(one.mean),
+            )
     return ""
 
 
@@ -172,9 +181,13 @@ def unseen_gain(
     normal = min([*judged, _MASS_GAIN if mass else _ANY_GAIN])
     drift = max(reach.get(_DRIFTING_GAIN, shear), shear)
     bound, drifting = (value * math.expm1(math.hypot(one, normal)) for one in (shear, drift))
-    text = (
-        f"gains that no check sees (shear {100 * math.expm1(shear):.0f} %, normal force "
-        f"{100 * math.expm1(normal):.0f} %) could move RCOF by {bound:.2f}, a gain of the shear "
-        f"that drifts within the step by {drifting:.2f}; not in its uncertainty"
+    text = Message(
+        "gains that no check sees (shear {shear:.0f} %, normal force {normal:.0f} %) could move "
+        "RCOF by {bound:.2f}, a gain of the shear that drifts within the step by {drifting:.2f}; "
+        "not in its uncertainty",
+        shear=100 * math.expm1(shear),
+        normal=100 * math.expm1(normal),
+        bound=bound,
+        drifting=drifting,
     )
     return (Flag("unseen gain", text, False, drifting, None, "1"),)

@@ -12,6 +12,7 @@ import numpy as np
 
 from underfoot.core import UnderfootError
 from underfoot.core.constants import GRAVITY
+from underfoot.core.remark import Message
 
 from ..recording.axes import LEVEL, DirectionSource, Ramp, body_markers
 from ..recording.measurement import Flag, remark
@@ -45,11 +46,11 @@ class Limit:
     unit: str
     source: str = _ASSUMED
 
-    def flag(self, measured: float, message: str) -> Flag:
+    def flag(self, measured: float, message: Message) -> Flag:
         """Return the flag of a value beyond the limit."""
         return Flag(self.name, message, True, float(measured), self.value, self.unit, self.source)
 
-    def above(self, measured: float, message: str) -> tuple[Flag, ...]:
+    def above(self, measured: float, message: Message) -> tuple[Flag, ...]:
         """Return the flag of a value if it lies above the limit."""
         return (self.flag(measured, message),) if measured > self.value else ()
 
@@ -188,9 +189,11 @@ def unknown_heel(walk: Walkway) -> tuple[Flag, ...]:
     count = 0 if walk.heels else len(body_markers(walk.trial.markers))
     if not count:
         return ()
-    text = (
-        f"none of {count} markers is recognised as a heel: a slip can't be seen, "
-        "and then the ratio is not required friction; name it under [landmarks] in profile.toml"
+    text = Message(
+        "none of {count} markers is recognised as a heel: a slip can't be "
+        "seen, and then the ratio is not required friction; name it under "
+        "[landmarks] in profile.toml",
+        count=count,
     )
     return (Flag("heel", text),)
 
@@ -200,31 +203,33 @@ def unseen(walk: Walkway) -> tuple[Flag, ...]:
     found = unknown_heel(walk)
     count = len(body_markers(walk.trial.markers))
     if not count:
-        text = "no markers: slips, turns, slopes and a gain of the shear can't be seen"
+        text = Message("no markers: slips, turns, slopes and a gain of the shear can't be seen")
         found += (Flag("markers", text),)
     elif not walk.pelvis:
-        text = (
-            f"none of {count} markers is recognised as the pelvis's: a gain of "
-            "the shear can't be seen; name them under [landmarks] in profile.toml"
+        text = Message(
+            "none of {count} markers is recognised as the pelvis's: a gain of "
+            "the shear can't be seen; name them under [landmarks] in "
+            "profile.toml",
+            count=count,
         )
         found += (Flag("pelvis", text),)
     if walk.weight is None:
-        text = (
-            "no body mass: a gain of the normal force can't be seen; write it into "
-            "conditions.csv or profile.toml"
+        text = Message(
+            "no body mass: a gain of the normal force can't be seen; write it "
+            "into conditions.csv or profile.toml"
         )
         found += (Flag("body mass", text),)
     return found
 
 
 _NOT_JUDGED = remark(
-    "likelihood not judged: recorded steps on level ground tell it neither for a ramp nor for "
-    "made-up recordings"
+    "likelihood not judged: recorded steps on level ground tell it "
+    "neither for a ramp nor for made-up recordings"
 )
 
 
 _TOO_FAST = remark(
-    f"shape of the normal force not judged: above {FASTEST} m/s sound steps have others"
+    "shape of the normal force not judged: above {speed} m/s sound steps have others", speed=FASTEST
 )
 
 
@@ -239,11 +244,22 @@ def rcof_flags(value: float, ramp: Ramp = LEVEL, speed: float | None = None) -> 
     fall = usual * (1.0 - math.sqrt(min(speed / USUAL_SPEED, 1.0))) if speed else 0.0
     low = max(LOW_RCOF.value - fall, 0.0)
     slope = math.tan(abs(ramp.angle))
-    where = f"straight walking on a {ramp.name}" if slope else "level, straight walking"
+    where = Message("level, straight walking")
+    if slope:
+        where = Message("straight walking on a {ramp}", ramp=ramp.name)
     if value > RCOF.value + slope:
-        return (RCOF.flag(value, f"RCOF {value:.2f} is more than {where} needs"),)
+        return (
+            RCOF.flag(
+                value,
+                Message("RCOF {value:.2f} is more than {where} needs", value=value, where=where),
+            ),
+        )
     if value < low - slope:
-        return (LOW_RCOF.flag(value, f"RCOF {value:.2f} is less than walking needs"),)
+        return (
+            LOW_RCOF.flag(
+                value, Message("RCOF {value:.2f} is less than walking needs", value=value)
+            ),
+        )
     return ()
 
 
@@ -259,7 +275,11 @@ def other_foot_flags(
         return ()
     middle = float(np.median(others))
     ratio = max(shear / middle, middle / shear) if min(shear, middle) > 0 else math.inf
-    words = f"RCOF {shear:.2f} here and {middle:.2f} on the other plates: a gain or a turn"
+    words = Message(
+        "RCOF {here:.2f} here and {others:.2f} on the other plates: a gain or a turn",
+        here=shear,
+        others=middle,
+    )
     child = weight is not None and weight.newtons < 40.0 * GRAVITY
     return (CHILDS_FOOT if child else OTHER_FOOT).above(ratio, words)
 
@@ -289,13 +309,20 @@ def _usual_height(marker: Marker, up: tuple[float, ...]) -> float | None:
 def _stance_flags(step: Step, mean: float) -> Iterator[Flag]:
     """Flags of the length of a stance whose mean normal force is ``mean`` (N)."""
     weight, speed, duration, pace = step.walk.weight, step.speed, step.stance.duration, _pace(step)
-    long = f"stance of {duration:.2f} s: is the sampling rate right?"
-    short = f"stance of {duration:.2f} s: running, or a wrong rate"
-    if pace is not None:
-        yield from LONG_PACE.above(pace, f"{long[:-1]} for {speed:.2f} m/s?")
+    if pace is not None and speed is not None:
+        times = {"duration": duration, "speed": speed}
+        long = Message(
+            "stance of {duration:.2f} s: is the sampling rate right for {speed:.2f} m/s?", **times
+        )
+        short = Message(
+            "stance of {duration:.2f} s: running, or a wrong rate for {speed:.2f} m/s", **times
+        )
+        yield from LONG_PACE.above(pace, long)
         if pace < SHORT_PACE.value:
-            yield SHORT_PACE.flag(pace, f"{short} for {speed:.2f} m/s")
+            yield SHORT_PACE.flag(pace, short)
         return
+    long = Message("stance of {duration:.2f} s: is the sampling rate right?", duration=duration)
+    short = Message("stance of {duration:.2f} s: running, or a wrong rate", duration=duration)
     # A slow walk has both feet down for longer: its mean is lower, that of a wrong clock is not.
     slow = weight is not None and mean < _SLOW_MEAN * weight.newtons
     yield from (LONG_STANCE if slow else USUAL_STANCE).above(duration, long)
@@ -312,25 +339,39 @@ def _force_flags(step: Step) -> Iterator[Flag]:
     humps = max(normal[:thirds].max(), normal[2 * thirds :].max())
     middle = float(normal[thirds : 2 * thirds].max())
     if middle > (HUMP.value if speed is None or speed > SLOW else SLOW_HUMP.value) * humps:
-        text = "the force is largest in mid-stance: running or hopping, not walking"
+        text = Message("the force is largest in mid-stance: running or hopping, not walking")
         yield HUMP.flag(middle / float(humps), text)
     if weight is not None:
         ratio, mean = stance.peak / weight.newtons, float(normal.mean()) / weight.newtons
-        yield from HIGH_PEAK.above(ratio, f"peak of {ratio:.2f} body weights ({weight.source})")
+        yield from HIGH_PEAK.above(
+            ratio,
+            Message(
+                "peak of {ratio:.2f} body weights ({source})", ratio=ratio, source=weight.source
+            ),
+        )
         slow = stance.duration > _SLOW_STANCE if speed is None else speed < SLOW
         low = SLOW_MEAN_LOW if slow else MEAN_LOW
         if not low.value <= mean <= MEAN_HIGH.value:
             limit = low if mean < low.value else MEAN_HIGH
-            text = f"mean force of {mean:.2f} body weights ({weight.source}): gain or unit?"
+            text = Message(
+                "mean force of {mean:.2f} body weights ({source}): gain or unit?",
+                mean=mean,
+                source=weight.source,
+            )
             yield limit.flag(mean, text)
     own = weight.newtons if weight else 0.9 * stance.peak
     jump = float(normal[0] - plate.force[max(stance.start - 1, 0)] @ up) / own
     if stance.start and jump > REST_JUMP.value + 100.0 / rate:
-        text = f"the force jumps from rest to {100 * jump:.0f} % of body weight in one sample"
+        text = Message(
+            "the force jumps from rest to {share:.0f} % of body weight in one sample",
+            share=100 * jump,
+        )
         yield REST_JUMP.flag(jump, text)
     smooth = step.smooth_force
     slope = float(np.diff((smooth @ up)[: len(smooth) // 2]).max(initial=0.0)) * rate / own
-    yield from LOADING_RATE.above(slope, f"loading rate of {slope:.0f} body weights a second")
+    yield from LOADING_RATE.above(
+        slope, Message("loading rate of {rate:.0f} body weights a second", rate=slope)
+    )
     yield from _sample_flags(plate, stance, up)
 
 
@@ -344,35 +385,44 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
     spikes = [(size, limit) for size, limit in spikes if size > limit.value]
     if spikes:
         size, limit = max(spikes, key=lambda pair: pair[0])
-        yield limit.flag(size, f"a spike of {size:.0f} N lasts three samples at most")
+        yield limit.flag(
+            size, Message("a spike of {size:.0f} N lasts three samples at most", size=size)
+        )
     inner = slice(margin, len(part) - margin)
     step = _step(part[inner], rate) / max(float(normal[inner].mean()), 1.0)
-    text = f"the forces step by {100 * step:.0f} % of their mean in one sample: samples missing?"
+    text = Message(
+        "the forces step by {share:.0f} % of their mean in one sample: samples missing?",
+        share=100 * step,
+    )
     yield from STEP.above(step, text)
     still = (np.diff(part[inner], axis=0) == 0.0).all(axis=1) & (normal[inner][1:] > 50.0)
     held = longest_run(still) + 1
     if held >= 4 and held / rate >= HELD.value:
-        text = f"all forces stand still for {held} samples: held values"
+        text = Message("all forces stand still for {held} samples: held values", held=held)
         yield HELD.flag(held / rate, text)
     depth, window = averaged(plate.force, rate, stance.start, stance.stop, up)
-    text = (
-        f"the forces lack every multiple of {1.0 / max(window, 1e-3):.0f} Hz: a moving average of "
+    text = Message(
+        "the forces lack every multiple of {rate:.0f} Hz: a moving average of {time:.0f} ms",
+        rate=1.0 / max(window, 1e-3),
+        time=1e3 * window,
     )
-    yield from AVERAGED.above(depth, f"{text}{1e3 * window:.0f} ms")
+    yield from AVERAGED.above(depth, text)
     dead = max(dead_time(one, rate, stance.start, stance.stop) for one in plate.force.T)
-    text = f"a force rests at its zero for {1e3 * dead:.0f} ms under load: a dead band"
+    text = Message(
+        "a force rests at its zero for {time:.0f} ms under load: a dead band", time=1e3 * dead
+    )
     yield from DEAD_BAND.above(dead, text)
     yield from _straight_flags(part[inner], rate)
     firm = normal[inner]
     edge = max(1, len(firm) // 20)
     lost = firm[edge:-edge] < 20.0
-    text = f"the force drops out for {int(lost.sum())} samples"
+    text = Message("the force drops out for {count} samples", count=int(lost.sum()))
     yield from DROP_OUT.above(lost.sum() / rate, text)
     if rate >= 150.0:
         begin, end = stance.start - 2 * margin, stance.start + (stance.stop - stance.start) // 4
         share = _high_share(plate.force[max(0, begin) : end], rate)
         if share < FILTERED.value:
-            text = "nothing in the forces is faster than 25 Hz: they were filtered before"
+            text = Message("nothing in the forces is faster than 25 Hz: they were filtered before")
             yield FILTERED.flag(share, text)
 
 
@@ -382,11 +432,16 @@ def _straight_flags(force: np.ndarray, rate: float) -> Iterator[Flag]:
     drawn = (np.abs(second) < 1e-3 * np.abs(first)) & (first != 0.0)
     lengths = [(stop - start + 2) / rate for mask in drawn.T for start, stop in runs(mask)]
     longest = max(lengths, default=0.0)
-    words = f"a force runs straight for {1e3 * longest:.0f} ms: a gap filled by a line"
+    words = Message(
+        "a force runs straight for {time:.0f} ms: a gap filled by a line", time=1e3 * longest
+    )
     yield from STRAIGHT.above(longest, words)
     if drawn.mean() > 0.5:
         usual = float(np.median(lengths))
-        words = f"forces lie on lines of {1e3 * usual:.0f} ms: recorded slower, then drawn out"
+        words = Message(
+            "forces lie on lines of {time:.0f} ms: recorded slower, then drawn out",
+            time=1e3 * usual,
+        )
         yield from DRAWN.above(usual, words)
 
 
@@ -488,18 +543,30 @@ def _turns(force: np.ndarray, walking: np.ndarray, up: np.ndarray) -> int:
 def _level_flags(step: Step, low_pass: LowPass, levels: Sequence[np.ndarray]) -> Iterator[Flag]:
     stance, up, normal = step.stance, step.walk.up, 0.8 * step.stance.peak
     drift = baseline_error(levels, up, normal, 0.2)
-    text = f"the unloaded level before or after the step moves RCOF by {drift:.3f}: drift"
+    text = Message(
+        "the unloaded level before or after the step moves RCOF by {drift:.3f}: drift", drift=drift
+    )
     yield from DRIFT.above(drift, text)
     noise = _noise(step.plate, tuple(up.tolist()), step.contacts, low_pass)
-    text = f"the unloaded plate swings by {noise:.1f} N (standard deviation): vibration"
+    text = Message(
+        "the unloaded plate swings by {noise:.1f} N (standard deviation): vibration", noise=noise
+    )
     yield from VIBRATION.above(2.0 * noise / normal, text)
     if stance.by_hand:  # who sets an instant may leave load outside
         return
     before, after = _shear_outside(step.plate, stance, up)
-    late = "the shear was shifted or filtered by itself"
-    text = f"shear of {100 * before:.1f} % of the mean force before the foot is down: {late}"
+    late = Message("the shear was shifted or filtered by itself")
+    text = Message(
+        "shear of {share:.1f} % of the mean force before the foot is down: {late}",
+        share=100 * before,
+        late=late,
+    )
     yield from SHEAR_BEFORE.above(before, text)
-    text = f"shear of {100 * after:.1f} % of the mean force after the foot has left: {late}"
+    text = Message(
+        "shear of {share:.1f} % of the mean force after the foot has left: {late}",
+        share=100 * after,
+        late=late,
+    )
     yield from SHEAR_AFTER.above(after, text)
 
 
@@ -552,8 +619,10 @@ def _path_flags(step: Step) -> Iterator[Flag]:
     if stance.direction.source is DirectionSource.SHEAR:
         yield Flag(
             "walking direction",
-            "no markers and no centre of pressure: the walking direction comes from the shear "
-            "alone, and whether this was a walk can't be checked",
+            Message(
+                "no markers and no centre of pressure: the walking direction comes from the shear "
+                "alone, and whether this was a walk can't be checked"
+            ),
         )
     normal = axes.up if stance.walking is None else axes.ramp.surface(axes.up, stance.walking)[0]
     heights = {
@@ -563,32 +632,46 @@ def _path_flags(step: Step) -> Iterator[Flag]:
     }
     if stance.plate in heights:
         away = max(abs(height - heights[stance.plate]) for height in heights.values())
-        text = f"plates differ by {1e3 * away:.0f} mm in height: stairs or a step"
+        text = Message(
+            "plates differ by {height:.0f} mm in height: stairs or a step", height=1e3 * away
+        )
         yield from PLATE_HEIGHT.above(away, text)
     turns = 0
     if stance.walking is not None:
         turns = _turns(step.smooth_force, stance.walking, axes.up)
-    text = f"the shear rises and falls {turns} times while the foot is loaded: the plate rings"
+    text = Message(
+        "the shear rises and falls {turns} times while the foot is loaded: the plate rings",
+        turns=turns,
+    )
     yield from TURNS.above(turns, text)
     whole, _, first, second = step.body
     if whole is None:
         angle = _braking_to_driving(step)
-        text = f"driving is turned by {math.degrees(angle):.0f} deg against braking: a turn"
+        text = Message(
+            "driving is turned by {angle:.0f} deg against braking: a turn",
+            angle=math.degrees(angle),
+        )
         yield from SHEAR_TURN.above(angle, text)
         return
     climb = float(whole @ axes.up)
     speed = float(np.linalg.norm(whole - climb * axes.up))
     slope = axes.ramp.angle if axes.ramp.plate_frame == "horizontal" else 0.0
     expected = speed * math.tan(slope)
-    ground = f", the ramp at {expected:.2f} m/s" if slope else ": stairs, a ramp or a jump"
-    yield from CLIMB.above(abs(climb - expected), f"the body rises at {climb:.2f} m/s{ground}")
-    yield from FAST.above(speed, f"{speed:.1f} m/s is faster than people walk")
+    text = Message("the body rises at {climb:.2f} m/s: stairs, a ramp or a jump", climb=climb)
+    if slope:
+        text = Message(
+            "the body rises at {climb:.2f} m/s, the ramp at {expected:.2f} m/s",
+            climb=climb,
+            expected=expected,
+        )
+    yield from CLIMB.above(abs(climb - expected), text)
+    yield from FAST.above(speed, Message("{speed:.1f} m/s is faster than people walk", speed=speed))
     if first is None or second is None:
         return
     if min(np.linalg.norm(first), np.linalg.norm(second)) < 0.3:
         return
     angle = _angle(first, second)
-    text = f"the walk turns by {math.degrees(angle):.0f} deg during the step"
+    text = Message("the walk turns by {angle:.0f} deg during the step", angle=math.degrees(angle))
     yield from TURN.above(angle, text)
 
 
@@ -626,14 +709,21 @@ def _marker_flags(step: Step) -> Iterator[Flag]:
         if near and sides == {"left", "right"} and not by_hand:
             yield Flag(
                 "side",
-                f"the {stance.side} heel stands here, the file's own event at {event.time:.2f} s "
-                f"says {event.side}: markers exchanged?",
+                Message(
+                    "the {side} heel stands here, the file's own event at {time:.2f} s "
+                    "says {event}: markers exchanged?",
+                    side=stance.side,
+                    time=event.time,
+                    event=event.side,
+                ),
             )
     if not walk.heels:
         return
     if not stance.heel:
         if step.plate.corners is not None and not by_hand:
-            text = "no heel marker comes down on the plate: are forces and markers in time?"
+            text = Message(
+                "no heel marker comes down on the plate: are forces and markers in time?"
+            )
             yield Flag("foot", text)
         return
     heel = walk.trial.markers[stance.heel]  # over the whole record, also on a belt
@@ -643,12 +733,14 @@ def _marker_flags(step: Step) -> Iterator[Flag]:
         jumps = heel_motion(heel, walk.up).jumps
         landings = [t for t in contact_from_heel(heel, walk.up) if abs(t - stance.contact) < 0.4]
         gap = min((abs(t - stance.contact) for t in landings), default=0.0)
-        text = f"heel and force come down {1e3 * gap:.0f} ms apart: forces late or early"
+        text = Message(
+            "heel and force come down {gap:.0f} ms apart: forces late or early", gap=1e3 * gap
+        )
         slowness = max(stance.duration / USUAL_DURATION, 1.0)
         yield from replace(LATE, value=LATE.value * slowness).above(gap, text)
     near = frames_between(heel.time, stance.contact - 0.1, stance.toe_off)
     inside = (heel.time[near] > stance.contact - 0.1) & (heel.time[near] < stance.toe_off)
     leaps = int(jumps[near][inside].sum())
     if leaps:
-        text = f"the heel marker leaps off its path in {leaps} frames"
+        text = Message("the heel marker leaps off its path in {leaps} frames", leaps=leaps)
         yield Flag("marker jumps", text, True, leaps, 0.0, "1")

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.remark import Message
 
 from ..recording.measurement import Choice, Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
@@ -356,8 +357,13 @@ def slip(
     if not len(minima):
         return without(f"the heel's speed has no local minimum after contact until {ended}", motion)
     if minima[0] < first:
-        early = f"{1e3 * (contact - motion.time[minima[0]]):.0f} ms before contact"
-        flags += (caution(f"the speed's minimum lies {early}: the filter's blur"),)
+        early = 1e3 * (contact - motion.time[minima[0]])
+        flags += (
+            caution(
+                "the speed's minimum lies {early:.0f} ms before contact: the filter's blur",
+                early=early,
+            ),
+        )
     begin = int(minima[0])
     stop, by = (int(minima[1]), "second local minimum") if len(minima) > 1 else (last, ended)
     top = begin + int(np.argmax(motion.speed[begin : stop + 1]))
@@ -366,29 +372,42 @@ def slip(
     approach = slice(max(0, first - 2 * reach), stop + 1)
     leapt = int(motion.jumps[approach].sum())
     if leapt:
-        text = f"{leapt} frames of the heel marker leap off its path: taken as missing"
+        text = Message(
+            "{leapt} frames of the heel marker leap off its path: taken as missing", leapt=leapt
+        )
         flags += (Flag("marker jumps", text, True, leapt, 0.0, "1"),)
     count = int((motion.filled & ~motion.jumps)[first : stop + 1].sum())
     if count:
-        flags += (caution(f"{count} frames of the heel marker were bridged"),)
+        flags += (caution("{count} frames of the heel marker were bridged", count=count),)
     later = float(np.nanmax(motion.speed[stop : last + 1], initial=0.0))
     if peak <= definition.threshold < later:
-        flags += (caution(f"the heel reaches {later:.2f} m/s after the search's end"),)
+        flags += (caution("the heel reaches {later:.2f} m/s after the search's end", later=later),)
     if walking is not None and motion.velocity[top] @ walking < -0.5 * peak and peak > 0.05:
         flags += (caution("the heel moves backward at its peak speed"),)
     if top == stop and len(minima) < 2:
-        flags += (caution(f"the speed still grows when the search ends: {by}"),)
+        flags += (caution("the speed still grows when the search ends: {by}", by=by),)
     moved = motion.position[stop] - motion.position[begin]
     moved -= (moved @ up) * up
     distance = float(np.linalg.norm(moved))
     outcome = (limits or OutcomeLimits()).outcome(distance)
     slipped = peak > definition.threshold
     if slipped != (outcome in (Outcome.SLIDE, Outcome.LONG_SLIDE)):
-        above = f", {peak - definition.threshold:.2f} m/s above the rule" if slipped else ""
-        text = f"{'slip' if slipped else 'no slip'} by speed ({peak:.2f} m/s{above}) "
-        text += f"but {outcome} by distance ({1e3 * distance:.0f} mm)"
-        if slipped:
-            text += f": a false alarm of the rule looks like this ({FALSE_ALARMS})"
+        values = {"peak": peak, "outcome": str(outcome), "distance": 1e3 * distance}
+        text = (
+            Message(
+                "slip by speed ({peak:.2f} m/s, {above:.2f} m/s above the rule) but {outcome} by "
+                "distance ({distance:.0f} mm): a false alarm of the rule looks like this "
+                "({alarms})",
+                **values,
+                above=peak - definition.threshold,
+                alarms=FALSE_ALARMS,
+            )
+            if slipped
+            else Message(
+                "no slip by speed ({peak:.2f} m/s) but {outcome} by distance ({distance:.0f} mm)",
+                **values,
+            )
+        )
         flags += (Flag("speed against distance", text, True, peak, definition.threshold, "m/s"),)
     start, start_uncertainty, shift = _slip_start(motion, begin, definition.filter.cutoff)
     less = choices["slip start"] + ", less {:.1f} ms that the filter shifts it"
@@ -475,7 +494,7 @@ def slip_of(
     if walking is None:
         walking = walk.direction(step.plate, stance.start, stance.stop).vector
     marker = step.heel or step.markers.get(walk.heels.get(stance.side, ""))
-    flags = (caution(f"not a clean step: {stance.reason}"),) if stance.reason else ()
+    flags = (caution("not a clean step: {reason}", reason=stance.reason),) if stance.reason else ()
     if walking is not None:
         up, walking = walk.axes.ramp.surface(up, walking)  # a heel slides along the surface
     return slip(
