@@ -2,10 +2,13 @@
 
 import tomllib
 from importlib import resources
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from underfoot.compute.stated_spreads import StatedEffects
 from underfoot.core import InputError
 from underfoot.friction.shoe_class import slip_tests
 from underfoot.places import choice
@@ -34,13 +37,14 @@ def cell():
 
     def made(cof, film=0.0, viscous=0.0, fluid=THICK):
         case = cases[fluid]
+        march: Any = SimpleNamespace(spreads={}, stated=StatedEffects())
         pair, tread = choice._law(case).pair, tread_place(case)
         values = {
             "cof": cof,
             "cof_viscous": viscous,
             "fluid_load": film * case.motion.normal_force,
         }
-        return solver._cell(case, values, {}, shoe, floor, pair, np.zeros(1), tread)
+        return solver._cell(case, values, march, shoe, floor, pair, np.zeros(1), tread)
 
     return made
 

@@ -114,8 +114,14 @@ def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     speed = point.speed
     if isinstance(noted, float):
         if speed is not None and abs(noted - speed) > SPEEDS_APART * max(noted, speed):
-            what = f"{plain_number(speed)} m/s in the log, {plain_number(noted)} m/s is noted"
-            draft.cautions.append(Remark("sliding speed", f"{what} and counts"))
+            draft.cautions.append(
+                Remark(
+                    "sliding speed",
+                    "{speed} m/s in the log, {noted} m/s is noted and counts",
+                    speed=plain_number(speed),
+                    noted=plain_number(noted),
+                )
+            )
         speed = noted
     draft.add(trial.name, point.cof, main="cof")
     draft.note(point.time[-1] - point.time[0], "s", fact="duration")
