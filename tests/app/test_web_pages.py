@@ -18,8 +18,7 @@ import numpy as np
 import pytest
 import trimesh
 from chromium import PATIENCE
-from held_law import held
-from web_app import PATHS, Cost, begin, coarsened, drawn, helped, page_of, served, settled
+from web_app import PATHS, Cost, begin, coarsened, drawn, held, helped, page_of, served, settled
 
 from machine import slowness
 from underfoot.case import Case

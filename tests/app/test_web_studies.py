@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("nicegui")
 
-from held_law import held
-from web_app import drawn, page_of, served
+from web_app import drawn, held, page_of, served
 
 from underfoot.app import work_studies as work
 from underfoot.app.pages.studies import FIELDS, KINDS, _fields, _value

@@ -254,3 +254,13 @@ COARSE = {
     "numerics.tread_positions": 1,
 }
 """Makes a run a matter of a second."""
+
+
+def held(folder, free):
+    """Return the changes that hold a case up as long as a folder is, but for ``free`` cases."""
+    folder.mkdir()
+    return {
+        "friction.model": "held_law:Held",
+        "friction.hold": str(folder),
+        "friction.free": str(free),
+    }
