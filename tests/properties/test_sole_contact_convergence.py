@@ -59,10 +59,6 @@ def test_any_speed_load_and_viscosity(treaded, speed, force, viscosity, back):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True,
-    reason="7.5 %: at one of four places 19.9 N become 28 N with steps four times finer",
-)
 def test_time_steps_of_a_tread_are_fine_enough_wherever_its_lugs_lie():
     """Mean load on the film over positions within 5 % of that of steps four times finer."""
     heel = Heel(
