@@ -169,18 +169,7 @@ def numbers(shoe: str, spacing: float, cells_along: int) -> dict[str, float]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "shoe",
-    [
-        "work",
-        pytest.param(
-            "athletic",
-            marks=pytest.mark.xfail(
-                strict=True, reason="its steady film is small: 53.9 for 50.8 N"
-            ),
-        ),
-    ],
-)
+@pytest.mark.parametrize("shoe", ["work", "athletic"])
 def test_film_and_friction_of_an_untreaded_heel_do_not_depend_on_the_spacing(shoe):
     """Square cells of 1, 0.6 and 0.3 mm differ by 40 % in COF under the work shoe."""
     coarse, fine = (numbers(shoe, spacing, 16) for spacing in (1 * MM, 0.7 * MM))
@@ -189,7 +178,19 @@ def test_film_and_friction_of_an_untreaded_heel_do_not_depend_on_the_spacing(sho
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shoe", ["work", "athletic"])
+@pytest.mark.parametrize(
+    "shoe",
+    [
+        "work",
+        pytest.param(
+            "athletic",
+            marks=pytest.mark.xfail(
+                strict=True,
+                reason="its steady film is small: 36.3, 34.7, 36.6 N of 500 with 8, 16, 32 cells",
+            ),
+        ),
+    ],
+)
 def test_film_and_friction_of_an_untreaded_heel_converge_with_the_cells_along(shoe):
     """8, 16, 32 cells in a spacing: at least the first order; 16 leave what a result may miss."""
     found = [numbers(shoe, 1 * MM, cells) for cells in (8, 16, 32)]

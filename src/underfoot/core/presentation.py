@@ -262,10 +262,6 @@ def _skewed(value: float, interval: tuple[float, float]) -> bool:
 def _cell(value: Any) -> str:
     if value is None:
         return ""
-    return (
-        f"{value:.4g}"
-        if isinstance(value, float)
-        else value
-        if isinstance(value, str)
-        else str(value)
-    )
+    if isinstance(value, str):  # a message stays one: pages put it into their language
+        return value
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -42,16 +42,16 @@ REACH = 6e-3
 """Land higher above the floor than this (m) keeps the layers alone."""
 MARGIN = 1.5
 """Thicknesses of the body around this land that are meshed."""
+FAINT = 0.1
+"""Share of what is cut off a wave's overlap with itself by which its correction fades out."""
 ALIKE = 1e-3
-"""The same for waves that the cells can't tell apart, over a whole wave's overlap with itself."""
+"""Share of a whole wave's overlap with itself by which waves fade that the cells can't tell apart."""
 NARROWEST = 0.1
 """Width of a row of bricks where the rim ends in a point, over the widest."""
 SAMPLES = 3  # a side of a quarter of a square
 GROWTH = 2.0  # from a layer of bricks to the next, from the floor up
 MIDSOLE_LAYERS = 2
 NEARLY_INCOMPRESSIBLE = 0.499
-FAINT = 0.1
-"""Share of what is cut off a wave's overlap with itself by which its correction fades out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,7 +264,7 @@ def _halves(places: Array) -> Array:
 
 def _graded(thickness: float, side: float) -> Array:
     """Return the shares 0 to 1 of the outsole's thickness at which its layers of bricks end."""
-    steps = [1.0 * side]
+    steps = [side]
     while sum(steps) < thickness or len(steps) < 2:
         steps.append(steps[-1] * GROWTH)
     return np.concatenate([[0.0], np.cumsum(steps) / sum(steps)])
