@@ -45,7 +45,7 @@ MARGIN = 1.5
 FAINT = 0.1
 """Share of what is cut off a wave's overlap with itself by which its correction fades out."""
 ALIKE = 1e-3
-"""Share of a whole wave's overlap with itself by which waves fade that the cells can't tell apart."""
+"""Share of a whole wave's overlap with itself by which waves fade that cells can't tell apart."""
 NARROWEST = 0.1
 """Width of a row of bricks where the rim ends in a point, over the widest."""
 SAMPLES = 3  # a side of a quarter of a square
