@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import progress as progress_module
 from underfoot.core.pool import answered, in_processes
-from underfoot.core.progress import TimeLeft, bar
+from underfoot.core.progress import TimeLeft, bar, part, silent
 
 # A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
 PARENT = """
@@ -268,3 +268,9 @@ def test_progress_is_one_line_on_80_columns_and_no_number_is_cut(monkeypatch):
     lines = [line for line in re.split(r"[\r\n]+", plain) if line.strip()]
     assert max(map(len, lines)) <= 80
     assert all("residual 1.2e-04" in line and " % " in line for line in lines[1:])
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.9, 2.0), (0.5, 0.4), (-0.1, 1.0)])
+def test_a_part_of_a_progress_lies_within_it(low, high):
+    with pytest.raises(ValueError, match="no part of a progress"):
+        part(silent, low, high)
