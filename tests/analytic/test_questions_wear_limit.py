@@ -175,6 +175,8 @@ def test_the_last_state_is_drawn_in_curve_and_table_and_gives_the_verdict():
     friction = wear_figure(series).axes[2]
     drawn = np.concatenate([line.get_ydata() for line in friction.get_lines()])
     assert 0.047 in drawn
+    place, bare = friction.get_lines()[-1].get_data()  # the open mark of the sole without tread
+    assert (place[-1], bare[-1]) == pytest.approx((2.0, 0.047))
     assert len(series.table().rows) == 4
     assert "0.047" in series.table().rows[-1]
 

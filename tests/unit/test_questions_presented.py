@@ -21,6 +21,7 @@ from underfoot.questions.risk import ModelRisk, RiskAssessment
 from underfoot.questions.sensitivity import QUANTITIES, Effect, Sensitivity
 from underfoot.questions.wear import WearSeries, deepest_wear, limit_load
 from underfoot.questions.wear_limit import Crossing, LimitCrossing, WearPoint
+from underfoot.report.question_figures import sensitivity_figure
 from underfoot.shoe.worn import WearMeasures
 
 
@@ -236,6 +237,8 @@ def test_a_sensitivity_names_the_most_effective_input_and_the_spread_it_gives():
     assert found.tables()[1].rows[2][3] == "not computed"
     assert len(found.data_tables()["sensitivity"].rows) == 3 * len(QUANTITIES)
     assert Sensitivity(FAILED, ()).tables() == ()
+    rows = [label.get_text() for label in sensitivity_figure(found).axes[0].get_yticklabels()]
+    assert [row.partition("\n")[0] for row in rows] == ["c", "b", "a"]  # the strongest on top
 
 
 def series(cofs, crossing=Crossing.WITHIN, variants=()):
