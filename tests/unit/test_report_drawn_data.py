@@ -10,11 +10,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from underfoot.case import load
-from underfoot.report import compound, design_study, live_study, slips, sole_mesh
+from underfoot.explore.record import Ending
+from underfoot.report import chart, compound, design_study, live_study, slips, sole_mesh
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
 from underfoot.report.solver_input import with_middle_nodes
-from underfoot.report.thumbnail import _drawn
+from underfoot.report.thumbnail import CELLS, _drawn
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -153,6 +154,7 @@ def test_a_picture_of_a_heel_is_as_long_as_wide_as_the_heel_and_darker_where_it_
     wide, high = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', picture).groups())
     heel = case.shoe.heel
     assert wide / high == pytest.approx(heel.length / heel.widest, rel=0.05)
+    assert wide == pytest.approx(CELLS, rel=0.05)  # of 0.5 mm
     plan, land = re.findall(r' d="([^"]*)"', picture)
     cells = [sum(int(length) for length in re.findall(r"h(\d+)", path)) for path in (plan, land)]
     assert 0.1 < cells[1] / cells[0] < 0.9  # channels are left out
@@ -243,3 +245,24 @@ def test_a_live_page_shows_the_best_designs_or_the_first_without_a_goal(goals, t
     )  # fmt: skip
     designs, said = live_study.LiveStudy.table(cast(Any, live))
     assert (designs, said) == ([("first", "best", "front")[goals]], title)
+
+
+def test_a_run_has_ended_with_all_its_numbers_or_where_it_can_not_have_them():
+    order = [Ending.OPEN, Ending.COMPUTED, Ending.NOT_CONVERGED, Ending.FAILED]
+    number = {ending: list(Ending).index(ending) for ending in order}
+    waiting, computed, lost, failed = (number[ending] for ending in order)
+    runs = np.array(
+        [[computed] * 2, [waiting, computed], [lost, waiting], [waiting] * 2, [computed, failed]]
+    )
+    ended = live_study.LiveStudy.ended_runs.func(cast(Any, SimpleNamespace(_endings_of_runs=runs)))
+    assert ended == [0, 2, 4]
+
+
+def test_a_line_runs_from_the_corner_of_its_axes_to_the_highest_number():
+    svg = chart.line_chart([0, 1, 2], [("friction", [0.0, 0.5, 1.0])], "time", "COF")
+    points = re.search(r'points="([^"]*)"', svg)
+    assert points is not None
+    ends = [tuple(map(float, place.split(","))) for place in points[1].split()]
+    left, right = chart.LEFT, chart.WIDTH - 10
+    low, high = chart.HEIGHT - chart.BOTTOM, chart.TOP
+    assert ends == [(left, low), ((left + right) / 2, (low + high) / 2), (right, high)]
