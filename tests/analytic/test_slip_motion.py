@@ -251,3 +251,28 @@ def test_rcof_of_a_history_is_that_of_braking():
     history = GaitHistory("pushed off", time, np.ones(61), ratio)
     assert history.ratio[history.time > 0.3].max() > 0.5
     assert history.rcof == pytest.approx(0.2, rel=0.01)
+
+
+@pytest.mark.parametrize("cof", [0.02, 0.15, 0.3, 0.6])
+@pytest.mark.parametrize("brake", [None, 0.011, 0.03])
+def test_the_compiled_motion_is_the_motion_in_every_column(cof, brake):
+    changes = {} if brake is None else {"heel_brake": "constant", "brake_time": brake}
+    person = walker(constant(0.2), 0.2, **changes)
+    full = slip_motion(person, Floor(cof=cof), step=1e-3)
+    fast = dry_sole(cof).motion(person, step=1e-3)
+    for name in (
+        "time",
+        "speed",
+        "distance",
+        "normal",
+        "drive",
+        "friction",
+        "work_in",
+        "dissipated",
+    ):
+        ours, theirs = getattr(fast, name), getattr(full, name)
+        np.testing.assert_allclose(ours[1:], theirs[1:], rtol=1e-9, atol=1e-12, err_msg=name)
+    braked = person.moving_mass * np.diff(person.dry_speed(fast.time)) / 1e-3
+    rests = fast.speed[1:] == 0.0
+    asked = np.maximum(fast.drive[1:] + braked, 0.0)[rests]
+    assert fast.friction[1:][rests] == pytest.approx(np.minimum(asked, cof * WEIGHT))
