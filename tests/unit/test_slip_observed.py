@@ -7,7 +7,15 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.slip.dynamics.observation import AFTER, BEFORE, RATE, SWING_SPEED, heel_marker
+from underfoot.slip.dynamics import observation
+from underfoot.slip.dynamics.observation import (
+    AFTER,
+    BEFORE,
+    RATE,
+    SWING_SPEED,
+    _pulses,
+    heel_marker,
+)
 from underfoot.slip.dynamics.reduced_model import SPEED_SCALE, error_of
 from underfoot.slip.dynamics.study import FrictionDraws, SlipStudy
 
@@ -153,3 +161,33 @@ def test_a_draw_of_the_friction_has_walkers_of_its_level_and_crossed_ones_where_
     # few walkers scatter from draw to draw
     many = FrictionDraws(cast(Any, levels), np.ones(400, int), np.full(400, 0.2), seed=3)
     assert many.means("speed", 9).std() == pytest.approx(np.sqrt(8) / 3, rel=0.15)
+
+
+@pytest.mark.parametrize("middle", [0.05, 0.2, 0.35])
+def test_a_pulse_is_seen_wherever_in_the_motion_it_comes(middle):
+    """A half wave of 0.1 s and 40 kPa: above 10 % of its peak for 0.094 s."""
+    motion = motion_at(1.0)
+    wave = np.clip(1 - ((motion.time - middle) / 0.05) ** 2, 0.0, None)
+    pressures = np.zeros((motion.time.size, 2, 3))
+    pressures[:, 1, 2] = 40e3 * wave
+    rows, duration, highest = _pulses(motion, pressures, seed=1)
+    assert highest == rows[1] == pytest.approx(40e3, rel=0.03)
+    assert rows[0] < 2e3
+    assert duration == pytest.approx(0.1, abs=0.01)
+
+
+@pytest.mark.parametrize("peak", [None, 1.2])
+def test_a_slip_without_a_peak_says_so_and_one_with_it_does_not(monkeypatch, peak):
+    reading = SimpleNamespace(value=peak, flags=(), reason="it rises to its end")
+    seen = SimpleNamespace(
+        peak_speed=reading, end=0.4, start=SimpleNamespace(value=0.1), slipped=True
+    )
+    monkeypatch.setattr(observation, "judged", lambda _: seen)
+    motion = motion_at(1.0)
+    motion.distance, motion.notes = motion.time, ()
+    motion.walker.landing, motion.walker.lateral = 0.1, 0.0
+    array = SimpleNamespace(columns=3, spacing=0.02)
+    told = observation.observed(motion, None, cast(Any, array))
+    assert told.peak_speed == (peak or 0.0)
+    assert told.flags == (() if peak else ("no peak: it rises to its end",))
+    assert (told.crossed, told.distance) == (True, pytest.approx(0.4))
