@@ -41,4 +41,6 @@ def test_a_source_is_predicted_from_the_others_alone():
         > predicted(sources)[3]["predicted from the others, %"]
     )
     assert before["off by, points"] == pytest.approx(0.0, abs=20)
+    seen = predicted(changed)[2]
+    assert (seen["share of slips, %"], seen["or up to, %"]) == pytest.approx((90.0, 95.0))
     assert [row["source"] for row in predicted(sources)].count("report, G.6") == 2

@@ -7,9 +7,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
+from scipy.stats import norm
 
-from underfoot.core import ConvergenceError
-from underfoot.studies import corpus, g2, g3, g4, g5
+from underfoot.core import ConvergenceError, SourcedValue
+from underfoot.studies import corpus, g2, g3, g4, g5, pair_law, tread_pairs
 from underfoot.studies.calibration import profile_figure
 from underfoot.studies.corpus import Side, _effects
 from underfoot.studies.corpus_cases import _nested
@@ -231,3 +232,54 @@ def test_full_slips_are_computed_side_by_side_where_processes_may_be_started(
     else:
         assert filled == solved
         assert seen == pytest.approx([0.2, 0.4, 0.6, 0.8, 0.84, 0.88, 0.92, 0.96])
+
+
+def test_the_error_of_a_pair_of_treads_is_half_of_what_two_thirds_of_its_draws_span(monkeypatch):
+    """Draws whose logarithms are normal: their standard deviation."""
+    share = (np.arange(4000) + 0.5) / 4000
+    drawn = np.append(1.5, np.exp(0.4 + 0.3 * norm.ppf(share)))
+    monkeypatch.setattr(tread_pairs, "resolved", lambda _: SimpleNamespace(viscosity_value=0.2))
+    monkeypatch.setattr(tread_pairs, "_place", lambda _: ())
+    pair = tread_pairs._pair("made", "up", cast(Any, None), (0.1, 0.2), drawn, np.zeros(6))
+    assert pair.sd == pytest.approx(0.3, rel=0.01)
+    assert pair.computed == pytest.approx(math.log(1.5))
+
+
+def test_a_line_through_the_origin_has_the_slope_of_the_weighted_least_squares():
+    x, weight = np.array([[1.0], [2.0], [4.0]]), np.array([1.0, 0.5, 2.0])
+    at = np.array([[3.0], [-1.0]])
+    np.testing.assert_allclose(pair_law._line(x, 0.7 * x[:, 0], weight, at), [2.1, -0.7])
+    bent = np.array([1.0, 2.0, 0.0])  # slope (1 + 0.5 * 4) / (1 + 0.5 * 4 + 2 * 16)
+    np.testing.assert_allclose(pair_law._line(x, bent, weight, at), at[:, 0] * 3 / 35)
+
+
+def test_the_decay_speeds_of_a_figure_lie_about_their_product_with_the_viscosity():
+    fluids = {
+        name: SimpleNamespace(
+            cof_boundary=SourcedValue(0.2, uncertainty=0.02),
+            tau_hydro=SourcedValue(2e-3 / viscosity, "m/s", uncertainty=0.1),
+            viscosity=viscosity,
+        )
+        for name, viscosity in zip(g2.LABELS, (5e-4, 1e-3, 2e-3, 4e-3, 6e-3, 8e-3), strict=True)
+    }
+    figure = g2._levels_figure(cast(Any, fluids))
+    (curve,) = [each for each in figure.panels[1].layers if each.label.startswith("viscosity ×")]
+    np.testing.assert_allclose(np.array(curve.x) * np.array(curve.y), 2.0)  # mPa m
+    assert "= 2.00 mPa m" in curve.label
+
+
+def test_films_over_the_roughness_are_those_of_five_hundredths_to_one_metre_a_second(monkeypatch):
+    asked: list[float] = []
+
+    def film(viscosity, entrainment_speed, **_):
+        asked.append(entrainment_speed)
+        return None, viscosity * entrainment_speed
+
+    monkeypatch.setattr(g2, "soft_ehl_film", film)
+    pin = SimpleNamespace(sole_rq=3e-6, floor_rq=4e-6, normal_force=1, radius=1, modulus=1)
+    points = {name: SimpleNamespace(viscosity=0.1) for name in g2.LABELS}
+    ratios = g2.lambda_ratios(cast(Any, SimpleNamespace(pin=pin, points=points)), count=3)
+    ends = asked[0], asked[2]
+    assert ends == pytest.approx((0.05, 1.0))
+    for name in g2.LABELS:
+        assert ratios[name][[0, 2]] == pytest.approx(0.1 * np.array(ends) / 5e-6)
