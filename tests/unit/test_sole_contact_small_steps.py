@@ -15,7 +15,7 @@ from underfoot.sole_contact._kernels.splines import Splines
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
 from underfoot.sole_contact.long_waves import SIDE, WAVE, net_over, splines_over
-from underfoot.sole_contact.march import Counts, _calmed
+from underfoot.sole_contact.march import Counts, _calmed, _film_mask
 from underfoot.sole_contact.problem import State
 from underfoot.sole_contact.solver import longest_step, passing_time
 
@@ -154,3 +154,15 @@ def test_steps_that_swing_end_where_they_start(slope):
         steps.append((start, state(rest + slope * (start.gap - rest))))
     for name in ("pressure", "gap", "fluid"):
         np.testing.assert_allclose(getattr(steps[-1][1], name), rest, atol=1e-4)
+
+
+def test_a_pool_that_reaches_no_cell_wets_those_that_are_lowest():
+    clearance = np.array([1e-3, 1.01e-3, 1.03e-3, 2e-3, 1.0])
+    at_rim = np.zeros(5, dtype=bool)
+    problem = SimpleNamespace(
+        clearance=clearance, drained=None, cells=SimpleNamespace(at_rim=at_rim)
+    )
+    wet = _film_mask(cast(Any, problem), clearance, 1e-4, None)
+    assert wet.tolist() == [True, True, False, False, False]
+    reached = _film_mask(cast(Any, problem), clearance - 0.95e-3, 1e-4, at_rim)
+    assert reached.tolist() == [True, True, True, False, False]

@@ -1,16 +1,17 @@
 """Steps of studies with a value of their own: a strip's film by quadrature, nested paths, grids."""
 
 import math
+from dataclasses import astuple
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
-from scipy.stats import norm
+from scipy.stats import halfnorm, norm
 
 from underfoot.core import ConvergenceError, SourcedValue
-from underfoot.studies import corpus, g2, g3, g4, g5, pair_law, tread_pairs
+from underfoot.studies import corpus, g1, g2, g3, g4, g5, pair_law, tread_pairs
 from underfoot.studies.calibration import profile_figure
 from underfoot.studies.corpus import Side, _effects
 from underfoot.studies.corpus_cases import _nested
@@ -283,3 +284,43 @@ def test_films_over_the_roughness_are_those_of_five_hundredths_to_one_metre_a_se
     assert ends == pytest.approx((0.05, 1.0))
     for name in g2.LABELS:
         assert ratios[name][[0, 2]] == pytest.approx(0.1 * np.array(ends) / 5e-6)
+
+
+def test_the_prior_of_the_law_is_normal_and_its_spreads_are_half_normal_but_the_first():
+    prior = np.array([[0.5, 2.0], [-1.0, 0.3]])
+    theta = np.array([[0.5, -1.0], [2.0, -1.4], [-1.0, -0.5]])
+    ln_spread = np.array(
+        [[-1.1, -0.9, -1.6, -1.0], [-0.7, -1.5, -2.0, -0.4], [-1.5, -0.3, -1.0, -2]]
+    )
+    exact = norm.logpdf(theta, *prior.T).sum(axis=1)
+    exact += norm.logpdf(ln_spread[:, 0], np.log(pair_law.SD_SOURCE), 0.35)
+    spread = np.exp(ln_spread[:, 1:])
+    density = halfnorm.logpdf(spread, scale=pair_law.SPREAD_PRIOR[1:])
+    exact += (density + ln_spread[:, 1:]).sum(axis=1)  # over the logarithm
+    told = pair_law._log_prior(prior, theta, ln_spread)
+    np.testing.assert_allclose(told - told[0], exact - exact[0])
+
+
+def test_the_analysis_of_variance_has_a_row_for_each_effect_beside_what_is_printed(monkeypatch):
+    chances = {"sole": 1e-6, "floor": 0.2, "sole:floor": 0.03}
+    monkeypatch.setattr(g3, "expected_analysis", lambda splits, take: chances)
+    table = g3._analysis_table({})
+    assert table.name == "analysis_of_variance"
+    assert table.title.startswith("Analysis of variance")
+    assert [row[2] for row in table.rows[:3]] == ["below 0.0001", "0.2", "0.03"]
+    assert [row[3] for row in table.rows[:3]] == ["p < 0.01", "not named", "p < 0.01"]
+
+
+def test_every_series_of_the_matrix_has_its_quantities(monkeypatch):
+    def outcomes(cases, mesh, processes):
+        for case in cases:
+            row = g1.Row(*astuple(case), *[0.1 * case.speed] * 7, "converged", "", 1.0)
+            yield row, {name: np.arange(3.0) for name in g1.HISTORY}
+
+    monkeypatch.setattr(g1, "outcomes", outcomes)
+    monkeypatch.setattr(g1, "figures", lambda *_: ())
+    quantities = g1.compute(Options(quick=True)).quantities
+    for name in g1.SERIES:
+        own = {each: quantities[each] for each in quantities if each.startswith(f"{name}.")}
+        assert f"{name}.hysteresis.largest" in own
+        assert len(own) > 1

@@ -1,6 +1,8 @@
 """What a scan holds beside its roughness: joints, heights that are no heights, a rounded length."""
 
 import re
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -86,3 +88,9 @@ def test_a_scan_as_long_as_a_cut_off_holds_it_in_any_unit(tmp_path, unit):
     """800 points of 1 µm took 0.8 mm in inches and 0.25 mm in millimetres: Rq by a third."""
     scan = scan_of(tmp_path / "a.txt", rough(800, 1e-6), unit=unit)
     assert scan.cutoff == 0.8e-3
+
+
+def test_the_waves_of_a_scan_are_the_longest_and_the_shortest_of_its_spectrum():
+    spectrum = SimpleNamespace(reliable=(2 * np.pi / 0.8e-3, 2 * np.pi / 5e-6))
+    waves = Scan.waves.fget(cast(Any, SimpleNamespace(spectrum=spectrum)))
+    assert waves == pytest.approx((0.8e-3, 5e-6))

@@ -412,14 +412,12 @@ def fitted(
 
     def log_posterior(points: Array) -> Array:
         theta, ln_spread = np.split(points, [count], axis=1)
-        value = -0.5 * (((theta - prior[:, 0]) / prior[:, 1]) ** 2).sum(axis=1)
         outside = (np.abs(ln_spread + 1.5) > 2.5).any(axis=1)
         outside |= (np.abs(theta - prior[:, 0]) > 6 * prior[:, 1]).any(axis=1)
         # the mode is looked for out there too
+        value = _log_prior(prior, theta, ln_spread)
         spread = np.exp(np.clip(ln_spread, -4.0, 1.0))
         theta = np.clip(theta, *(prior[:, 0] + end * prior[:, 1] for end in (-6, 6)))
-        value -= 0.5 * ((ln_spread[:, 0] - _L(SD_SOURCE)) / 0.35) ** 2
-        value += (ln_spread[:, 1:] - 0.5 * (spread[:, 1:] / SPREAD_PRIOR[1:]) ** 2).sum(axis=1)
         mean, variance = rows.predicted(law, theta)
         weight = np.zeros_like(mean)
         if law.dry is not None:
@@ -443,6 +441,14 @@ def fitted(
         float(1 / (weight**2).sum()),
         left,
     )
+
+
+def _log_prior(prior: Array, theta: Array, ln_spread: Array) -> Array:
+    """Return the logarithm of the prior density, (n,), of parameters and logarithms of spreads."""
+    spread = np.exp(np.clip(ln_spread, -4.0, 1.0))
+    value = -0.5 * (((theta - prior[:, 0]) / prior[:, 1]) ** 2).sum(axis=1)
+    value -= 0.5 * ((ln_spread[:, 0] - _L(SD_SOURCE)) / 0.35) ** 2
+    return value + (ln_spread[:, 1:] - 0.5 * (spread[:, 1:] / SPREAD_PRIOR[1:]) ** 2).sum(axis=1)
 
 
 def _sampled(
