@@ -5,7 +5,7 @@ import pytest
 
 from underfoot.core import DataError
 from underfoot.surface.heights import profile_from_positions
-from underfoot.surface.read import _is_numbered, read_numbers
+from underfoot.surface.read import _is_numbered, _plain_numbers, read_numbers
 from underfoot.surface.spectrum import ProfileSpectrum, isotropic_from_profile
 
 
@@ -58,3 +58,14 @@ def test_a_profile_goes_on_by_the_power_of_its_last_half_decade():
     shown = isotropic_from_profile(ProfileSpectrum(q, 1e-18 * density, (1e3, 1e6)))
     (power,) = [note.split()[-4] for note in shown.notes if "extrapolated" in note]
     assert float(power) == pytest.approx(-5.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("lines", "separator", "plain"),
+    [
+        (["1;2", "3;4.5"], ";", True), (["1,2", "3,4.5"], ",", True), (["1 2"], None, True),
+        (["1,5;2"], ";", False), (['"1";2'], ";", False), (["1;a"], ";", False),
+    ],
+)  # fmt: skip
+def test_plain_numbers_are_read_the_short_way_and_no_others(lines, separator, plain):
+    assert (_plain_numbers(lines, separator) is not None) == plain
