@@ -1,14 +1,22 @@
 """Maps of fluid pressure, flat tops, empty plates, made-up steps, sheets of heels: by hand."""
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
 from underfoot.trials.machines.pressure_map import PressureScan, pressure_map
 from underfoot.trials.pages.figures import sheets
+from underfoot.trials.readers.text import measurable
 from underfoot.trials.recording.signals import saturated, unloaded
 from underfoot.trials.simulator import walk
 from underfoot.trials.simulator.activities import activity
+from underfoot.trials.statistics.ranks import _of_two
 from underfoot.trials.study.file_result import FileResult
+from underfoot.trials.study.readings import _boards
+from underfoot.trials.study.study_tests import _logistic
+from underfoot.trials.walking.events import _two_feet
 
 
 def scan(lateral, line_load, peak=0.0):
@@ -105,3 +113,65 @@ def test_a_sheet_of_heels_has_the_threshold_and_the_scale_of_the_fastest(count):
     assert [tile.remark for tile in tiles] == ["0.93", "0.40", "0.60"][:count]
     assert tiles[0].x[-1] == pytest.approx(0.52)  # until 30 ms after the end of the slip
     assert empty.reason == "no marker; no plate"
+
+
+@pytest.mark.parametrize(
+    ("along", "across", "feet"),
+    [(0.20, 0.10, 1), (0.02, 0.20, 2), (0.30, 0.20, 1), (0.40, 0.02, 2)],
+)
+def test_a_centre_of_pressure_that_moves_farther_than_a_foot_is_wide_is_of_two(along, across, feet):
+    """0.36 m along; across 0.14 m and, without markers, a quarter of what it moves along."""
+    share = np.linspace(0, 1, 60)[:, None]
+    place = share * np.array([along, across, 0.0])
+    plate = SimpleNamespace(
+        centre_of_pressure=place, force=np.tile([0.0, 0.0, 700.0], (60, 1)), start=0.0, rate=100.0
+    )
+    beside = SimpleNamespace(
+        on_plate=lambda _: [], plate=plate, up=np.array([0.0, 0.0, 1.0]),
+        surface=lambda _: np.zeros(3), walk=SimpleNamespace(trial=SimpleNamespace(markers={})),
+    )  # fmt: skip
+    stance = SimpleNamespace(
+        start=0, stop=60, walking=np.array([1.0, 0.0, 0.0]), contact=0.0, peak=700.0
+    )
+    assert bool(_two_feet(cast(Any, stance), cast(Any, beside))) == (feet == 2)
+
+
+def test_a_board_is_read_with_the_standard_error_of_its_readings():
+    operators = {"operator": ["A", "A", "A", "B"]}
+    standards, values = np.array([8.7, 8.7, 8.7, 27.3]), np.array([9.0, 9.4, 9.2, 28.0])
+    read = _boards("sheet", "standard angle", standards, operators, values).read
+    assert read["A"] == (pytest.approx((8.7, 9.2, 0.2 / np.sqrt(3))),)
+    assert read["B"] == ((27.3, 28.0, 0.0),)  # of one reading nothing is known
+
+
+def test_persons_who_differ_by_rounding_alone_are_no_pair():
+    """By what is rounding beside the largest of both levels, also where one is nought."""
+    nought, other = np.zeros(5), np.array([1.0, 2.0, 4.0, 8.0, 1e-13])
+    test = _of_two(nought, other, several=True)
+    assert test.statistic == 0.0
+    assert test.p == pytest.approx(2 / 2**4)
+
+
+def test_a_curve_of_chances_reaches_a_tenth_beyond_what_was_read():
+    cofs = np.linspace(0.1, 0.3, 12)
+    slips = [1, 1, 1, 1, 0, 1, 1, 0, 0, 1, 0, 0]
+    files = [
+        SimpleNamespace(
+            file=f"{k}", main={"acof": cof, "slip": slip}, conditions={"person": f"{k}"}
+        )
+        for k, (cof, slip) in enumerate(zip(cofs, slips, strict=True))
+    ]
+    _, (curve,) = _logistic(cast(Any, files), "person")
+    assert (curve["grid"][0], curve["grid"][-1]) == pytest.approx((0.08, 0.32))
+    assert curve["slope"] < 0
+
+
+def test_numbers_that_nothing_measures_are_missing_and_counted():
+    notes: list[str] = []
+    read = measurable(np.array([1.0, np.inf, -2e31, np.nan, 9e29]), notes)
+    np.testing.assert_array_equal(read, [1.0, np.nan, np.nan, np.nan, 9e29])
+    assert [note.partition(" ")[0] for note in notes] == ["2"]
+    notes.clear()
+    sound = np.array([0.0, -3.5, np.nan])
+    assert measurable(sound, notes) is sound
+    assert not notes
