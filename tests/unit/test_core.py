@@ -38,6 +38,7 @@ def test_an_unknown_name_lists_what_is_known():
 
 def test_an_unknown_uncertainty_is_never_zero():
     value = SourcedValue(2.0, "N")
+    assert (value.assumed, value.uncertainty, value.interval) == (False, None, None)
     assert value.uncertainty is None
     assert value.reason
     assert "not estimated" in str(SourcedValue(None, "N", reason="two repeats"))
