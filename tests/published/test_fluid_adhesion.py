@@ -8,7 +8,6 @@ import pytest
 from underfoot.core import InputError
 from underfoot.fluid import BLOCKING, AdhesionBlocking, adhesion_blocking, strobel_breaches
 
-
 PRINTED = {
     "water": (4.3263, 0.0531),
     "detergent 1.5 %": (2.6125, 0.0399),
