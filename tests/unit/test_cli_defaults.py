@@ -3,6 +3,7 @@
 import ast
 import inspect
 import textwrap
+from collections import defaultdict
 from importlib import import_module
 from typing import Any, cast
 
@@ -91,6 +92,17 @@ def test_no_command_replaces_what_exists_unless_it_is_asked_to():
         asked = [path for path, known in options.items() if name in known]
         assert asked, name
         assert [path for path in asked if options[path][name] not in (value, None)] == []
+
+
+def test_no_words_of_an_option_hide_two_defaults():
+    """Where nothing is the default the words say what is done then: in every command the same."""
+    defaults = defaultdict(set)
+    for _, command in commands_of(get_command(app)):
+        for each in command.params:
+            defaults[each.name, getattr(each, "help", None)].add(repr(each.default))
+    assert len(defaults) > 100
+    for words, known in defaults.items():
+        assert "None" not in known or known == {"None"}, words
 
 
 def test_a_table_of_two_scans_is_of_the_floor_under_the_sole(monkeypatch, tmp_path):
