@@ -107,6 +107,8 @@ def test_every_page_opens_with_a_heading_with_and_without_a_variant(tmp_path, ca
             new_variant(session, "shoe", shoe="work_shoe_half_tread", contaminant="detergent")
 
         def heads(elements):
+            heard = [kind.type for each in elements for kind in each._event_listeners.values()]
+            assert all(isinstance(each, str) for each in heard)
             return [int(each.tag[1]) for each in elements if each.tag in HEADINGS]
 
         # a page of one variant asks for one where there is none
@@ -653,6 +655,49 @@ def keydown(element, key):
     return cast(Any, pressed.handler)
 
 
+def computed(session, name):
+    """Write what a page reads of a result in short."""
+    result = session.project.result_folder(name)
+    result.mkdir(parents=True)
+    stored = {"status": {"value": "converged"}, "cof": {"value": 0.3},
+              "provenance": {"case_hash": "a", "created": "now"}}  # fmt: skip
+    (result / "result.json").write_text(json.dumps(stored), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("route", "results"),
+    [("/", True), ("/project", True), ("/answer", True), ("/compare", True), ("/design", False)],
+)
+def test_a_page_follows_the_files_of_its_variants_and_their_results_where_it_shows_any(
+    tmp_path, monkeypatch, route, results
+):
+    session, followed = session_of(tmp_path, variant="a"), []
+    for name in "abc":
+        new_variant(session, name, shoe="work_shoe_half_tread", contaminant="detergent")
+        if route == "/compare" and name != "c":
+            computed(session, name)
+    monkeypatch.setattr(
+        Session, "follow", lambda _, state, *given, **more: followed.append(state) or (lambda: None)
+    )
+    (page,) = (each for each in PAGES if each.route == route)
+
+    async def look(_):
+        await until(lambda: followed)
+
+    shown(partial(page.build, session), look)
+    (state,) = followed
+    seen = [state()]
+    if results and route != "/compare":
+        computed(session, "a")
+        seen.append(state())
+    session.project.change("a", {"motion.speed": "0.31 m/s"})
+    seen.append(state())
+    assert all(before != after for before, after in pairwise(seen))
+    if not results:
+        computed(session, "a")
+        assert state() == seen[-1]
+
+
 def test_a_variant_that_can_not_be_read_is_looked_at_again_when_its_file_changed(
     tmp_path, monkeypatch
 ):
@@ -668,11 +713,7 @@ def test_a_variant_that_can_not_be_read_is_looked_at_again_when_its_file_changed
     state, again = followed[-1]
     assert found == [None]
     before = state()
-    result = session.project.result_folder(name)
-    result.mkdir(parents=True)
-    stored = {"status": {"value": "converged"}, "cof": {"value": 0.3},
-              "provenance": {"case_hash": "a", "created": "now"}}  # fmt: skip
-    (result / "result.json").write_text(json.dumps(stored))
+    computed(session, name)
     assert session.project.summary(name) is not None
     assert state() == before
     path.write_text(whole, encoding="utf-8")
@@ -701,7 +742,7 @@ def test_an_answer_is_computed_once_at_a_time(tmp_path, about, function, state, 
     assert shown(page.show, look) is free
 
 
-@pytest.mark.parametrize("count", [1, MOST_SHOWN, MOST_SHOWN + 3])
+@pytest.mark.parametrize("count", [0, 1, MOST_SHOWN, MOST_SHOWN + 3])
 def test_jobs_that_compute_come_first_and_of_many_the_rest_is_counted(tmp_path, count):
     session = session_of(tmp_path)
     tasks = [session.submit(f"job {k}", RUN, about="") for k in range(count)]
