@@ -7,11 +7,13 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.stats import halfnorm, norm
 
 from underfoot.core import InputError
 from underfoot.explore import proposals, study, study_file
 from underfoot.explore.computing import crashed
-from underfoot.explore.inputs import Choice, Range, read_joint_draws
+from underfoot.explore.inputs import TAIL, Choice, Range, read_joint_draws
+from underfoot.explore.posterior import DISCREPANCY, _log_density
 from underfoot.explore.record import Ending, Job
 from underfoot.explore.study_file import _Reader
 from underfoot.explore.surrogate import featured
@@ -152,3 +154,26 @@ def test_the_base_of_a_study_has_the_catalogue_that_is_given_else_that_beside_it
     reader = _Reader('base = "cases/own.toml"', None)
     assert reader.base(Path("studies"), cast(Any, given)) == "case"
     assert loaded == [(Path("studies/cases/own.toml"), given or "beside cases")]
+
+
+def test_a_posterior_is_the_prior_by_the_normal_likelihood_of_its_readings():
+    """Three variances add: of the reading, of its surrogate, of the model's discrepancy."""
+    models = [
+        SimpleNamespace(predicted=lambda at: (1.0 + at[:, 0], 0.1 + 0.2 * at[:, 1])),
+        SimpleNamespace(predicted=lambda at: (5.0 * at[:, 1], np.full(len(at), 0.3))),
+    ]
+    readings = [SimpleNamespace(value=1.4, sd=0.05), SimpleNamespace(value=3.0, sd=0.4)]
+    places = np.random.default_rng(4).uniform(0.02, 0.98, (50, 3))
+    expected = np.zeros(50)
+    within = TAIL + (1 - 2 * TAIL) * places[:, 2]  # as of every input, without its outermost
+    delta = halfnorm.ppf(within, scale=DISCREPANCY)
+    for model, reading in zip(models, readings, strict=True):
+        mean, error = model.predicted(places[:, :2])
+        spread = np.sqrt(reading.sd**2 + error**2 + (delta * mean) ** 2)
+        expected += norm.logpdf(reading.value, mean, spread)
+    told = _log_density(places, cast(Any, models), cast(Any, readings))
+    assert np.ptp(told - expected) < 1e-9
+    outside = places[:6].copy()
+    outside[[0, 1, 2], [0, 1, 2]] = -0.1
+    outside[[3, 4, 5], [0, 1, 2]] = 1.1
+    assert (_log_density(outside, cast(Any, models), cast(Any, readings)) == -np.inf).all()
