@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.questions.wear import WearSeries, trends, worn_cases
+from underfoot.core import InputError
+from underfoot.questions.walked import WornPair
+from underfoot.questions.wear import WearSeries, trends, wear_series, worn_cases
 from underfoot.questions.wear_limit import Crossing, WearPoint, first_exceeding, limit_crossing
 from underfoot.report.question_figures import wear_figure
 from underfoot.shoe.worn import WearMeasures
@@ -68,6 +70,8 @@ def test_not_passed_and_passed_when_new_are_said_so():
     assert never.share == 0.0
     assert never.at["removed_depth"] == math.inf
     assert never.at["tread_left"] == -math.inf
+    two = limit_crossing(states([1, 2]), "fluid_load", 5.0, draws=10, seed=0)
+    assert (two.at["removed_depth"], two.at["tread_left"]) == (math.inf, -math.inf)
     always = limit_crossing(states([9, 9, 9]), "fluid_load", 5.0, draws=10, seed=0)
     assert always.crossing is Crossing.FROM_NEW
     assert always.at["removed_depth"] == 0.0
@@ -171,5 +175,23 @@ def test_the_last_state_is_drawn_in_curve_and_table_and_gives_the_verdict():
     friction = wear_figure(series).axes[2]
     drawn = np.concatenate([line.get_ydata() for line in friction.get_lines()])
     assert 0.047 in drawn
+    place, bare = friction.get_lines()[-1].get_data()  # the open mark of the sole without tread
+    assert (place[-1], bare[-1]) == pytest.approx((2.0, 0.047))
     assert len(series.table().rows) == 4
     assert "0.047" in series.table().rows[-1]
+
+
+@pytest.mark.parametrize(("lost", "refused"), [(1.9e-3, False), (2.1e-3, True)])
+def test_a_pair_worn_beyond_the_series_is_refused_and_one_within_it_is_not(
+    monkeypatch, lost, refused
+):
+    class Begun(Exception):
+        pass
+
+    def begun(*_, **__):
+        raise Begun
+
+    monkeypatch.setattr("underfoot.questions.wear.outcomes", begun)
+    case = Case.load(OUTSOLES / "heel_hexagons_glycerol.toml")
+    with pytest.raises(InputError if refused else Begun):
+        wear_series(case, mode="plane", steps=4, deepest=2e-3, pair=WornPair(lost, 1e6), band=False)

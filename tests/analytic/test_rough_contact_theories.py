@@ -206,6 +206,7 @@ def test_theories_share_one_result_and_say_what_they_do_not_give():
         assert result.real_contact_fraction.shape == result.pressure.shape
         assert result.source
     assert persson([10.0], q, c, 2e6).status is Status.OUT_OF_RANGE
+    assert greenwood_williamson([2e3, 4e3], band, 2e6).status is Status.CONVERGED
     assert greenwood_williamson([5e5], band, 2e6).status is Status.OUT_OF_RANGE
 
 

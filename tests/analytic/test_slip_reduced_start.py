@@ -8,7 +8,13 @@ import pytest
 
 from underfoot.rough_contact import ExponentialLaw
 from underfoot.slip.dynamics._kernels import reduced as kernel
-from underfoot.slip.dynamics.reduced_model import SIGNED, _area_constants, _bounds, _gap_decay
+from underfoot.slip.dynamics.reduced_model import (
+    NAMES,
+    SIGNED,
+    _area_constants,
+    _bounds,
+    _gap_decay,
+)
 
 
 @pytest.mark.parametrize("growth", [-4.0, 0.0, 6.0])
@@ -43,3 +49,8 @@ def test_a_fit_begins_inside_its_bounds_and_only_what_has_a_sign_may_turn_it():
     signed = np.isin(np.arange(kernel.COUNT), SIGNED)
     assert np.all(low[~signed] > 0)
     np.testing.assert_array_equal(low[signed], -high[signed])
+
+
+def test_each_constant_of_the_reduced_model_has_a_place_of_its_own():
+    places = [getattr(kernel, name.removesuffix("_film").upper()) for name in NAMES]
+    assert places == list(range(kernel.COUNT))

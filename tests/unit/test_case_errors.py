@@ -54,6 +54,7 @@ def refused(path, value):
         ("shoe.from", "work_sho_half_tread", 'Did you mean "work_shoe_half_tread"?'),
         ("shoe.from", 3, "is no name"),
         ("contaminant.from", "glycerin_90pct", 'Did you mean "glycerol_90pct"?'),
+        ("contaminant.from", "dry", 'A dry floor is contaminant = "none"'),
         ("floor.from", "lava", "unknown floor"),
         ("motion.from", "micro_fe_g1", "setup with motion"),
         ("floor.roughness.rz", "35.1 m", 'Allowed: from 1 nm to 1 mm. Did you mean "35.1 um"?'),

@@ -20,7 +20,7 @@ from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import pool as pool_module
 from underfoot.core import progress as progress_module
 from underfoot.core.pool import answered, in_processes, kill_with
-from underfoot.core.progress import TimeLeft, bar
+from underfoot.core.progress import TimeLeft, bar, part, silent
 
 # A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
 PARENT = """
@@ -312,3 +312,9 @@ def test_workers_are_let_go_when_they_find_nothing_to_do_and_killed_only_where_n
     assert done.index("close b") < done.index("join a")
     assert done.index("join b") == len(done) - 1
     assert pool.workers == []
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.9, 2.0), (0.5, 0.4), (-0.1, 1.0)])
+def test_a_part_of_a_progress_lies_within_it(low, high):
+    with pytest.raises(ValueError, match="no part of a progress"):
+        part(silent, low, high)

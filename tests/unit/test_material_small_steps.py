@@ -11,8 +11,9 @@ from underfoot.material import RelaxationSpectrum, fit_relaxation
 from underfoot.material.decks import _elastic
 from underfoot.material.durometer_scales import SCALES
 from underfoot.material.gent_1958 import shore_a_gent, youngs_modulus_gent
-from underfoot.material.read import _moduli
+from underfoot.material.read import SAME, _held, _moduli
 from underfoot.material.ruess import youngs_modulus_ruess
+from underfoot.material.spectrum_fit import reduced
 from underfoot.material.tables import _is_row
 
 FREQUENCY = np.geomspace(0.1, 1e3, 9)
@@ -115,3 +116,19 @@ def test_a_fit_is_believed_between_the_ends_of_its_test():
 )  # fmt: skip
 def test_a_row_holds_at_least_as_many_numbers_as_words(cells, row):
     assert _is_row(cells) == row
+
+
+def test_fewer_terms_reach_half_a_decade_beyond_what_they_follow():
+    times = np.geomspace(1e-6, 1e6, 49)
+    every = RelaxationSpectrum(1e6, 1e6 * times**-0.1, times)  # loss at every rate
+    few = reduced(every, (0.1, 1e3), terms_per_decade=2).spectrum.relaxation_times
+    assert few.min() == pytest.approx(1 / (1e3 * 10**0.5))
+    assert few.max() == pytest.approx(10**0.5 / 0.1)
+
+
+@pytest.mark.parametrize(("rise", "tests"), [(0.1, 1), (0.8 * SAME, 5), (4 * SAME, 5)])
+def test_sweeps_on_a_slow_ramp_are_tests_of_their_own(rise, tests):
+    """Five sweeps, each ``rise`` (K) warmer: one temperature, a slow ramp, steps."""
+    sweep = np.geomspace(0.1, 10, 6)
+    kelvin = 293 + rise * np.repeat(np.arange(5), sweep.size)
+    assert len(_held(np.tile(sweep, 5), kelvin)) == tests

@@ -64,3 +64,11 @@ def test_one_strain_that_a_machine_hardly_holds_or_that_follows_the_frequency_is
 ):
     sweeps = read_dynamic(strain_sweep(tmp_path / "a.csv", strains, repeated))
     assert [round(sweep.temperature or 0.0, 2) for sweep in sweeps] == [273.15, 293.15, 313.15]
+
+
+def test_one_frequency_that_a_machine_hardly_holds_is_no_sweep(tmp_path):
+    rows = [f"{20 + k},{10 + 0.002 * (-1) ** k},{5 - 0.1 * k},0.5" for k in range(6)]
+    path = tmp_path / "ramp.csv"
+    path.write_text("\n".join(["T (°C),f (Hz),E' (MPa),E'' (MPa)", *rows]))
+    with pytest.raises(DataError, match="one frequency, 10 Hz, in all 6 rows"):
+        read_dynamic(path)

@@ -4,19 +4,24 @@ import dataclasses
 import math
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from underfoot.compute import summary
 from underfoot.core import InputError, Remark, SourcedValue, Status
 from underfoot.core.presentation import value_text
 from underfoot.questions.changes import Change
+from underfoot.questions.comparison import ComparedQuantity, Comparison, _reasons
 from underfoot.questions.effects import ChangeEffect
+from underfoot.questions.order import Order
 from underfoot.questions.outcomes import Outcome
 from underfoot.questions.risk import ModelRisk, RiskAssessment
 from underfoot.questions.sensitivity import QUANTITIES, Effect, Sensitivity
 from underfoot.questions.wear import WearSeries, deepest_wear, limit_load
 from underfoot.questions.wear_limit import Crossing, LimitCrossing, WearPoint
+from underfoot.report.question_figures import sensitivity_figure
 from underfoot.shoe.worn import WearMeasures
 
 
@@ -232,6 +237,8 @@ def test_a_sensitivity_names_the_most_effective_input_and_the_spread_it_gives():
     assert found.tables()[1].rows[2][3] == "not computed"
     assert len(found.data_tables()["sensitivity"].rows) == 3 * len(QUANTITIES)
     assert Sensitivity(FAILED, ()).tables() == ()
+    rows = [label.get_text() for label in sensitivity_figure(found).axes[0].get_yticklabels()]
+    assert [row.partition("\n")[0] for row in rows] == ["c", "b", "a"]  # the strongest on top
 
 
 def series(cofs, crossing=Crossing.WITHIN, variants=()):
@@ -267,6 +274,10 @@ def test_wear_says_when_the_limit_is_exceeded_and_when_friction_rises():
     bare = dataclasses.replace(found, untreaded=outcome(0.05))
     assert "0.050 with the tread gone" in bare.headline()[2]
     assert not any("rises" in caution for caution in bare.cautions())
+    falling = dataclasses.replace(series([0.12, 0.11, 0.10]), untreaded=outcome(0.05))
+    assert falling.headline()[2] == (
+        "COF 0.120 new and 0.100 at the last state; 0.050 if that sole had no tread at all."
+    )
     assert not any("rises" in caution for caution in series([0.12, 0.11, 0.10]).cautions())
     assert not any("rises" in caution for caution in series([0.100, 0.104]).cautions())
     assert "No result for state 1" in " ".join(series([0.1, None, 0.1]).cautions())
@@ -342,3 +353,27 @@ def test_breaches_begin_with_what_their_model_is_for():
     assert pair.startswith("The friction of this sole on this floor: speed 5 m/s")
     assert "pair:" not in pair
     assert own == "mine: a is outside b"
+
+
+@pytest.mark.parametrize(("letters", "begins"), [("AB", "higher"), ("ABC", "B higher")])
+def test_a_table_names_what_an_order_is_of_where_there_are_more_than_two(letters, begins):
+    values = tuple(SourcedValue(0.2) for _ in letters)
+    compared = ComparedQuantity("cof", "COF", values, {"B": Order(0.9, 0.0)})
+    results = tuple(SimpleNamespace(name=letter) for letter in letters)
+    table = Comparison(cast(Any, results), (), (compared,), (), ()).table()
+    assert table.rows[0][-1].startswith(begins)
+
+
+@pytest.mark.parametrize("versions", [("0.3", "0.3"), ("0.3", "0.4")])
+def test_results_of_two_versions_are_told(versions):
+    results = [
+        SimpleNamespace(
+            data={"x": SimpleNamespace(values=np.arange(4))},
+            provenance=SimpleNamespace(versions={"underfoot": version}),
+            status=Status.CONVERGED,
+            breaches=(),
+        )
+        for version in versions
+    ]
+    told = any("different versions" in reason for reason in _reasons(cast(Any, results)))
+    assert told == (versions[0] != versions[1])

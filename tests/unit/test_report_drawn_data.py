@@ -7,12 +7,16 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from underfoot.case import load
-from underfoot.report import design_study, live_study, sole_mesh
+from underfoot.explore.record import Ending
+from underfoot.report import chart, compound, design_study, live_study, slips, sole_mesh
 from underfoot.report.design_study import _centre, slices_figure
 from underfoot.report.question_figures import wear_figure
-from underfoot.report.thumbnail import _drawn
+from underfoot.report.solver_input import with_middle_nodes
+from underfoot.report.thumbnail import CELLS, _drawn
+from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -151,6 +155,7 @@ def test_a_picture_of_a_heel_is_as_long_as_wide_as_the_heel_and_darker_where_it_
     wide, high = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', picture).groups())
     heel = case.shoe.heel
     assert wide / high == pytest.approx(heel.length / heel.widest, rel=0.05)
+    assert 0.85 * CELLS < wide <= CELLS
     plan, land = re.findall(r' d="([^"]*)"', picture)
     cells = [sum(int(length) for length in re.findall(r"h(\d+)", path)) for path in (plan, land)]
     assert 0.1 < cells[1] / cells[0] < 0.9  # channels are left out
@@ -176,3 +181,113 @@ def test_corners_of_drawn_cells_lie_on_the_plane_of_their_middles_and_no_step_is
         beside = 3 if step_x else 4  # the last of the land, the first of the channel
         exact = 1e-5 * (2 * beside - (y[0] + step_y - 0.5))
         np.testing.assert_allclose(apart[beside, 1:-1, number], exact[1:-1], atol=1e-12)
+
+
+def test_a_prism_of_second_order_has_its_middle_nodes_in_the_order_of_the_solvers():
+    """Of C3D15: 7 to 9 between the nodes below, 10 to 12 between those above, 13 to 15 upright."""
+    corners = np.random.default_rng(5).uniform(size=(6, 3))
+    nodes, prisms, triangles = with_middle_nodes(
+        corners, np.arange(6)[None, :], np.array([[0, 1, 2]])
+    )
+    pairs = [(1, 2), (2, 3), (3, 1), (4, 5), (5, 6), (6, 4), (1, 4), (2, 5), (3, 6)]
+    between = [(corners[a - 1] + corners[b - 1]) / 2 for a, b in pairs]
+    np.testing.assert_allclose(nodes[prisms[0, 6:]], between)
+    np.testing.assert_allclose(nodes[triangles[0, 3:]], between[:3])
+    assert len(nodes) == 15
+
+
+@pytest.mark.parametrize("highest", [2.0, 200.0])
+def test_a_pressure_at_a_sensor_is_drawn_whole(monkeypatch, highest):
+    time = np.linspace(0, 0.1, 11)
+    pulse = 1e3 * highest * np.sin(np.pi * time / 0.1)[:, None, None] * np.ones((1, 2, 3))
+    monkeypatch.setattr(slips, "array_pressures", lambda *_: pulse)
+    study = SimpleNamespace(
+        representative=SimpleNamespace(maps=None), array=SimpleNamespace(rows=2, columns=3)
+    )
+    figure = Figure()
+    slips._draw_pressures(
+        figure.subfigures(), cast(Any, study), cast(Any, SimpleNamespace(time=time))
+    )
+    for axes in figure.subfigs[0].axes:
+        low, high = axes.get_ylim()
+        assert low == 0
+        assert high >= 1.1 * highest
+
+
+def test_a_sweep_is_drawn_over_hertz_with_the_line_of_its_fit():
+    hertz = np.array([0.1, 1.0, 10.0])
+    storage, loss = np.array([2e6, 3e6, 5e6]), np.array([2e5, 6e5, 2e6])
+    band = SimpleNamespace(loss_low=np.ones(200), loss_high=np.ones(200))
+    spectrum = SimpleNamespace(
+        storage_modulus=lambda w: 1e6 * w, loss_modulus=lambda w: 1e5 * w, loss_tangent=np.sqrt
+    )
+    shown = SimpleNamespace(
+        sweep=SimpleNamespace(
+            angular_frequency=2 * np.pi * hertz, storage_modulus=storage, loss_modulus=loss
+        ),
+        fit=SimpleNamespace(band=lambda _: band, spectrum=spectrum),
+    )
+    left, right = compound._sweep(cast(Any, shown)).axes
+    for line, megapascals in zip(left.lines[:2], (storage / 1e6, loss / 1e6), strict=True):
+        np.testing.assert_allclose(line.get_data(), (hertz, megapascals))
+    np.testing.assert_allclose(right.lines[0].get_data(), (hertz, loss / storage))
+    x, y = left.lines[2].get_data()
+    np.testing.assert_allclose(y, 2 * np.pi * x)
+
+
+@pytest.mark.parametrize(
+    ("goals", "title"), [(0, "Designs"), (1, "Best designs, as run"), (2, "Front, as run")]
+)
+def test_a_live_page_shows_the_best_designs_or_the_first_without_a_goal(goals, title):
+    live = SimpleNamespace(
+        plan=SimpleNamespace(goals=["cof"] * goals),
+        shown=["first"], front=["front"], best=lambda _: ["best"],
+        design_table=lambda designs, title: (designs, title),
+    )  # fmt: skip
+    designs, said = live_study.LiveStudy.table(cast(Any, live))
+    assert (designs, said) == ([("first", "best", "front")[goals]], title)
+
+
+def test_a_run_has_ended_with_all_its_numbers_or_where_it_can_not_have_them():
+    order = [Ending.OPEN, Ending.COMPUTED, Ending.NOT_CONVERGED, Ending.FAILED]
+    number = {ending: list(Ending).index(ending) for ending in order}
+    waiting, computed, lost, failed = (number[ending] for ending in order)
+    runs = np.array(
+        [[computed] * 2, [waiting, computed], [lost, waiting], [waiting] * 2, [computed, failed]]
+    )
+    ended = live_study.LiveStudy.ended_runs.func(cast(Any, SimpleNamespace(_endings_of_runs=runs)))
+    assert ended == [0, 2, 4]
+
+
+def test_a_line_runs_from_the_corner_of_its_axes_to_the_highest_number():
+    svg = chart.line_chart([0, 1, 2], [("friction", [0.0, 0.5, 1.0])], "time", "COF")
+    points = re.search(r'points="([^"]*)"', svg)
+    assert points is not None
+    ends = [tuple(map(float, place.split(","))) for place in points[1].split()]
+    left, right = chart.LEFT, chart.WIDTH - 10
+    low, high = chart.HEIGHT - chart.BOTTOM, chart.TOP
+    assert ends == [(left, low), ((left + right) / 2, (low + high) / 2), (right, high)]
+
+
+def test_a_moving_picture_of_a_slip_holds_its_numbers_in_their_units(monkeypatch):
+    time = np.linspace(0, 0.2, 21)
+    motion = SimpleNamespace(
+        time=time, walker=None, speed=2 * time, distance=time**2,
+        **dict.fromkeys(("normal", "fluid_load", "friction", "drive"), 100 * time),
+        shoe_angle=0 * time,
+    )  # fmt: skip
+    run = SimpleNamespace(
+        profile_x=np.array([0.0, 0.01]), profiles=np.full((21, 2), 15e-6),
+        maps=np.full((21, MAP_X.size, MAP_Y.size), 3e4),
+    )  # fmt: skip
+    study = SimpleNamespace(
+        representative=run, array=SimpleNamespace(places=lambda _: (np.array([0.1]), None)),
+        setting=SimpleNamespace(viscosity=0.2, settings=SimpleNamespace(pool_depth=1e-3)),
+    )  # fmt: skip
+    monkeypatch.setattr(slips, "shown_motion", lambda _: motion)
+    data = slips.animation_data(cast(Any, study))
+    assert data["highest"] == 30.0  # kPa
+    assert np.unique(data["pressures"]).tolist() == [30.0]
+    assert np.unique(data["films"]).tolist() == [15.0]  # um
+    assert data["pool"] == pytest.approx(1000.0)
+    assert (data["speed"][-1], data["normal"][-1]) == pytest.approx((0.4, 20.0))

@@ -7,6 +7,7 @@ import pytest
 import xarray
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.contour import QuadContourSet
 
 from underfoot.core import SourcedValue, Status
 from underfoot.core.fields import Fields, from_xarray
@@ -56,6 +57,18 @@ def test_a_field_that_is_not_known_is_drawn_by_its_own_labels():
     assert list(found)[:4] == ["contact_pressure", "fluid_pressure", "film_thickness", "warmth"]
     assert list(found)[-1] == "clearance"
     assert "inside" not in found
+
+
+def test_a_map_shows_its_lugs_where_they_are():
+    place = np.linspace(-24.5e-3, 24.5e-3, 50)
+    land = np.broadcast_to(np.abs(place[:, None]) < 5e-3, (50, 50)) * 1.0
+    lugs = sole(1e-3, land=(land, "1", "land"))
+    (pressure,) = [each for each in quantities([lugs]) if each.name == "contact_pressure"]
+    axes = map_figure(lugs, pressure).axes[0]
+    (lines,) = [each for each in axes.collections if isinstance(each, QuadContourSet)]
+    edges = np.concatenate([path.vertices for path in lines.get_paths()])
+    assert np.abs(edges[:, 1]) == pytest.approx(np.full(len(edges), 5.0))  # along the sole, mm
+    assert (edges[:, 0].min(), edges[:, 0].max()) == pytest.approx((-24.5, 24.5))
 
 
 def test_only_what_all_results_hold_is_compared():

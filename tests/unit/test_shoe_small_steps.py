@@ -11,14 +11,16 @@ from underfoot.core import DataError, InputError
 from underfoot.shoe._kernels.arcs import biarc
 from underfoot.shoe._kernels.covering_discs import channel_width
 from underfoot.shoe._kernels.elements import _number
-from underfoot.shoe.files import edges
-from underfoot.shoe.files.mesh import _check
+from underfoot.shoe._kernels.regions import across_channels
+from underfoot.shoe.files import FileSettings, edges, outsole
+from underfoot.shoe.files.mesh import Mesh, _check
 from underfoot.shoe.files.threemf import _Object, _Package, _Volume
 from underfoot.shoe.files.view import without_copies
 from underfoot.shoe.grids import cut_heel
 from underfoot.shoe.parametric import solid
 from underfoot.shoe.parametric.sole import ShoeOutline
 from underfoot.shoe.tread_measures import LUG_REACH, _without_ends
+from underfoot.shoe.worn.surface import _Extent
 
 
 @pytest.mark.parametrize(
@@ -237,3 +239,44 @@ def test_a_triangle_is_the_same_whichever_corner_comes_first():
     other = corners + np.array([0, 0, 1e-4], np.float32)
     soup = np.concatenate([[corners[list(order)] for order in orders], [other, other[::-1]]])
     np.testing.assert_array_equal(without_copies(soup), [soup[0], other])
+
+
+def test_land_beside_a_channel_tells_the_land_across_it_not_along_a_diagonal():
+    y = np.arange(20.0)
+    height = np.broadcast_to(y**2, (16, 20)).copy()
+    land = np.ones((16, 20), dtype=bool)
+    land[6:10] = False  # a channel across the rise of its land
+    across = across_channels(height, land)
+    np.testing.assert_allclose(across[7, 3:-3], y[3:-3] ** 2)
+    assert np.isnan(across_channels(height, land & (np.arange(16) < 8)[:, None])[12, 10])
+
+
+def test_the_rim_of_a_height_map_belongs_to_it_and_nothing_beyond_does():
+    x, y = 1e-3 * np.arange(5), 1e-3 * np.arange(-3, 4)
+    surface = SimpleNamespace(x=x, y=y, spacing=1e-3, inside=np.ones((5, 7), dtype=bool))
+    extent = _Extent(cast(Any, surface), np.zeros((5, 7)))
+    for ends, along in ((x, True), (y, False)):
+        for place, inward in (
+            (ends[0], 1), (ends[-1], 1), (ends[0] - 1e-3, -1), (ends[-1] + 1e-3, -1),
+        ):  # fmt: skip
+            at = (place, 0.0) if along else (2e-3, place)
+            assert extent.inward_distance(*map(np.array, at)) == inward
+
+
+@pytest.mark.parametrize(
+    ("feet", "left"), [(("left", "right"), 0), (("right", "left"), 1), ((None, None), None)]
+)
+def test_of_a_pair_the_shoe_of_the_side_asked_for_is_read(monkeypatch, feet, left):
+    shoes = [SimpleNamespace(foot=foot) for foot in feet]
+    pair = SimpleNamespace(meshes=[0, 1], remarks=[])
+    monkeypatch.setattr(outsole, "soundness", lambda *_: None)
+    monkeypatch.setattr(outsole, "check_surface", lambda *_: None)
+    monkeypatch.setattr(outsole, "found_outsole", lambda *_: pair)
+    monkeypatch.setattr(outsole, "_outsole", lambda mesh, *_: shoes[mesh])
+    mesh = Mesh(np.zeros((1, 3, 3)), "STL")
+    chosen = FileSettings(side="left")
+    if left is None:
+        with pytest.raises(DataError, match="not determined and not determined"):
+            outsole.outsole_from_mesh(mesh, chosen)
+    else:
+        assert outsole.outsole_from_mesh(mesh, chosen) is shoes[left]

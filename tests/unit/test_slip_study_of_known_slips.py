@@ -11,7 +11,8 @@ from slip_floors import slippery_sole
 from underfoot.core import InputError, Status
 from underfoot.slip.dynamics import FloorSensors, Population, Spread
 from underfoot.slip.dynamics import study as module
-from underfoot.slip.dynamics.full_model import FullRun
+from underfoot.slip.dynamics.full_model import FullRun, pressed_area
+from underfoot.slip.dynamics.reduced_model import at_bounds
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y, PressureShape, pressure_shape
 
 ANGLE = 0.15
@@ -105,3 +106,30 @@ def test_people_hold_their_shoe_angle_unless_the_recorded_fall_is_asked_for():
 def test_a_spread_without_a_finite_mean_and_width_is_refused(numbers):
     with pytest.raises(InputError):
         Spread(*numbers)
+
+
+def test_the_highest_reading_is_told_beside_the_highest_pressure_of_the_film():
+    none = SimpleNamespace(maps=np.zeros(3), peaks=np.zeros(3))
+    runs = [
+        SimpleNamespace(maps=np.array([0.0, reading]), peaks=np.array([0.0, 2e5]))
+        for reading in (1e5, 0.5e5, 1.5e5)
+    ]
+    for full, representative, share in (
+        ([none, *runs], None, 0.5), ([], runs[1], 0.25), ([none], None, None),
+    ):  # fmt: skip
+        study = SimpleNamespace(full_runs=full, representative=representative)
+        assert module.SlipStudy.highest_seen(cast(Any, study)) == share
+
+
+def test_an_even_pressure_presses_on_its_area_and_half_of_a_load_on_less():
+    even = np.zeros((6, 5))
+    even[1:4, 2:4] = 3e5
+    assert pressed_area(even, even, 2e-3) == pytest.approx(6 * 4e-6)
+    assert pressed_area(0.5 * even, even, 2e-3) == pytest.approx(3 * 4e-6)  # cells half covered
+    assert pressed_area(0 * even, even, 2e-3) == 0.0
+
+
+def test_a_constant_that_a_fit_drives_to_its_bound_is_stuck():
+    lows, highs = np.array([0.0, 0.0, 0.0, -1.0]), np.array([10.0, 10.0, 10.0, 1.0])
+    stuck = at_bounds(np.array([0.001, 5.0, 9.995, 0.0]), lows, highs)
+    assert stuck.tolist() == [True, False, True, False]

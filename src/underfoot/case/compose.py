@@ -133,6 +133,8 @@ def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: 
     try:
         entry = catalogue.entry(kind, name, where=where)
     except InputError as error:
+        if section == "contaminant":
+            error.remedy = 'A dry floor is contaminant = "none"'
         composition.errors.append(error)
         composition.failed.append(section)
         return

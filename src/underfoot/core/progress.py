@@ -31,7 +31,12 @@ def part(progress: Progress, low: float, high: float, name: str = "") -> Progres
     """Return a receiver whose 0 to 1 is ``low`` to ``high`` of ``progress``.
 
     ``name`` stands in place of the names of its stages.
+
+    Raises:
+        ValueError: Not 0 <= ``low`` <= ``high`` <= 1 (to rounding).
     """
+    if not -1e-9 <= low <= high + 1e-9 <= 1 + 2e-9:
+        raise ValueError(f"{low:g} to {high:g} is no part of a progress")
 
     def report(stage: str, fraction: float, residual: float | None = None) -> None:
         progress(name or stage, low + (high - low) * fraction, residual)

@@ -196,6 +196,16 @@ def full_runs(
     ]
 
 
+def pressed_area(load: Array, pressure: Array, spacing: float) -> float:
+    """Return the area (m^2) that would bear a sole's load evenly at its mean pressure.
+
+    The mean is over the load: ``load`` (Pa, per area of a whole cell of ``spacing`` m) weights
+    ``pressure`` (Pa); 0 of no load.
+    """
+    square = float((load * pressure).sum())
+    return float(load.sum()) ** 2 / square * spacing**2 if square > 0 else 0.0
+
+
 def _computed(
     setting: Setting, walker: Walker, inlet: float, step: float, progress: Progress
 ) -> FullRun:
@@ -209,9 +219,7 @@ def _computed(
         assert isinstance(instant, SoleInstant)
         state = instant.state
         maps.append(sensor_map(state, inlet).astype(np.float32))
-        load = state.cell_load
-        square = float((load * state.total_pressure).sum())
-        areas.append(float(load.sum()) ** 2 / square * state.spacing**2 if square > 0 else 0.0)
+        areas.append(pressed_area(state.cell_load, state.total_pressure, state.spacing))
         peaks.append(float(state.fluid_pressure.max()))
         profiles.append(state.film_thickness[:, line].astype(np.float32))
         extremes[0] = max(extremes[0], float(state.contact_pressure.max()))

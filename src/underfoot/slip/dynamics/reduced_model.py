@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from underfoot.core import InputError, Progress, Status, silent
-from underfoot.core.arrays import Array
+from underfoot.core.arrays import Array, Mask
 from underfoot.friction import FrictionLaw
 from underfoot.trials.walking.slips import SlipDefinition
 
@@ -430,12 +430,13 @@ def fitted_reduced(
         constants=constants(best.x),
         fitted=FittedRange.of(setting.viscosity, [*runs, *held_out]),
     )
-    stuck = tuple(
-        NAMES[i]
-        for i, z, a, b in zip(free, best.x, lows, highs, strict=True)
-        if min(z - a, b - z) < 1e-3 * (b - a)
-    )
+    stuck = tuple(NAMES[i] for i, s in zip(free, at_bounds(best.x, lows, highs), strict=True) if s)
     return ReducedFit(sole, error_of(sole, runs), error_of(sole, held_out), stuck)
+
+
+def at_bounds(values: Array, lows: Array, highs: Array) -> Mask:
+    """Return which values (n,) lie within a thousandth of their range of either bound (n,)."""
+    return np.minimum(values - lows, highs - values) < 1e-3 * (highs - lows)
 
 
 def error_of(sole: ReducedSole, runs: Sequence[SlipMotion]) -> FitError:

@@ -94,7 +94,8 @@ def _work_of_waves(pickled: bytes) -> tuple[Array, Array]:
     weighted = sp.csr_matrix(pressed.multiply(area[:, None]))
     right = np.ascontiguousarray((rise.T @ weighted).toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
-    work = right.T @ factors.solve(right)
+    # by what rises at the floor: a hundredth of the time of right.T @ solution
+    work = weighted.T @ (rise @ factors.solve(right))
     return 0.5 * (work + work.T), (pressed.T @ weighted).toarray()
 
 
@@ -140,13 +141,11 @@ def _stiffness(
     dot = np.trace(product, axis1=2, axis2=4)
     for axis in range(3):
         total[:, :, axis, :, axis] += dot
-    unknowns = (3 * numbers[:, :, None] + np.arange(3)).reshape(len(elements), 60)
-    free = np.repeat(numbers >= 0, 3, axis=1)
-    rows = np.repeat(unknowns, 60, axis=1).ravel()
-    columns = np.tile(unknowns, (1, 60)).ravel()
-    kept = (free[:, :, None] & free[:, None, :]).ravel()
+    unknowns = (3 * numbers[:, :, None] + np.arange(3)).reshape(-1, 60).astype(np.int32)
+    rows, columns = np.broadcast_arrays(unknowns[:, :, None], unknowns[:, None, :])
+    kept = (rows >= 0) & (columns >= 0)
     size = 3 * (int(number.max()) + 1)
-    values = total.reshape(-1)[kept]
+    values = total.reshape(kept.shape)[kept]
     matrix = sp.csr_matrix((values, (rows[kept], columns[kept])), (size, size))
     matrix.sort_indices()
     return matrix
