@@ -7,9 +7,15 @@ import numpy as np
 import pytest
 
 from underfoot.block._kernels import names
-from underfoot.block.assembly import critical_time_step, impact_friction
+from underfoot.block.assembly import (
+    SINKING,
+    ExplicitSettings,
+    assembled,
+    critical_time_step,
+    impact_friction,
+)
 from underfoot.block.inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
-from underfoot.block.march import COLUMNS, BlockMarch, loaded_state, saved_state
+from underfoot.block.march import COLUMNS, BlockMarch, _edges, loaded_state, saved_state
 from underfoot.block.mesh import block_mesh
 from underfoot.block.one_term_fit import fit_single_exponential
 from underfoot.block.prony_march import prony_step
@@ -63,6 +69,16 @@ def test_heights_of_floors_are_those_of_their_names():
     )
 
 
+def test_a_wave_is_a_cosine_to_the_last_digits():
+    """Also in the middle of an eighth turn, where each term of its series counts most."""
+    x = WAVE * np.linspace(-1.5, 1.5, 601)
+    height, slope, across = FLOORS["wave"].height_and_slope(x, 0.0)
+    turn = 2 * np.pi / WAVE
+    np.testing.assert_allclose(height, 10e-6 * np.cos(turn * x), atol=1e-14 * 10e-6)
+    np.testing.assert_allclose(slope, -10e-6 * turn * np.sin(turn * x), atol=1e-14 * 10e-6 * turn)
+    assert not across.any()
+
+
 @pytest.mark.parametrize("ratio", [0.2, 0.45, 0.499])
 def test_a_material_of_a_poisson_ratio_has_it(ratio):
     shear = single_exponential_spectrum(3e6, 1e6, 100.0, source="made up")
@@ -103,6 +119,47 @@ def test_the_area_at_the_rim_of_contact_is_its_length_times_a_share_of_an_elemen
     for periodic in (True, False):
         rim = edge_excess_area(strip, dx, dy, periodic=periodic)
         assert rim == pytest.approx(EDGE_EXCESS * 2 * 8 * dy * np.sqrt(dx * dy))
+
+
+@pytest.mark.parametrize("sides", ["periodic", "free"])
+def test_the_rim_of_a_march_is_that_of_the_nodes_that_touch_by_the_steps_of_its_mesh(sides):
+    """Periodic sides have their nodes twice: the last column and row are the first again."""
+    x, y = 2e-5 * np.arange(7), 1e-5 * np.arange(6)
+    gap = np.ones((6, 7))
+    gap[1:4, 2:6] = -1.0  # 3 rows across of 4 along
+    control = np.zeros(names.CONTROL_SIZE)
+    control[names.PERIODIC] = float(sides == "periodic")
+    arrays: list[Any] = [None] * 12
+    arrays[1], arrays[2], arrays[11] = x, y, gap.reshape(1, -1)
+    march = SimpleNamespace(mesh=SimpleNamespace(shape=(7, 6, 4)), control=control, arrays=arrays)
+    length = 2 * 3 * 1e-5 + 2 * 4 * 2e-5
+    expected = EDGE_EXCESS * length * np.sqrt(2e-5 * 1e-5)
+    assert _edges(cast(Any, march)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("rough", "pressure", "factor"),
+    [(False, 1e5, 0.5), (True, 1e3, 0.5), (True, 2.4e6, 1.0), (True, 1e8, 1.5)],
+)
+def test_the_contact_is_as_stiff_as_the_lowest_layer_where_the_load_asks_no_more(
+    rough, pressure, factor
+):
+    """Springs sink by 0.003 of the roughness: p / (0.003 20 um) is M / h at p = M 60 nm / h.
+
+    M = K + 4/3 G at once; of a layer of 25 um and 1 GPa that is 2.4 MPa.
+    """
+    spectrum = single_exponential_spectrum(1e6, 0.5e6, 100.0, source="made up")
+    fast = spectrum.instantaneous_modulus
+    rubber = MicroMaterial(spectrum, 1e9 - 4 / 3 * fast)
+    size, elements = (0.8e-3, 0.1e-3, 70e-6), (26, 2, 2)
+    block = MicroBlock(size, elements, bottom_layer=25e-6, roughness_layers=2)
+    floor = MicroSurface("wave", 20e-6, WAVE) if rough else MicroSurface()
+    load = MicroLoading(mean_pressure=pressure)
+    made = assembled(block, floor, rubber, load, ExplicitSettings())
+    assert pytest.approx(60e-9) == SINKING * 20e-6
+    assert made.penalty == pytest.approx(factor * 1e9 / 25e-6, rel=1e-9)
+    told = ExplicitSettings(penalty_factor=0.7)
+    assert assembled(block, floor, rubber, load, told).penalty == pytest.approx(0.7e9 / 25e-6)
 
 
 def test_friction_by_impacts_grows_as_the_speed_squared_and_falls_with_pressure():

@@ -57,6 +57,15 @@ def test_what_the_data_do_not_hold_has_no_uncertainty():
     assert "limit" in bound.parameters["a"].reason
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("which", [[0], [5], range(12)])
+def test_data_of_which_any_is_not_finite_are_refused(bad, which):
+    data = np.array(X)
+    data[list(which)] = bad
+    with pytest.raises(DataError, match="finite"):
+        calibrated(lambda v: v["start"] + v["slope"] * X, data, LINE)
+
+
 def test_bad_input():
     with pytest.raises(DataError, match="at least as many"):
         calibrated(lambda v: np.ones(1), [1.0], LINE)

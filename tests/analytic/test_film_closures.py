@@ -157,6 +157,11 @@ def test_wedge_film_carries_the_load():
 def test_wedge_load_factor():
     assert wedge_load_factor(1.189) == pytest.approx(0.02671, abs=5e-6)
     assert wedge_load_factor(1.189) > max(wedge_load_factor(1.15), wedge_load_factor(1.23))
+    for taper in (1e-4, 3e-3, 0.00999, 0.01001, 0.05):
+        terms = [
+            (-1) ** (k + 1) * (1 / k - 2.0 ** (1 - k)) * taper ** (k - 2) for k in range(3, 12)
+        ]
+        assert wedge_load_factor(taper) == pytest.approx(sum(terms), rel=1e-7), taper
     assert wedge_load_factor(0.0099999) == pytest.approx(wedge_load_factor(0.0100001), rel=3e-5)
 
 
@@ -311,6 +316,16 @@ def test_bad_input_names_its_place(call, where):
 def test_anisotropy_beyond_the_table():
     with pytest.raises(RangeError, match="1/9 to 9"):
         patir_cheng_shear_factor(1e-6, 1e-6, anisotropy=20.0)
+
+
+@pytest.mark.parametrize(("gamma", "beyond"), [(9.0, 9.001), (1 / 9, 0.999 / 9)])
+def test_the_table_of_anisotropy_ends_at_nine(gamma, beyond):
+    """A ratio of lengths that is 9 but for rounding is still in it."""
+    for of in (patir_cheng_pressure_factors, patir_cheng_shear_factor):
+        assert np.isfinite(of(3e-6, 1e-6, anisotropy=gamma * (1 + 1e-12))).all()
+        assert np.isfinite(of(3e-6, 1e-6, anisotropy=gamma * (1 - 1e-12))).all()
+        with pytest.raises(RangeError, match="1/9 to 9"):
+            of(3e-6, 1e-6, anisotropy=beyond)
 
 
 def test_patir_cheng_factors_are_linear_in_the_logarithm_of_gamma():

@@ -5,7 +5,7 @@ import pytest
 
 from underfoot.film.face_operator import Conductance, Faces, Inlet, Upwinding, face_operator
 from underfoot.film.operator import Pattern, series_conductance
-from underfoot.film.pressure import _halved
+from underfoot.film.pressure import _finer, _halved
 
 COUNT, VISCOSITY, SPACING = 6, 0.1, 1e-3
 """Two rows of three cells."""
@@ -83,6 +83,20 @@ def test_a_coarse_field_holds_the_means_of_its_cells():
     halves = (field[0] + field[1]) / 2, (field[2] + field[3]) / 2, field[4]
     assert along == pytest.approx(np.array(halves))
     assert both == pytest.approx(np.column_stack([(along[:, 0] + along[:, 1]) / 2, along[:, 2]]))
+
+
+@pytest.mark.parametrize("shape", [(5, 3), (5, 6), (10, 3), (9, 5), (10, 6)])
+def test_a_coarse_field_is_linear_between_its_cells_and_level_in_the_half_at_a_wall(shape):
+    """A coarse cell has the middles of its halves a quarter of it before and after its own."""
+    coarse = 1.0 + 2.0 * np.arange(5)[:, None] - 0.5 * np.arange(3)
+
+    def places(count, size):
+        if count == size:
+            return np.arange(size)
+        return np.clip((np.arange(count) - 0.5) / 2, 0, size - 1)
+
+    x, y = places(shape[0], 5), places(shape[1], 3)
+    assert _finer(coarse, shape) == pytest.approx(1.0 + 2.0 * x[:, None] - 0.5 * y)
 
 
 def test_two_halves_in_series_conduct_as_their_harmonic_mean():

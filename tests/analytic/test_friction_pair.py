@@ -172,6 +172,22 @@ def test_a_file_without_draws_is_refused(tmp_path, damage):
         read_pair_draws(path)
 
 
+@pytest.mark.parametrize(("count", "told"), [(99, "fewer than 100"), (100, ""), (101, "")])
+@pytest.mark.parametrize("bad", ["", "nan", "inf"])
+def test_draws_are_a_hundred_rows_or_more_of_numbers(tmp_path, count, told, bad):
+    path = tmp_path / "draws.csv"
+    packaged_pair_draws().rows(np.arange(count)).write(path)
+    if bad:
+        lines = path.read_text("utf-8").splitlines()
+        lines[-1] = ",".join([bad, *lines[-1].split(",")[1:]])
+        path.write_text("\n".join(lines), "utf-8")
+    if told or bad:
+        with pytest.raises(DataError, match="not finite"):
+            read_pair_draws(path)
+    else:
+        assert read_pair_draws(path).count == count
+
+
 def test_hysteresis_of_a_spectrum_is_near_the_closed_form(tmp_path):
     """A power-law rubber of loss tangent 0.2 on 2 um: theory 0.0224, closed form 0.025."""
     from underfoot.material import power_law_spectrum, youngs_modulus_gent

@@ -6,6 +6,7 @@ import pytest
 from underfoot.core import RangeError
 from underfoot.friction.asperity_scale import self_affine_scale
 from underfoot.friction.law import drawn_value
+from underfoot.friction.pair_contact import even_rows
 from underfoot.friction.sampled_cof import CLASSES, _classes
 
 
@@ -43,3 +44,18 @@ def test_cells_of_one_film_have_a_class_of_that_film():
     wet = np.arange(200) % 3 > 0
     _, gap, *_ = _classes(np.linspace(0, 1e6, 200), np.full(200, 2e-5), wet, np.ones(200))
     np.testing.assert_allclose(gap, 2e-5, rtol=1e-12)
+
+
+@pytest.mark.parametrize("begin", [1e-3, 0.25, 0.5, 0.999])
+@pytest.mark.parametrize("count", [7, 1000])
+def test_rows_are_as_many_as_their_share_of_the_weight_to_within_one(begin, count):
+    """A draw without weight, at either end too, is never taken."""
+    weight = np.random.default_rng(3).exponential(size=400)
+    weight[[0, 1, 50, 398, 399]] = 0.0
+    weight /= weight.sum()
+    rows = even_rows(weight, count, begin)
+    taken = np.bincount(rows, minlength=400)
+    assert taken.sum() == count
+    assert np.abs(taken - count * weight).max() < 1
+    assert not taken[weight == 0].any()
+    assert (even_rows(np.full(10, 0.1), 20, begin) == np.repeat(np.arange(10), 2)).all()

@@ -289,6 +289,7 @@ def test_the_catalogue_lists_kinds_and_own_entries(underfoot, tmp_path):
     (tmp_path / "own" / "a.toml").write_text('[fluid.soup]\ntitle = "Soup"\nviscosity = "5 cP"\n')
     names = json.loads(underfoot("catalogue", "fluid", "--json", "--catalogue", "own").stdout)
     assert "soup" in names["fluid"]
+    assert "5 cP" in underfoot("explain", "soup", "--catalogue", "own").stdout
     wrong = underfoot("catalogue", "liquids")
     assert wrong.exit_code == 2
     assert "Allowed: floor, fluid" in wrong.stderr

@@ -8,9 +8,18 @@ import pytest
 from underfoot.core import InputError
 from underfoot.fluid import BLOCKING, AdhesionBlocking, adhesion_blocking, strobel_breaches
 
+PRINTED = {
+    "water": (4.3263, 0.0531),
+    "detergent 1.5 %": (2.6125, 0.0399),
+    "glycerol 25 %": (2.5707, 0.0822),
+    "glycerol 50 %": (2.8006, 0.1027),
+    "glycerol 75 %": (2.3826, 0.0927),
+    "canola oil": (1.7556, 0.0106),
+}
+
 
 def test_table_5():
-    assert len(BLOCKING) == 6
+    assert {name: (fluid.alpha, fluid.beta) for name, fluid in BLOCKING.items()} == PRINTED
     canola = adhesion_blocking("canola oil")
     np.testing.assert_allclose(canola.lubricated_adhesion([0.0, 10.0]), [1.7556, 1.8616])
     # alpha as a COF at 20.9 N: 0.207 for water, 0.084 for canola oil.

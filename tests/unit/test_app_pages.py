@@ -8,6 +8,7 @@ import tomllib
 from contextlib import nullcontext
 from functools import partial
 from importlib import import_module
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -18,6 +19,7 @@ from nicegui import ui
 from nicegui.testing.user_simulation import user_simulation
 
 from underfoot.app import trials_plots, work, work_sole, work_studies
+from underfoot.app.frame import MOST_SHOWN, _jobs_button
 from underfoot.app.jobs import (
     DONE,
     FAILED,
@@ -35,16 +37,18 @@ from underfoot.app.pages import (
     design,
     measured_file,
     place,
+    repair,
     sole_file,
     studies,
     trials,
 )
 from underfoot.app.pages.trials_trial import TrialView
 from underfoot.app.project import Project
+from underfoot.app.projects import Servers
 from underfoot.app.session import Exchange, Session, problem_parts
 from underfoot.app.text import LANGUAGES, Text
 from underfoot.app.trials_study import STANDARD, Study
-from underfoot.app.variant_bar import new_variant
+from underfoot.app.variant_bar import _rename, new_variant
 from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
 from underfoot.core.page import Section
@@ -52,6 +56,7 @@ from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope
 
 RUN = "underfoot.app.work:computed"
+HEADINGS = {f"h{level}" for level in range(1, 7)}
 
 
 class Here:
@@ -63,9 +68,10 @@ class Here:
 
 
 def session_of(folder, language="en", **query):
-    jobs = Jobs(folder)
+    jobs, text = Jobs(folder), Text(language)
     jobs.live = jobs.reading = cast(Any, Here())
-    return Session(Project(folder), jobs, Text(language), query, Exchange(), PAGES)
+    project, elsewhere = Project(folder), Servers()
+    return Session(project, jobs, text, query, Exchange(), PAGES, elsewhere=elsewhere)
 
 
 def shown(build, look):
@@ -101,11 +107,16 @@ def test_every_page_opens_with_a_heading_with_and_without_a_variant(tmp_path, ca
             new_variant(session, "shoe", shoe="work_shoe_half_tread", contaminant="detergent")
 
         def heads(elements):
-            return [each.tag for each in elements if each.tag in ("h1", "h2")]
+            heard = [kind.type for each in elements for kind in each._event_listeners.values()]
+            assert all(isinstance(each, str) for each in heard)
+            return [int(each.tag[1]) for each in elements if each.tag in HEADINGS]
 
         # a page of one variant asks for one where there is none
         asks = not variants and page.route in ("/design", "/answer")
-        assert bool(shown(partial(page.build, session), heads)) is not asks
+        levels = shown(partial(page.build, session), heads)
+        assert bool(levels) is not asks
+        # no level is left out, for who walks through a page by its headings
+        assert all(to <= above + 1 for above, to in pairwise([0, *levels]))
     assert not [each for each in caplog.records if each.levelname == "ERROR"]
 
 
@@ -634,3 +645,197 @@ def test_looks_at_a_study_are_put_off_by_their_own_work_not_by_their_waiting(mon
     # of 3, 10 and 17 s that have gone looks took 0.4, 0.8 and 1.2 s: 5 % of 8, 16 and 24 s
     assert intervals == pytest.approx([5.0, 6.0, 7.0])
     assert shows == [1, 2]
+
+
+def keydown(element, key):
+    """Return what a key does in an element."""
+    (pressed,) = (
+        each for each in element._event_listeners.values() if each.type == f"keydown.{key}"
+    )
+    return cast(Any, pressed.handler)
+
+
+def computed(session, name):
+    """Write what a page reads of a result in short."""
+    result = session.project.result_folder(name)
+    result.mkdir(parents=True)
+    stored = {"status": {"value": "converged"}, "cof": {"value": 0.3},
+              "provenance": {"case_hash": "a", "created": "now"}}  # fmt: skip
+    (result / "result.json").write_text(json.dumps(stored), encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("route", "results"),
+    [("/", True), ("/project", True), ("/answer", True), ("/compare", True), ("/design", False)],
+)
+def test_a_page_follows_the_files_of_its_variants_and_their_results_where_it_shows_any(
+    tmp_path, monkeypatch, route, results
+):
+    session, followed = session_of(tmp_path, variant="a"), []
+    for name in "abc":
+        new_variant(session, name, shoe="work_shoe_half_tread", contaminant="detergent")
+        if route == "/compare" and name != "c":
+            computed(session, name)
+    monkeypatch.setattr(
+        Session, "follow", lambda _, state, *given, **more: followed.append(state) or (lambda: None)
+    )
+    (page,) = (each for each in PAGES if each.route == route)
+
+    async def look(_):
+        await until(lambda: followed)
+
+    shown(partial(page.build, session), look)
+    (state,) = followed
+    seen = [state()]
+    if results and route != "/compare":
+        computed(session, "a")
+        seen.append(state())
+    session.project.change("a", {"motion.speed": "0.31 m/s"})
+    seen.append(state())
+    assert all(before != after for before, after in pairwise(seen))
+    if not results:
+        computed(session, "a")
+        assert state() == seen[-1]
+
+
+def test_a_variant_that_can_not_be_read_is_looked_at_again_when_its_file_changed(
+    tmp_path, monkeypatch
+):
+    session, followed, went = session_of(tmp_path), [], []
+    name = new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    path = session.project.path(name)
+    whole = path.read_text("utf-8")
+    path.write_text("no case", encoding="utf-8")
+    monkeypatch.setattr(Session, "follow", lambda _, *given: followed.append(given))
+    monkeypatch.setattr(Session, "go", lambda _, route, **query: went.append((route, query)))
+    found: Any = []
+    shown(lambda: found.append(repair.opened(session, "/design", name)), words_of)
+    state, again = followed[-1]
+    assert found == [None]
+    before = state()
+    computed(session, name)
+    assert session.project.summary(name) is not None
+    assert state() == before
+    path.write_text(whole, encoding="utf-8")
+    assert state() != before
+    again()
+    assert went == [("/design", {"variant": name})]
+
+
+@pytest.mark.parametrize(
+    ("about", "function", "state", "free"),
+    [("a", RUN, WAITING, False), ("a", RUN, RUNNING, False), ("a", RUN, FAILED, True),
+     ("b", RUN, RUNNING, True), ("a", "other:one", RUNNING, True)],
+)  # fmt: skip
+def test_an_answer_is_computed_once_at_a_time(tmp_path, about, function, state, free):
+    session = session_of(tmp_path)
+    for name in "ab":
+        new_variant(session, name, shoe="work_shoe_half_tread", contaminant="detergent")
+    task = session.submit("run", function, about=about)
+    task.state = state
+
+    def look(elements):
+        (run,) = (each for each in elements if "main-action" in each.classes)
+        return run.enabled
+
+    page = answer._Answer(session, "a", session.project.case("a"))
+    assert shown(page.show, look) is free
+
+
+@pytest.mark.parametrize("count", [0, 1, MOST_SHOWN, MOST_SHOWN + 3])
+def test_jobs_that_compute_come_first_and_of_many_the_rest_is_counted(tmp_path, count):
+    session = session_of(tmp_path)
+    tasks = [session.submit(f"job {k}", RUN, about="") for k in range(count)]
+    if tasks:
+        tasks[-1].state = RUNNING
+    words = shown(lambda: _jobs_button(session), words_of)
+    listed = [word for word in words if word.startswith("job ")]
+    order = [tasks[-1], *tasks[:-1]] if tasks else []
+    assert listed == [task.title for task in order[:MOST_SHOWN]]
+    more = session.text("jobs.more", count=count - MOST_SHOWN)
+    assert (more in words) is (count > MOST_SHOWN)
+    assert (session.text("jobs.empty") in words) is (count == 0)
+    assert (session.text("jobs.stop_all") in words) is (count > 1)
+
+
+@pytest.mark.parametrize(("others", "working"), [(False, 2), (False, 0), (True, 2), (True, 0)])
+def test_a_study_is_watched_until_the_others_that_work_on_it_have_ended(
+    monkeypatch, others, working
+):
+    """One that this page began is shown at its end by what follows the job."""
+    enabled, timers, done = [], [], []
+
+    async def check(seen):
+        return {"ended": 5, "seconds": 0.0, "parts": ["so far"]}
+
+    async def show():
+        done.append("whole")
+
+    page: Any = SimpleNamespace(
+        run_button=SimpleNamespace(set_enabled=enabled.append), sheet={"ended": 0},
+        _working=working, _check=check, _put=done.extend, _show=show,
+    )  # fmt: skip
+
+    def timer(interval, look):
+        timers.append(look)
+        return SimpleNamespace(interval=interval, deactivate=lambda: done.append("stopped"))
+
+    monkeypatch.setattr(studies.ui, "timer", timer)
+    studies._Study._watch(page, others=others)
+    asyncio.run(timers[0]())
+    ended = others and not working
+    assert done == (["stopped", "whole"] if ended else ["so far"])
+    assert enabled == [False, ended]
+
+
+def test_a_variant_has_the_name_that_is_typed_when_enter_is_pressed(tmp_path, monkeypatch):
+    session, went = session_of(tmp_path), []
+    new_variant(session, "a", shoe="work_shoe_half_tread", contaminant="detergent")
+    monkeypatch.setattr(Session, "go", lambda _, route, **query: went.append((route, query)))
+
+    def look(elements):
+        (field,) = (each for each in elements if isinstance(each, ui.input))
+        field.value = " b "
+        keydown(field, "enter")()
+
+    shown(lambda: _rename(session, "/design", "a"), look)
+    assert session.project.variants() == ["b"]
+    assert went == [("/design", {"variant": "b"})]
+
+
+@pytest.mark.parametrize(
+    ("typed", "read"),
+    [({"from": "0.3 m/s", "to": "0.7 m/s"}, {"from": "0.3 m/s", "to": "0.7 m/s"}),
+     ({"from": "0.2 m/s"}, {"from": "0.2 m/s", "to": "0.5 m/s"}),
+     ({"values": "0.2 m/s; 0.3 m/s"}, ["0.2 m/s", "0.3 m/s"]),
+     ({"from": "fast"}, {"from": "0.4 m/s", "to": "0.5 m/s"}),
+     ({"to": ""}, None)],
+)  # fmt: skip
+def test_a_row_of_a_study_says_its_path_and_what_is_typed_or_the_last_that_could_be_read(
+    tmp_path, typed, read
+):
+    """An end that says nothing leaves the row out; what can't be read leaves the file as it is."""
+    session, given = session_of(tmp_path), {"from": "0.4 m/s", "to": "0.5 m/s"}
+    kept: list[Any] = []
+
+    async def keep(section, value):
+        kept.append((section, value))
+
+    page: Any = SimpleNamespace(
+        session=session, text=session.text, keep=keep, _heading=lambda _: None
+    )
+    rows: list[studies._Rows] = []
+
+    def build():
+        rows.append(studies._Rows(page, "vary", {"motion.speed": given}))
+
+    async def look(elements):
+        fields = {each.props["label"]: each for each in elements if isinstance(each, ui.input)}
+        for key, text in typed.items():
+            fields[session.text(f"studies.field_{key}")].value = text
+        first = next(iter(fields.values()))
+        assert rows[0].rows[0]() == ("motion.speed", read)
+        await keydown(first, "enter")()
+
+    shown(build, look)
+    assert kept == [("vary", {} if read is None else {"motion.speed": read})]

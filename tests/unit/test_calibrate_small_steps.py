@@ -8,11 +8,12 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.calibrate.compound import _beside
+from underfoot.calibrate.compound import Compound, _beside
 from underfoot.calibrate.law_file import ENOUGH, TrialReadings, law_table
 from underfoot.calibrate.stribeck_curve import _gap
 from underfoot.case import load
 from underfoot.compute.resolve import resolved
+from underfoot.trials.machines.compression import BONDED, Compression, compression_moduli
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
 
@@ -57,3 +58,22 @@ def test_a_sweep_and_a_relaxation_test_are_compared_in_the_middle_of_what_both_s
     assert "1.50 times" in told
     assert "at 1 s;" in told
     assert "share no time" in _beside(fitted(1.0, 100.0, 2.0), fitted(1e-3, 1.0, 3.0))
+
+
+def test_a_compound_shows_the_moduli_of_each_compression_test():
+    """Of blocks of 10 mm and 10 cm^2: 10 N at 2 %, 190 N at the end, 100 N after the hold."""
+    moduli = compression_moduli(10.0, 190.0, 100.0, 0.01, 1e-3)
+    test = Compression("block.csv", cast(Any, None), moduli, shape_factor=0.5)
+    compound = Compound(
+        "own", None, None, None, None, None, (test, test), None, None, 0.5, None, (), ()
+    )
+    value = {label.strip(): told for label, told, _ in compound.table().rows}
+    apparent = value.pop("over Young's modulus")
+    assert value.pop("Young's modulus").startswith("not")
+    # 180 N over 0.18 of 10 mm, 2 T / A = 20 1/m, and half of both after the hold
+    assert value == {
+        "K_0 (Eq. 13)": "100 N/mm", "E_0 (Eq. 14)": "2 MPa",
+        "K_inf (Eq. 15)": "50 N/mm", "E_inf (Eq. 16)": "1 MPa",
+    }  # fmt: skip
+    assert len(compound.table().rows) == 1 + 2 * 5
+    assert apparent.startswith(f"{1 + 2 * BONDED[0] * 0.25:.3g} ± ")

@@ -6,17 +6,20 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from underfoot.case import load
 from underfoot.case.describe import assumptions
-from underfoot.case.explanation import _documented, _equation_text, _summary
+from underfoot.case.explanation import FIRST_SCREEN, _documented, _equation_text, _summary
+from underfoot.case.friction import range_95
+from underfoot.case.lettering import text_rings
 from underfoot.case.motion import AnySpeed
 from underfoot.case.people import Transfer
 from underfoot.case.quantity import Quantity, default_of
 from underfoot.case.section import Section
 from underfoot.case.template import _overrides, _remark
 from underfoot.compute.resolve import resolved
-from underfoot.core import InputError, UnderfootError, to_si
+from underfoot.core import InputError, SourcedValue, UnderfootError, to_si
 
 
 def every_kind(kind=Section):
@@ -151,6 +154,46 @@ def test_what_is_cut_off_after_a_colon_is_marked():
     text = _documented("shortened", shortened, full=False)
     assert "in this order: …" in text
     assert " …" not in _documented("whole", whole, full=False)
+
+
+@pytest.mark.parametrize(("paragraphs", "left"), [(1, 1), (2, 2), (3, 2), (9, 2)])
+def test_a_first_screen_holds_whole_paragraphs_and_the_first_of_any_length(paragraphs, left):
+    """Of 9 lines and a blank each: two fit into 20 lines."""
+
+    def told():
+        pass
+
+    lines = [f"line {k}" for k in range(9)]
+    told.__doc__ = "\n\n".join("\n".join(lines) for _ in range(paragraphs))
+    assert FIRST_SCREEN == 20
+    assert _documented("told", told, full=False).count("line 8") == left
+    told.__doc__ = "\n".join(lines * 3)
+    assert _documented("told", told, full=False).count("line 8") == 3
+
+
+@pytest.mark.parametrize("deviation", [0.05, 0.3])
+def test_a_range_holds_95_percent_of_what_scatters_by_a_factor(deviation):
+    given = SourcedValue(2.0, "m", uncertainty=deviation * 2.0)
+    low, high = cast(tuple[float, float], range_95(given))
+    ends = np.log(np.array([low, high]) / 2.0) / deviation
+    assert np.diff(norm.cdf(ends)) == pytest.approx(0.95, abs=1e-4)
+    assert low * high == pytest.approx(4.0)
+    assert range_95(SourcedValue(2.0, "m")) == (2.0, 2.0)
+    assert range_95(SourcedValue(None, "m", reason="unknown")) is None
+
+
+HOLES = {0: "CLS3!i/", 1: "ADOPR069aegá", 2: "B8"}
+
+
+def test_letters_have_the_holes_that_they_are_written_with():
+    for count, letters in HOLES.items():
+        for letter in letters:
+            shells, holes = text_rings(letter, 8e-3, 2e-3)
+            assert len(holes) == count, letter
+            assert len(shells) == (1 + (letter in "i!á")), letter
+            for ring in holes:
+                inside = [np.ptp(ring[:, k]) < np.ptp(shells[0][:, k]) for k in (0, 1)]
+                assert all(inside), letter
 
 
 def test_a_template_names_keys_of_an_old_entry_as_a_case_has_them_now():

@@ -18,6 +18,7 @@ from underfoot.cli.output import (
     narrowed,
     print_table,
 )
+from underfoot.cli.stribeck import _cases
 from underfoot.cli.trials_analyse import analyse
 from underfoot.core import InputError
 from underfoot.core.presentation import Table
@@ -151,3 +152,19 @@ def test_a_title_in_brackets_is_printed_as_it_is(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "60")
     print_table(Table("Pressure [bold] [/] [kPa]", ("a", "b"), [["1", "2"]]))
     assert capsys.readouterr().out.splitlines()[0] == "Pressure [bold] [/] [kPa]"
+
+
+@pytest.mark.parametrize("entry", ["canola_oil", None])
+def test_curves_are_of_the_fluid_of_the_case_or_of_each_that_is_named_once(entry):
+    """Named "measured": all that the catalogue has a coefficient of, the thinnest first."""
+    measured = [SimpleNamespace(fluid=name, viscosity=k) for k, name in ((9, "oil"), (1, "water"))]
+    case: Any = SimpleNamespace(
+        entries={"floor": "vinyl_g2"} | ({"contaminant": entry} if entry else {}),
+        catalogue=measured, replace=lambda path, name: (path, name),
+    )  # fmt: skip
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("underfoot.case.friction.measured_fluids", list)
+        (own,) = _cases(case, [])
+        several = _cases(case, ["oil", "measured", "soap"])
+    assert own == (case, entry or "the case's fluid")
+    assert several == [(("contaminant", name), name) for name in ("oil", "water", "soap")]

@@ -1,6 +1,9 @@
 """Small steps of a run by their values: rates beyond a compound's test, what is cut off a sole."""
 
+import importlib
+import inspect
 import math
+import pkgutil
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,11 +12,14 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from underfoot import compute, shoe
 from underfoot.case import load
-from underfoot.compute import read, sole, solve
+from underfoot.compute import numerical_error, positions, read, sole, solve
+from underfoot.compute.position_draws import COF_PARTS, Place, ShoeAngles
 from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import _untested_rates
 from underfoot.compute.sole import trimmed
+from underfoot.compute.summary import table
 from underfoot.core import SourcedValue
 from underfoot.film import NewtonianFilm
 from underfoot.friction.film_shear import FilmShearLaw
@@ -209,3 +215,142 @@ def test_the_error_of_a_run_is_spread_about_its_own_cof(monkeypatch):
     with pytest.raises(Asked) as told:
         read.readings(parts, solution, None, quick=True)
     assert told.value.args == ("draws", 0.01, 0.12, "a")
+
+
+def test_what_nobody_moves_or_turns_lies_where_it_was_put():
+    unmoved = {"shift": (0.0, 0.0), "offset": (0.0, 0.0), "turn": 0.0, "yaw": 0.0}
+    checked = 0
+    for room in (compute, shoe):
+        for each in pkgutil.iter_modules(room.__path__, f"{room.__name__}."):
+            module = importlib.import_module(each.name)
+            members = (one for _, one in inspect.getmembers(module, inspect.isroutine))
+            for made in (one for one in members if one.__module__ == each.name):
+                for name, taken in inspect.signature(made).parameters.items():
+                    if name in unmoved and isinstance(taken.default, (float, tuple)):
+                        assert taken.default == unmoved[name], (made, name)
+                        checked += 1
+    assert checked >= 10
+
+
+GRID = 0.5e-3
+
+
+def numbers_on(film: float) -> dict[str, float]:
+    return {"cof": 0.3, "fluid_load": film, "contact_load": 100 - film,
+            **dict.fromkeys(COF_PARTS, 0.1)}  # fmt: skip
+
+
+def test_half_of_what_finer_cells_would_add_is_between_the_grids_where_all_places_agree():
+    """Odds of the film are 2/3 on the quick grid and 1 on the run's, at every place alike."""
+    case = load(HEEL).replace(
+        {
+            "shoe.tread": {"pattern": "bars", "depth": "3 mm", "lug_width": "6 mm",
+                           "channel_width": "4 mm"},
+            "numerics.quick_grid_spacing": f"{4 * GRID} m",
+        }
+    )  # fmt: skip
+    made = positions.tread_positions(
+        case,
+        {Place(): numbers_on(50.0)},
+        lambda asked: ((k, numbers_on(50.0 if h == GRID else 40.0))
+                       for k, (_, h) in enumerate(asked)),
+        spacing=GRID, quick=False,
+    )  # fmt: skip
+    onward = (GRID - positions.FINEST) / (3 * GRID)
+    odds = 1.0 + onward / 3  # 2/3 grew by half, which is 1/3
+    assert onward > 0.01
+    assert made.values["fluid_load"] == pytest.approx(100 * odds / (1 + odds))
+    half = (100 * odds / (1 + odds) - 50) / 2
+    assert cast(Any, made).between["fluid_load"] == pytest.approx(half)
+
+
+@pytest.mark.parametrize(
+    ("second", "reduced"),
+    [((0, 7), (0, 7)), ((10, 7), (0, 7)), ((-20, 7), (0, 7)), ((25, 7), (5, 7)),
+     ((-3, -7), (3, 7)), ((13, 7), (3, 7))],
+)  # fmt: skip
+@pytest.mark.parametrize("length", [10e-3, 8.66e-3])
+def test_periods_of_a_pattern_lean_by_less_than_one_of_its_first(second, reduced, length):
+    """Of 10 units along; the lattice stays, so what is taken off is a whole number of the first."""
+    unit = length / 10
+    given = np.array([(10, 0), second]) * unit
+    assert positions._reduced(given) == pytest.approx(np.array([(10, 0), reduced]) * unit)
+
+
+@pytest.mark.parametrize("wet", [True, False])
+def test_the_quick_grid_is_compared_in_cells_and_where_a_film_remembers_in_time(monkeypatch, wet):
+    case = load(HEEL)
+    at = {1: {"cof": 0.30, "fluid_load": 40.0}, 2: {"cof": 0.28, "fluid_load": 41.0}}
+
+    def solved(parts, place, spacing, **_):
+        assert spacing == case.numerics.quick_grid_spacing
+        status = SimpleNamespace(usable=True)
+        return SimpleNamespace(sole=None), SimpleNamespace(status=status, numbers=at[place.finer])
+
+    monkeypatch.setattr(numerical_error, "solved_at", solved)
+    monkeypatch.setattr(numerical_error, "_read", lambda _, contact: contact.numbers)
+    monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
+    parts: Any = SimpleNamespace(case=case, viscosity=0.1 if wet else None)
+    own = {"cof": 0.33, "fluid_load": 36.0}
+    told: Any = numerical_error._compared(parts, own, cast(Any, None))
+    assert told.grid == pytest.approx({"cof": 0.03, "fluid_load": 4.0})
+    assert told.steps == pytest.approx({"cof": 0.04, "fluid_load": 2.0} if wet else {})
+
+
+@pytest.mark.parametrize(("share", "bends"), [(0.5, False), (0.94, False), (0.96, True), (1, True)])
+def test_a_region_of_a_file_bends_at_its_ball_where_it_is_nearly_the_whole(
+    monkeypatch, share, bends
+):
+    whole, jointed = 0.3, []
+    fakes = {
+        "file_outsole": lambda _: SimpleNamespace(whole_length=whole),
+        "surface_map": lambda *_, **__: "map", "trimmed": lambda made, *_: made,
+        "_jointed": lambda case, made, length: jointed.append(length) or made,
+        "check_load": lambda *_: None, "rolls": lambda _: 0.0, "_pressed": lambda case, made: made,
+        "_with_cells": lambda case, made, again: made,
+    }  # fmt: skip
+    for name, fake in fakes.items():
+        monkeypatch.setattr(sole, name, fake)
+    case: Any = SimpleNamespace(shoe=SimpleNamespace(outsole=SimpleNamespace(reach=1e-3)))
+    sole._map_of_surface(case, cast(Any, SimpleNamespace(length=share * whole)), 1e-3, 0.1)
+    assert jointed == [share * whole] * bends
+
+
+@pytest.mark.parametrize("regime", [True, False])
+def test_a_row_of_a_result_has_the_interval_beside_it_or_what_its_value_means(regime):
+    scalars = {
+        "normal_force": SourcedValue(500.0, "N"),
+        "cof": SourcedValue(0.3, "1", uncertainty=0.05, interval=(0.1, 0.31)),
+        "cof_adhesion": SourcedValue(0.2, "1", uncertainty=0.01, interval=(0.18, 0.22)),
+        "cof_viscous": SourcedValue(0.1, "1"),
+        "fluid_load": SourcedValue(200.0, "N"),
+        "fluid_load_sensor": SourcedValue(150.0, "N", uncertainty=20.0, interval=(110.0, 190.0)),
+        "contact_area": SourcedValue(1e-4, "m^2"),
+        "minimum_film_thickness": SourcedValue(1e-6, "m", note="of the whole sole"),
+    }
+    labels = {"regime": "mixed", "regime_rule": "film bears 40 %"} if regime else {}
+    rows = [tuple(cell.strip() for cell in row) for row in table(scalars, labels).rows]
+    remark = {label: (value, told) for label, value, told in rows}
+    assert remark["Coefficient of friction"] == ("0.300 (0.100 to 0.310)", "")
+    assert remark["from adhesion"] == ("0.200 ± 0.010", "95 %: 0.180 to 0.220")
+    assert remark["Load carried by the fluid"] == ("200 N", "40 % of the load")
+    assert remark["as floor sensors read it"] == ("150 ± 20 N", "95 %: 110 N to 190 N")
+    assert remark["Contact area"][1] == "where the rough surfaces touch"
+    assert remark["Thinnest film"][1] == "of the whole sole"
+    assert ("Lubrication regime" in remark) is regime
+    if regime:
+        after = rows.index(("Lubrication regime", "mixed", "film bears 40 %"))
+        assert rows[after - 1][0] == "from shearing the fluid"
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_run_at_several_angles_says_from_where_to_where(count):
+    degree = math.radians(1.0)
+    turns = [Place(), Place(turn=degree), Place(turn=-degree)][:count]
+    values = {"cof": np.array([0.30, 0.35, 0.25])[:count],
+              "fluid_load": np.array([40.0, 30.0, 50.0])[:count]}  # fmt: skip
+    made = ShoeAngles(tuple(turns), values, 0, {"cof": 0.30, "fluid_load": 40.0})
+    labels = made.labels()
+    assert bool(labels) is (count > 1)
+    for part in ("0.25", "0.35", "30", "50 N", "-1.0 to +1.0 deg") * (count > 1):
+        assert part in labels["shoe_angle"]

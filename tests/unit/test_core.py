@@ -20,6 +20,7 @@ from underfoot.core import (
 )
 from underfoot.core.errors import Cancelled
 from underfoot.core.files import whole_folder
+from underfoot.core.provenance import Provenance
 from underfoot.core.status import worst
 from underfoot.trials import Belt, Ramp
 from underfoot.trials.recording.measurement import caution
@@ -38,11 +39,23 @@ def test_an_unknown_name_lists_what_is_known():
 
 def test_an_unknown_uncertainty_is_never_zero():
     value = SourcedValue(2.0, "N")
+    assert (value.assumed, value.uncertainty, value.interval) == (False, None, None)
     assert value.uncertainty is None
     assert value.reason
     assert "not estimated" in str(SourcedValue(None, "N", reason="two repeats"))
     with pytest.raises(ValueError, match="negative"):
         SourcedValue(1.0, uncertainty=-1.0)
+
+
+def test_a_provenance_holds_what_made_a_result_and_of_an_old_one_nothing_that_nobody_recorded():
+    old, new = Provenance("abc"), Provenance.now("abc", grid=1e-3, closures={"film": "own"})
+    absent = {name for name, value in old.to_dict().items() if not value}
+    assert absent == old.to_dict().keys() - {"case_hash"}
+    known = {name for name, value in new.to_dict().items() if value}
+    assert known == {"case_hash", "closures", "versions", "created", "result_hash", "threads"}
+    assert new.threads >= 1
+    finer = Provenance.now("abc", grid=0.5e-3, closures={"film": "own"})
+    assert finer.result_hash != new.result_hash
 
 
 def test_every_status_but_success_has_a_remedy():

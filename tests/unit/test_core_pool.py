@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
@@ -15,8 +17,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from underfoot.core import Cancelled, UnderfootError
+from underfoot.core import pool as pool_module
 from underfoot.core import progress as progress_module
-from underfoot.core.pool import answered, in_processes
+from underfoot.core.pool import answered, in_processes, kill_with
 from underfoot.core.progress import TimeLeft, bar, part, silent
 
 # A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
@@ -268,6 +271,47 @@ def test_progress_is_one_line_on_80_columns_and_no_number_is_cut(monkeypatch):
     lines = [line for line in re.split(r"[\r\n]+", plain) if line.strip()]
     assert max(map(len, lines)) <= 80
     assert all("residual 1.2e-04" in line and " % " in line for line in lines[1:])
+
+
+@pytest.mark.parametrize("told", [{}, {"by_kernel": False}, {"by_kernel": True}])
+@pytest.mark.parametrize("orphan", [False, True])
+def test_the_kernel_kills_a_process_with_its_parent_unless_it_is_told_not_to(
+    monkeypatch, told, orphan
+):
+    """One whose parent has ended before it asks ends by itself: no signal would come."""
+    asked, ended = [], []
+    system = SimpleNamespace(prctl=lambda *given: asked.append(given))
+    monkeypatch.setattr(pool_module, "ctypes", SimpleNamespace(CDLL=lambda _: system))
+    monkeypatch.setattr(pool_module, "sys", SimpleNamespace(platform="linux"))
+    monkeypatch.setattr(pool_module.os, "_exit", ended.append)
+    kill_with(os.getppid() + orphan, **told)
+    on_death = 1  # PR_SET_PDEATHSIG of <sys/prctl.h>
+    by_kernel = told.get("by_kernel", True)
+    assert asked == [(on_death, signal.SIGKILL)] * by_kernel
+    assert ended == [1] * (by_kernel and orphan)
+
+
+@pytest.mark.parametrize("told", [{}, {"kill": False}, {"kill": True}])
+def test_workers_are_let_go_when_they_find_nothing_to_do_and_killed_only_where_nobody_waits(told):
+    done = []
+
+    def worker(name: str) -> Any:
+        process = SimpleNamespace(
+            kill=lambda: done.append(f"kill {name}"), join=lambda: done.append(f"join {name}")
+        )
+        pipe = SimpleNamespace(close=lambda: done.append(f"close {name}"))
+        return SimpleNamespace(process=process, pipe=pipe)
+
+    pool: Any = pool_module._Pool(abs, 2)
+    pool.workers = [worker("a"), worker("b")]
+    pool.end(**told)
+    assert [each for each in done if each.startswith("kill")] == ["kill a", "kill b"] * bool(
+        told.get("kill")
+    )
+    # every pipe is closed before any worker is waited for: they end at the same time
+    assert done.index("close b") < done.index("join a")
+    assert done.index("join b") == len(done) - 1
+    assert pool.workers == []
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.9, 2.0), (0.5, 0.4), (-0.1, 1.0)])

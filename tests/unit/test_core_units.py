@@ -99,6 +99,15 @@ def test_displayed_text_reads_back(value, unit):
     assert to_si(display(value, unit, 12), unit, where="x") == pytest.approx(value, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("unit", "text"),
+    [("m", "0 m"), ("Pa", "0 Pa"), ("s", "0 s"), ("N", "0 N"), ("N/m", "0 N/m"), ("kg", "0 kg"),
+     ("Pa*s", "0 cP"), ("rad", "0 deg"), ("m^2", "0 cm^2"), ("1", "0")],
+)  # fmt: skip
+def test_nothing_is_said_in_the_plain_unit_or_in_the_largest_that_people_use(unit, text):
+    assert display(0.0, unit) == text
+
+
 def test_display_says_when_it_is_not_a_number():
     assert display(float("nan"), "Pa") == "not a number"
 

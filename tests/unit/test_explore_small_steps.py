@@ -1,16 +1,21 @@
 """Files of joint draws, what a crash has taken and what comes next, by their values."""
 
+from contextlib import nullcontext
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.stats import halfnorm, norm
 
 from underfoot.core import InputError
-from underfoot.explore import proposals
+from underfoot.explore import proposals, study, study_file
 from underfoot.explore.computing import crashed
-from underfoot.explore.inputs import Choice, Range, read_joint_draws
+from underfoot.explore.inputs import TAIL, Choice, Range, read_joint_draws
+from underfoot.explore.posterior import DISCREPANCY, _log_density
 from underfoot.explore.record import Ending, Job
+from underfoot.explore.study_file import _Reader
 from underfoot.explore.surrogate import featured
 
 HEAD = "# a posterior\ncontaminant.viscosity,motion.speed\n"
@@ -55,6 +60,7 @@ def test_a_case_that_crashed_has_no_number_and_took_no_time_that_is_known():
     [
         ("optimise", 0.0, 6, 3, ("promising", 3)),
         ("robust", 0.0, 8, 3, ("promising", 2)),  # of ten
+        ("optimise", 0.0, 9, 3, ("promising", 1)),
         ("sweep", 0.5, 6, 9, ("least known", 4)),
         ("sweep", 0.0, 6, 9, "again"),  # its places do not follow from results
         ("optimise", 0.0, 10, 3, "again"),
@@ -112,3 +118,62 @@ def test_a_name_has_a_column_a_value_and_a_number_its_share_of_the_range():
     )
     alone = Choice("shoe.material.shore_a", (60.0,))
     np.testing.assert_array_equal(featured((alone,), np.array([[0.5]])), [[0.0]])
+
+
+@pytest.mark.parametrize("leads", [True, False])
+def test_cases_that_tell_the_cost_are_computed_by_one_worker_and_only_where_nobody_leads(
+    monkeypatch, leads
+):
+    workers, added, told = [], [], []
+    store: Any = SimpleNamespace(
+        folder="a", leading=lambda: nullcontext(leads), adopt=lambda _: None,
+        working=lambda count: workers.append(count) or nullcontext(),
+        records=lambda: {"b": "known"}, add_record=added.append,
+    )  # fmt: skip
+    jobs = [SimpleNamespace(key=key) for key in "abc"]
+    monkeypatch.setattr(study, "spread_jobs", lambda _, count: jobs[:count])
+    monkeypatch.setattr(study, "computed", lambda base, job: f"{job.key} of {base}")
+    monkeypatch.setattr(study.Store, "made", lambda _: store)
+    of: Any = SimpleNamespace(plan=SimpleNamespace(base="base"), store=store)
+    study.Study.compute_some(of, 3, lambda _, share: told.append(share))
+    assert workers == [1]
+    assert added == (["a of base", "c of base"] if leads else [])
+    assert told == pytest.approx([1 / 3, 2 / 3, 1] if leads else [])
+
+
+@pytest.mark.parametrize("given", ["own", None])
+def test_the_base_of_a_study_has_the_catalogue_that_is_given_else_that_beside_it(
+    monkeypatch, given
+):
+    loaded = []
+    found = SimpleNamespace(load=lambda path, catalogue: loaded.append((path, catalogue)) or "case")
+    beside = SimpleNamespace(load=lambda folders: f"beside {folders}")
+    monkeypatch.setattr(study_file, "Case", found)
+    monkeypatch.setattr(study_file, "Catalogue", beside)
+    monkeypatch.setattr(study_file, "catalogue_folders", lambda folder: folder.name)
+    reader = _Reader('base = "cases/own.toml"', None)
+    assert reader.base(Path("studies"), cast(Any, given)) == "case"
+    assert loaded == [(Path("studies/cases/own.toml"), given or "beside cases")]
+
+
+def test_a_posterior_is_the_prior_by_the_normal_likelihood_of_its_readings():
+    """Three variances add: of the reading, of its surrogate, of the model's discrepancy."""
+    models = [
+        SimpleNamespace(predicted=lambda at: (1.0 + at[:, 0], 0.1 + 0.2 * at[:, 1])),
+        SimpleNamespace(predicted=lambda at: (5.0 * at[:, 1], np.full(len(at), 0.3))),
+    ]
+    readings = [SimpleNamespace(value=1.4, sd=0.05), SimpleNamespace(value=3.0, sd=0.4)]
+    places = np.random.default_rng(4).uniform(0.02, 0.98, (50, 3))
+    expected = np.zeros(50)
+    within = TAIL + (1 - 2 * TAIL) * places[:, 2]  # as of every input, without its outermost
+    delta = halfnorm.ppf(within, scale=DISCREPANCY)
+    for model, reading in zip(models, readings, strict=True):
+        mean, error = model.predicted(places[:, :2])
+        spread = np.sqrt(reading.sd**2 + error**2 + (delta * mean) ** 2)
+        expected += norm.logpdf(reading.value, mean, spread)
+    told = _log_density(places, cast(Any, models), cast(Any, readings))
+    assert np.ptp(told - expected) < 1e-9
+    outside = places[:6].copy()
+    outside[[0, 1, 2], [0, 1, 2]] = -0.1
+    outside[[3, 4, 5], [0, 1, 2]] = 1.1
+    assert (_log_density(outside, cast(Any, models), cast(Any, readings)) == -np.inf).all()

@@ -24,8 +24,15 @@ from underfoot.film import wedge_film
 from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
-from underfoot.places.choice import chosen, slip_share
-from underfoot.places.evidence import evidence, floor_likeness, learned, machine_scores, score
+from underfoot.places.choice import _count, _read_floors, chosen, slip_share
+from underfoot.places.evidence import (
+    _floor_rq,
+    evidence,
+    floor_likeness,
+    learned,
+    machine_scores,
+    score,
+)
 from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
 from underfoot.places.machines import (
     FLUIDS,
@@ -189,6 +196,19 @@ def test_a_class_of_a_machine_stands_for_its_bounds():
     assert [one.value for one in class_bounds(machine("ramp-barefoot"), "C", "floor")] == [24.0]
     with pytest.raises(InputError, match="R9"):
         class_bounds(machine("ramp-oil"), "R8", "floor")
+
+
+@pytest.mark.parametrize("name", [name for name, one in machines().items() if one.classes])
+def test_classes_of_a_machine_cover_its_scale_and_each_ends_where_the_next_begins(name):
+    """No bound is told at the foot of the lowest, which every reading is above, nor at the top."""
+    device, end = machine(name), 0.0
+    for at, (foot, label) in enumerate(device.classes):
+        bounds = {one.kind: one.value for one in class_bounds(device, label, "floor")}
+        assert bounds.get("lower", 0.0) == foot == end
+        assert ("lower" in bounds) is (foot > 0)
+        assert ("upper" in bounds) is (at + 1 < len(device.classes))
+        end = bounds.get("upper", math.inf)
+    assert end == math.inf
 
 
 def test_published_readings_are_predicted_without_their_source():
@@ -868,6 +888,53 @@ def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share,
     assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
     joint.learn(np.zeros(4000), "hall")  # what tells nothing
     assert joint.fewest == pytest.approx(min(left, unlike), abs=0.1)
+
+
+@pytest.mark.parametrize("factor", [-1000.0, -300.0, 300.0, 1000.0])
+def test_a_factor_of_all_likelihoods_teaches_nothing(factor):
+    log = -0.5 * np.linspace(-2, 2, 4000) ** 2
+    rows = [JointDraws(count=4000).learn(log + more, "hall") for more in (0.0, factor)]
+    np.testing.assert_array_equal(*rows)
+
+
+def test_only_the_roughness_of_a_floor_that_was_read_and_not_measured_is_told_anew():
+    """Even between 1 and 16 um in the logarithm: median 4 um, 95 % within 16^0.95 = 13.9."""
+    floors = [
+        dataclasses.replace(place_of(small_place()).floors[0], name=name, readings=readings)
+        for name, readings in (("read", ("a",)), ("unread", ()), ("measured", ("a",)))
+    ]
+    joint = SimpleNamespace(
+        between=lambda name, ends: ends[0] * (ends[1] / ends[0]) ** np.linspace(0, 1, 4001)
+    )
+    ends = {"read": (UM, 16 * UM), "unread": (UM, 16 * UM), "measured": (3 * UM, 3 * UM)}
+    place = SimpleNamespace(floors=floors)
+    told = _read_floors(place, joint, ends)
+    assert told.keys() == {"read"}
+    rq = told["read"].section["roughness"]["rq"]
+    assert rq["value"] == "4 um"
+    deviation = 4 * 0.95 * math.log(16) / 3.92
+    assert float(rq["uncertainty"].removesuffix(" um")) == pytest.approx(deviation, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0123, "0.012"), (0.5, "0.5"), (1.04, "1"), (9.9, "9.9"), (10.4, "10"), (123.0, "120"),
+     (4567.0, "4,600"), (987654.0, "990,000")],
+)  # fmt: skip
+def test_a_count_has_two_digits_and_no_exponent(value, text):
+    assert _count(value) == text
+
+
+def test_roughness_of_a_published_floor_is_printed_or_that_of_gaussian_heights():
+    """Rq / Ra of normal heights is 1 over their mean distance from the middle."""
+    ra = _floor_rq({"floor_ra": "2 um"}, "a")
+    drawn = np.abs(np.random.default_rng(3).standard_normal(400_000)).mean()
+    assert ra[0] == pytest.approx([2 * UM / drawn] * 2, rel=0.01)
+    assert ra[1] is True
+    assert _floor_rq({"floor_rq": {"value": "2 um"}}, "a") == ((2 * UM, 2 * UM), True)
+    low, high = _floor_rq({"floor_rq": {"range": ["1 um", "3 um"]}}, "a")[0]
+    assert (low, high) == pytest.approx((UM, 3 * UM))
+    assert _floor_rq({"floor_rq": {"range": ["1 um", "3 um"]}}, "a")[1] is False
 
 
 def test_steps_in_a_fluid_are_those_of_each_floor_by_its_area():

@@ -117,7 +117,7 @@ def _jobs_button(session: Session) -> None:
     button.props(f'aria-label="{button.text}"').classes("idle")
     with button, ui.menu().classes("jobs").props("auto-close=false"):
         listed = ui.element("div").classes("job-list")
-    seen: list[tuple[object, ...]] = []
+    seen: list[object] = [None]  # also no job at all is to be shown
 
     def look() -> None:
         now = [(t.number, t.state, t.stage, round(t.fraction, 2)) for t in jobs.tasks.values()]

@@ -127,13 +127,10 @@ def check_pattern(block: MicroBlock, surface: MicroSurface, where: str) -> None:
     if not surface.rough or surface.form == "paraboloid":
         return
     axes = (0,) if surface.form == "wave" else (0, 1)
+    lengths = (surface.wavelength, surface.wavelength)
     if surface.form == "map":
         assert surface.height_map is not None
         lengths = surface.height_map.size
-        shortest = surface.height_map.resolution or 2.0 * max(surface.height_map.spacings)
-    else:
-        lengths = (surface.wavelength, surface.wavelength)
-        shortest = surface.wavelength
     for axis in axes:
         name = "xy"[axis]
         size, length = block.size[axis], lengths[axis]
@@ -146,12 +143,12 @@ def check_pattern(block: MicroBlock, surface: MicroSurface, where: str) -> None:
                 remedy="The report prints 4 and 5 mm for a block of 0.8 mm; 0.4 and 0.5 mm fit",
             )
         fewest = FEWEST_ELEMENTS.get(surface.form, 4)
-        if surface.form != "map" and shortest / step < fewest * (1.0 - 1e-6):
+        if surface.form != "map" and length / step < fewest * (1.0 - 1e-6):
             raise InputError(
-                f"{shortest / step:.3g} elements a wavelength along {name}",
+                f"{length / step:.3g} elements a wavelength along {name}",
                 where=where,
                 allowed=f"{fewest} or more for the form {surface.form}",
-                remedy=f"Use {int(np.ceil(size / shortest * 13))} elements along {name} or more",
+                remedy=f"Use {int(np.ceil(size / length * 13))} elements along {name} or more",
             )
         waves = size / length
         if block.sides == "periodic" and abs(waves - round(waves)) > 1e-6 * waves:

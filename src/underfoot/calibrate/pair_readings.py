@@ -33,7 +33,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part
 from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws
-from underfoot.friction.pair_contact import DRY_PART, LABORATORY
+from underfoot.friction.pair_contact import DRY_PART, LABORATORY, even_rows
 from underfoot.friction.propagation import normal_draws
 from underfoot.friction.sampled_cof import LEAK
 from underfoot.friction.tread_error import READING
@@ -286,10 +286,7 @@ def calibrated_pair(
             'other, or a friction of their own, belong to friction.model = "table"',
         )
     generator = np.random.default_rng(seed)
-    places = (np.arange(COUNT) + generator.random()) / COUNT
-    rows = generator.permutation(
-        np.searchsorted(np.cumsum(weight), places).clip(max=wide.count - 1)
-    )
+    rows = generator.permutation(even_rows(weight, COUNT, generator.random()))
     names = "; ".join(f"{reading.case.name}: {reading.cof:g}" for reading in readings)
     source = f"{start.source}; calibrated to readings of one laboratory ({names})"
     levels = (0.025, 0.5, 0.975)

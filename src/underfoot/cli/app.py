@@ -85,7 +85,7 @@ def options(
     ] = False,
     units: Annotated[
         Units | None,
-        typer.Option(help="Units of output: si, or us (in, psi, lbf).", show_default=False),
+        typer.Option(help="Units of output: si, or us (in, psi, lbf)."),
     ] = None,
 ) -> None:
     """Friction between a shoe, a floor and what is spilled on it."""

@@ -21,17 +21,14 @@ calibrate_app = typer.Typer(
 
 
 def law(
-    folder: Annotated[
-        Path, typer.Argument(help='Results of "underfoot trials analyse".', show_default=False)
-    ],
-    out: Annotated[Path, typer.Option("--out", help="Law file (CSV).", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help='Results of "underfoot trials analyse".')],
+    out: Annotated[Path, typer.Option("--out", help="Law file (CSV).")],
     where: Annotated[
         list[str] | None,
         typer.Option(
             "--where",
             metavar="CONDITION=VALUE",
             help="Trials that count, as fluid=water; may be given several times.",
-            show_default=False,
         ),
     ] = None,
     form: Annotated[
@@ -39,9 +36,7 @@ def law(
     ] = "fit",
     pressure: Annotated[
         str | None,
-        typer.Option(
-            "--pressure", help='Contact pressure of the tests, as "266 kPa".', show_default=False
-        ),
+        typer.Option("--pressure", help='Contact pressure of the tests, as "266 kPa".'),
     ] = None,
     overwrite: Overwrite = False,
 ) -> None:
@@ -81,10 +76,8 @@ def law(
 
 
 def pair(
-    readings: Annotated[
-        Path, typer.Argument(help="Readings (TOML), each with the case of it.", show_default=False)
-    ],
-    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).", show_default=False)],
+    readings: Annotated[Path, typer.Argument(help="Readings (TOML), each with the case of it.")],
+    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).")],
     quick: Quick = True,
     json: AsJson = False,
     overwrite: Overwrite = False,

@@ -84,7 +84,7 @@ def run(
 @sharing()
 def ask(
     shared: Shared,
-    question: Annotated[str, typer.Argument(help="Its name.", show_default=False)],
+    question: Annotated[str, typer.Argument(help="Its name.")],
     case: CasePath,
 ) -> None:
     """Answer a question that another package asks of a case (docs/extending.md)."""
@@ -98,7 +98,7 @@ def slip(
     shared: Shared,
     case: CasePath,
     subjects: Annotated[
-        int | None, typer.Option("--subjects", min=1, help="Number of walkers.", show_default=False)
+        int | None, typer.Option("--subjects", min=1, help="Number of walkers.")
     ] = None,
     full_model: Annotated[
         bool, typer.Option("--full-model", help="Full model for every walker: seconds each.")
@@ -109,7 +109,6 @@ def slip(
             "--history",
             help="Steps of your own instead of the packaged ones: a force-plate recording or a "
             "table; may be repeated.",
-            show_default=False,
         ),
     ] = None,
     rcof_from: RcofFrom = None,
@@ -143,9 +142,7 @@ def compare(
     shared: Shared,
     paths: Annotated[
         list[Path],
-        typer.Argument(
-            metavar="A B [C ...]", help="Result folders or case files.", show_default=False
-        ),
+        typer.Argument(metavar="A B [C ...]", help="Result folders or case files."),
     ],
 ) -> None:
     """Rank two to twelve results or cases by friction, with the probability of the order.
@@ -211,7 +208,6 @@ def wear(
             "--mode",
             help="walk (cut by the floor at the angles of landing; the default), archard (pressure "
             "times sliding), plane or patch.",
-            show_default=False,
         ),
     ] = None,
     steps: Annotated[int, typer.Option("--steps", help="Worn states to compute.", min=2)] = 6,
@@ -220,9 +216,7 @@ def wear(
     ] = "5 N",
     to: Annotated[
         str | None,
-        typer.Option(
-            "--to", help='Last state: "2 mm" lost, or "1500 mm^2" of patch.', show_default=False
-        ),
+        typer.Option("--to", help='Last state: "2 mm" lost, or "1500 mm^2" of patch.'),
     ] = None,
     band: Annotated[
         bool, typer.Option("--band/--no-band", help="Vary the least known inputs (4 runs a state).")
@@ -232,7 +226,6 @@ def wear(
         typer.Option(
             "--worn-pair",
             help='A pair you measured, "1.2 mm after 300 km" or "after 5 months".',
-            show_default=False,
         ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Seed of the interval's draws.", min=0)] = 0,
@@ -278,7 +271,6 @@ def by_method(
             "--keep",
             help="Keep a part of the case against the method: floor, contaminant, normal_force, "
             "shoe_angle or speed; may be repeated.",
-            show_default=False,
         ),
     ] = None,
 ) -> None:

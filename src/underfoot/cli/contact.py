@@ -14,9 +14,7 @@ if TYPE_CHECKING:
 @sharing(without=("quick", "set_", "processes", "catalogue"))
 def contact(
     shared: Shared,
-    surface: Annotated[
-        Path | None, typer.Argument(help="Measured profile or height map.", show_default=False)
-    ] = None,
+    surface: Annotated[Path | None, typer.Argument(help="Measured profile or height map.")] = None,
     sole: Annotated[
         Path | None, optional("Scan of the sole, for a table of both surfaces (--table).")
     ] = None,

@@ -30,22 +30,19 @@ def export(
         typer.Argument(
             metavar="RUN",
             help="Result folder of underfoot run; for step also a case file.",
-            show_default=False,
         ),
     ],
-    to: Annotated[Kind, typer.Option("--to", help="Kind of file.", show_default=False)],
+    to: Annotated[Kind, typer.Option("--to", help="Kind of file.")],
     field: Annotated[
         str | None,
-        typer.Option(
-            "--field", help="What the colours show, as fluid_pressure.", show_default=False
-        ),
+        typer.Option("--field", help="What the colours show, as fluid_pressure."),
     ] = None,
     pressed: Annotated[
         bool, typer.Option("--pressed", help="The sole under load, not undeformed.")
     ] = False,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="File; by default sole.KIND in the folder.", show_default=False),
+        typer.Option("--out", help="File; by default sole.KIND in the folder."),
     ] = None,
     overwrite: Overwrite = False,
 ) -> None:

@@ -13,9 +13,7 @@ def material(
     shared: Shared,
     files: Annotated[
         list[Path] | None,
-        typer.Argument(
-            help="Tests: dynamic sweeps, relaxation, Prony series, compression.", show_default=False
-        ),
+        typer.Argument(help="Tests: dynamic sweeps, relaxation, Prony series, compression."),
     ] = None,
     out: Annotated[
         Path | None,

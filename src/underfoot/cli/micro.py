@@ -30,21 +30,18 @@ COLUMNS = {
 
 
 def micro(
-    case: Annotated[
-        Path | None, typer.Argument(help="Case of the block (TOML).", show_default=False)
-    ] = None,
+    case: Annotated[Path | None, typer.Argument(help="Case of the block (TOML).")] = None,
     solver: Annotated[
         str | None,
         typer.Option(
             "--solver",
             help="condensed (seconds) or explicit (finite elements, minutes); the case's own "
             "by default.",
-            show_default=False,
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Folder for histories and the picture.", show_default=False),
+        typer.Option("--out", help="Folder for histories and the picture."),
     ] = None,
     snapshots: Annotated[
         int,

@@ -19,13 +19,12 @@ if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
     from underfoot.core.presentation import Presentable
 
-CasePath = Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)]
+CasePath = Annotated[Path, typer.Argument(help="Case file (TOML).")]
 CatalogueFolders = Annotated[
     list[Path] | None,
     typer.Option(
         "--catalogue",
         help="Folder with catalogue entries of your own; may be repeated.",
-        show_default=False,
     ),
 ]
 Settings = Annotated[
@@ -34,7 +33,6 @@ Settings = Annotated[
         "--set",
         metavar="PATH=VALUE",
         help='Change an input, for example --set "contaminant.viscosity=41 cP"; may be repeated.',
-        show_default=False,
     ),
 ]
 Quick = Annotated[
@@ -47,20 +45,18 @@ Processes = Annotated[
         min=1,
         help="Cases, or positions of a tread, computed at the same time; by default the cores, "
         "at most 4.",
-        show_default=False,
     ),
 ]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace the output folder or file.")]
 OutFolder = Annotated[
     Path | None,
-    typer.Option("--out", help="Folder for data, figures and report.html.", show_default=False),
+    typer.Option("--out", help="Folder for data, figures and report.html."),
 ]
 RampAngle = Annotated[
     str | None,
     typer.Option(
         "--ramp",
         help='Slope of the walkway, as "5 deg" (walking up) or "-5 deg" (walking down).',
-        show_default=False,
     ),
 ]
 PlateFrame = Annotated[
@@ -68,7 +64,6 @@ PlateFrame = Annotated[
     typer.Option(
         help="On a ramp, the axes of the plates: surface (normal and tangential to the ramp) or "
         "horizontal.",
-        show_default=False,
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON in SI units instead of tables.")]
@@ -79,16 +74,13 @@ ShowAll = Annotated[
 
 Workers = Annotated[
     int | None,
-    typer.Option(
-        "--workers", min=1, help="Processes; by default one a processor.", show_default=False
-    ),
+    typer.Option("--workers", min=1, help="Processes; by default one a processor."),
 ]
 On = Annotated[
     str | None,
     typer.Option(
         "--on",
         help='Where: "dask" (a cluster in this process) or "dask:tcp://host:8786".',
-        show_default=False,
     ),
 ]
 
@@ -108,8 +100,8 @@ def number(text: str | float) -> float:
 
 
 def optional(text: str, *names: str) -> Any:
-    """Return an option with its help text, whose default is not shown."""
-    return typer.Option(*names, help=text, show_default=False)
+    """Return an option with its help text."""
+    return typer.Option(*names, help=text)
 
 
 @dataclass

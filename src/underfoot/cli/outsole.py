@@ -29,9 +29,7 @@ def outsole() -> None:
 def inspect(
     file: Annotated[
         Path,
-        typer.Argument(
-            help="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB or 3MF.", show_default=False
-        ),
+        typer.Argument(help="STEP, IGES, BREP, 3DM, STL, OBJ, PLY, OFF, GLB or 3MF."),
     ],
     unit: Annotated[str, typer.Option(help="auto, mm, cm, m or inch.")] = "auto",
     down: Direction = "auto",
@@ -39,18 +37,14 @@ def inspect(
     foot: Annotated[str, typer.Option(help="Foot the file shows: auto, left, right.")] = "auto",
     mirror: Annotated[bool, typer.Option("--mirror", help="Take the other of the pair.")] = False,
     region: Annotated[str, typer.Option(help="whole, heel or forepart.")] = "whole",
-    region_length: Annotated[
-        str | None, typer.Option(help='Of the region, as "80 mm".', show_default=False)
-    ] = None,
+    region_length: Annotated[str | None, typer.Option(help='Of the region, as "80 mm".')] = None,
     spacing: Annotated[str, typer.Option(help="Of the height map.")] = "0.25 mm",
-    solid: Annotated[
-        str | None, typer.Option(help="Name of the body that is the outsole.", show_default=False)
-    ] = None,
+    solid: Annotated[str | None, typer.Option(help="Name of the body that is the outsole.")] = None,
     side: Annotated[str, typer.Option(help="Of a pair in one file: left or right.")] = "auto",
     cut_floor: Annotated[bool, typer.Option("--cut-floor", help="Cut a floor plane.")] = False,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for picture, tables and a case file.", show_default=False),
+        typer.Option(help="Folder for picture, tables and a case file."),
     ] = None,
     json: AsJson = False,
     everything: ShowAll = False,

@@ -33,7 +33,7 @@ LENGTHS = {
 
 
 def _given(text: str) -> Any:
-    return typer.Option(help=text, show_default=False)
+    return typer.Option(help=text)
 
 
 PATTERNS = (
@@ -43,9 +43,7 @@ PATTERNS = (
 
 
 def make(
-    spec: Annotated[
-        Path | None, typer.Argument(help="Outsole file or case file (TOML).", show_default=False)
-    ] = None,
+    spec: Annotated[Path | None, typer.Argument(help="Outsole file or case file (TOML).")] = None,
     pattern: Annotated[str | None, _given(PATTERNS)] = None,
     lug: Annotated[str | None, _given('Width of a lug, as "6 mm".')] = None,
     channel: Annotated[str | None, _given("Width of a channel.")] = None,

@@ -22,21 +22,18 @@ def stribeck(
             "--fluid",
             help="Fluid of the catalogue in place of the case's; may be given several times. "
             '"measured" takes all that were measured.',
-            show_default=False,
         ),
     ] = None,
     law: Annotated[
         str | None,
-        typer.Option("--law", help="Friction law in place of the case's.", show_default=False),
+        typer.Option("--law", help="Friction law in place of the case's."),
     ] = None,
     pressure: Annotated[
         str, typer.Option("--pressure", help="Contact pressure under the sole.")
     ] = "266.1 kPa",
     slowest: Annotated[str, typer.Option("--slowest", help="Lowest speed.")] = "0.01 m/s",
     fastest: Annotated[str, typer.Option("--fastest", help="Highest speed.")] = "1 m/s",
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder for figure and table.", show_default=False)
-    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for figure and table.")] = None,
     settings: Settings = None,
     json: AsJson = False,
     overwrite: Overwrite = False,

@@ -10,7 +10,7 @@ import typer
 from underfoot.core import InputError
 
 from .guard import guarded, say
-from .options import AsJson, OutFolder, Overwrite, Processes, Quick, ShowAll
+from .options import AsJson, OutFolder, Overwrite, Quick, ShowAll
 from .output import print_table, show
 
 if TYPE_CHECKING:
@@ -47,9 +47,7 @@ def list_studies(json: AsJson = False) -> None:
 
 
 def run_study(
-    name: Annotated[
-        str, typer.Argument(help="Name of the study, as g1, or all.", show_default=False)
-    ],
+    name: Annotated[str, typer.Argument(help="Name of the study, as g1, or all.")],
     out: OutFolder = None,
     quick: Quick = False,
     explicit: Annotated[
@@ -68,7 +66,9 @@ def run_study(
     floor_wavelength: Annotated[
         str, _of_g1("floor-wavelength", "of the floor's roughness.")
     ] = "0.4 mm",
-    processes: Processes = 2,
+    processes: Annotated[
+        int, typer.Option(min=1, help="Cases, or positions of a tread, computed at the same time.")
+    ] = 2,
     json: AsJson = False,
     show_all: ShowAll = False,
     overwrite: Overwrite = False,
@@ -107,9 +107,7 @@ def run_study(
 
 
 def summarise(
-    folder: Annotated[
-        Path, typer.Argument(help="Folder of earlier runs.", show_default=False)
-    ] = Path("out") / "studies",
+    folder: Annotated[Path, typer.Argument(help="Folder of earlier runs.")] = Path("out/studies"),
     out: OutFolder = None,
     json: AsJson = False,
     overwrite: Overwrite = False,

@@ -87,7 +87,11 @@ def run(
     finish(result, written, json=json, everything=everything)
 
 
-def work(study: StudyPath, out: Folder = None, workers: Workers = 1) -> None:
+def work(
+    study: StudyPath,
+    out: Folder = None,
+    workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+) -> None:
     """Take open cases from the study's folder until it is done: for array jobs and second machines.
 
     Needs no scheduler: any number of these share the folder.
@@ -183,7 +187,7 @@ def best(
 
 def export(
     study: StudyPath,
-    to: Annotated[Path, typer.Argument(metavar="FOLDER", help="New folder.", show_default=False)],
+    to: Annotated[Path, typer.Argument(metavar="FOLDER", help="New folder.")],
     out: Folder = None,
     count: Annotated[int, typer.Option("--count", min=1, help="Best designs.")] = 3,
     step: Annotated[
@@ -202,14 +206,12 @@ def export(
 def posterior(
     readings: Annotated[
         Path,
-        typer.Argument(help="Study file with [uncertain] and [[reading]].", show_default=False),
+        typer.Argument(help="Study file with [uncertain] and [[reading]]."),
     ],
-    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).", show_default=False)],
+    out: Annotated[Path, typer.Option("--out", help="File of draws (CSV).")],
     folder: Annotated[
         Path | None,
-        typer.Option(
-            "--study", help="Folder of its runs; by default out/NAME.", show_default=False
-        ),
+        typer.Option("--study", help="Folder of its runs; by default out/NAME."),
     ] = None,
     on: On = None,
     workers: Workers = None,

@@ -12,9 +12,7 @@ from .options import Shared, optional, sharing
 @sharing(without=("quick", "set_", "processes", "catalogue", "out"))
 def surface(
     shared: Shared,
-    scan: Annotated[
-        Path, typer.Argument(help="Scan of a floor or sole: profile or map.", show_default=False)
-    ],
+    scan: Annotated[Path, typer.Argument(help="Scan of a floor or sole: profile or map.")],
     out: Annotated[
         Path | None,
         optional("Folder for data, figures and report.html; or the heights as .x3p or .sdf."),

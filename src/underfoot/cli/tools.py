@@ -13,7 +13,7 @@ from .output import print_table
 
 
 def new(
-    file: Annotated[Path, typer.Argument(help="File to write.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="File to write.")],
     shoe: Annotated[str, typer.Option(help="Shoe of the catalogue.")] = "work_shoe_half_tread",
     floor: Annotated[str, typer.Option(help="Floor of the catalogue.")] = "vinyl_g4",
     fluid: Annotated[
@@ -49,7 +49,6 @@ def explain(
         typer.Argument(
             help="A formula (glycerol_water_viscosity), a catalogue entry (canola_oil), "
             'a key (contaminant.viscosity), a term (acof) or an equation ("Eq. 17").',
-            show_default=False,
         ),
     ],
     everything: Annotated[
@@ -69,9 +68,7 @@ def explain(
 def catalogue(
     kind: Annotated[
         str,
-        typer.Argument(
-            help="fluid, floor, material, setup, shoe or published.", show_default=False
-        ),
+        typer.Argument(help="fluid, floor, material, setup, shoe or published."),
     ] = "",
     catalogue: CatalogueFolders = None,
     json: AsJson = False,
@@ -101,9 +98,7 @@ def catalogue(
 
 
 def schema(
-    out: Annotated[
-        Path | None, typer.Option("--out", help="File to write instead.", show_default=False)
-    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="File to write instead.")] = None,
     overwrite: Overwrite = False,
 ) -> None:
     """Print the JSON Schema of case files, for editors and other programs."""
@@ -121,7 +116,7 @@ def migrate(
     case: CasePath,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="File to write; default: the case itself.", show_default=False),
+        typer.Option("--out", help="File to write; default: the case itself."),
     ] = None,
     overwrite: Overwrite = False,
     catalogue: CatalogueFolders = None,

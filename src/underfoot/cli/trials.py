@@ -34,7 +34,6 @@ def describe(
         Path,
         typer.Argument(
             help="C3D, TRC, MOT/STO, .forces, BioWare text, CETR or PCS log, CSV or XLSX.",
-            show_default=False,
         ),
     ],
     companion: Annotated[

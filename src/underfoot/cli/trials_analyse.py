@@ -14,9 +14,7 @@ _REASONS = 3  # printed for a file; all stand in the report
 
 
 def analyse(
-    folder: Annotated[
-        Path | None, typer.Argument(help="Folder of trial files.", show_default=False)
-    ] = None,
+    folder: Annotated[Path | None, typer.Argument(help="Folder of trial files.")] = None,
     protocol: Annotated[
         str | None, optional("How numbers are taken and judged; --list shows all.")
     ] = None,
@@ -48,7 +46,6 @@ def analyse(
         typer.Option(
             parser=number,
             help="Test pairs for equivalence within this difference of RCOF or COF, as 0.02.",
-            show_default=False,
         ),
     ] = None,
     details: Annotated[int, typer.Option(help="Number of single trials drawn in detail.")] = 4,

@@ -12,9 +12,7 @@ from .options import CatalogueFolders, Overwrite, PlateFrame, RampAngle, optiona
 
 
 def bundle(
-    folder: Annotated[
-        Path | None, typer.Argument(help="Folder of trial files.", show_default=False)
-    ] = None,
+    folder: Annotated[Path | None, typer.Argument(help="Folder of trial files.")] = None,
     protocol: Annotated[str | None, optional("As in `trials analyse`.")] = None,
     out: Annotated[Path | None, optional("Folder for the bundle.")] = None,
     check: Annotated[

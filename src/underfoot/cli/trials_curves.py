@@ -15,7 +15,7 @@ from .options import AsJson, number
 def curves(
     files: Annotated[
         list[Path],
-        typer.Argument(help="One array each, or one file with both (YA, YB).", show_default=False),
+        typer.Argument(help="One array each, or one file with both (YA, YB)."),
     ],
     component: Annotated[
         int, typer.Option(help="Of curves of vectors: 1, 2, ...", show_default=False)

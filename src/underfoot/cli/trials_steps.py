@@ -21,7 +21,7 @@ ProfilePath = Annotated[
 
 
 def edit(
-    file: Annotated[Path, typer.Argument(help="Recording with force plates.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="Recording with force plates.")],
     reason: Annotated[str, optional("Why; it goes to the edit log.")],
     step: Annotated[
         str, optional('Number of the step as `describe` prints it, or a time in it, as "3.1 s".')
@@ -85,7 +85,7 @@ def _step_text(step: RequiredFriction) -> str:
 
 
 def definitions(
-    folder: Annotated[Path, typer.Argument(help="Folder of walking trials.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Folder of walking trials.")],
     out: Annotated[Path | None, optional("Folder for both tables (CSV).")] = None,
     profile: ProfilePath = None,
     overwrite: Overwrite = False,
@@ -111,7 +111,7 @@ def definitions(
 
 
 def export(
-    file: Annotated[Path, typer.Argument(help="Recording.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="Recording.")],
     out: Annotated[Path, optional("File to write: .c3d, .trc (markers), .mot or .sto (forces).")],
     companion: Annotated[
         Path | None, optional("Second file of the same recording.", "--with")

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -29,6 +30,7 @@ from underfoot.core.threads import threads_limited
 
 from .goals import Goal
 from .inputs import TAIL
+from .plan import Reading
 from .study import Study
 from .surrogate import Surrogate
 
@@ -134,6 +136,23 @@ class Posterior(Presentable):
             np.savetxt(stream, self.draws, delimiter=",", fmt="%.10g")
 
 
+def _log_density(places: Array, models: Sequence[Surrogate], readings: Sequence[Reading]) -> Array:
+    """Return ln of a density (n,), less a constant, of places (n, inputs + 1) in the unit cube.
+
+    The last of a place is the share of discrepancies that are smaller. A reading is normal about
+    its surrogate's mean; its own variance, the surrogate's and that of the discrepancy add.
+    """
+    inside = ((places > 0) & (places < 1)).all(axis=1)
+    points = np.clip(places, 0.0, 1.0)
+    delta = DISCREPANCY * _half_normal(points[:, -1])
+    log_density = np.where(inside, 0.0, -np.inf)
+    for model, reading in zip(models, readings, strict=True):
+        mean, error = model.predicted(points[:, :-1])
+        variance = reading.sd**2 + error**2 + (delta * mean) ** 2
+        log_density -= 0.5 * ((reading.value - mean) ** 2 / variance + np.log(variance))
+    return log_density
+
+
 @threads_limited(1)  # thousands of small solves, which threads make several times dearer
 def posterior(
     study: Study,
@@ -163,21 +182,8 @@ def posterior(
         for one, state in zip(plan.readings, plan.states, strict=True)
     ]
     models = result.surrogates(goals)
-    measured = np.array([one.value for one in plan.readings])
-    deviation = np.array([one.sd for one in plan.readings])
     size = len(plan.uncertain)
-
-    def log_probability(places: Array) -> Array:
-        inside = ((places > 0) & (places < 1)).all(axis=1)
-        points = np.clip(places, 0.0, 1.0)
-        delta = DISCREPANCY * _half_normal(points[:, -1])
-        log_density = np.where(inside, 0.0, -np.inf)
-        for model, value, sd in zip(models, measured, deviation, strict=True):
-            mean, error = model.predicted(points[:, :size])
-            variance = sd**2 + error**2 + (delta * mean) ** 2
-            log_density -= 0.5 * ((value - mean) ** 2 / variance + np.log(variance))
-        return log_density
-
+    log_probability = partial(_log_density, models=models, readings=plan.readings)
     emcee = optional_module("emcee", "study", "A posterior")
     generator = np.random.default_rng(plan.method.seed)
     sampler = emcee.EnsembleSampler(WALKERS, size + 1, log_probability, vectorize=True)

@@ -276,6 +276,18 @@ class PairDraws:
             table.writerows([f"{x:.6g}" for x in row] for row in np.transpose([*columns.values()]))
 
 
+def even_rows(weight: Array, count: int, begin: float) -> Array:
+    """Return ``count`` rows of draws, each as often as its share of the weight, to within one.
+
+    Parameters:
+        weight: Of each draw, (n,); their sum is 1.
+        count: Number of rows.
+        begin: Above 0 to 1: where in its part of the whole weight each row is taken.
+    """
+    places = (np.arange(count) + begin) / count
+    return np.searchsorted(np.cumsum(weight), places).clip(max=weight.size - 1)
+
+
 def _from_columns(columns: Mapping[str, Array], source: str) -> PairDraws:
     rest = dict(columns)
     constants = PairConstants(*(rest.pop(name) for name in PairConstants.__dataclass_fields__))

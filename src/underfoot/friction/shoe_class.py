@@ -26,7 +26,14 @@ from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Message, Remark
 
-from .pair_contact import CONTACT_PRESSURE, TERMS, ContactTerms, PairContactLaw, PairDraws
+from .pair_contact import (
+    CONTACT_PRESSURE,
+    TERMS,
+    ContactTerms,
+    PairContactLaw,
+    PairDraws,
+    even_rows,
+)
 from .propagation import named_shares
 from .tread_error import READING, tread_error
 
@@ -202,8 +209,7 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
         kept = replace(start, notes=(*start.notes, note))
         return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing, contradicted=True)
     generator = np.random.default_rng(seed)
-    ends = (np.arange(COUNT) + generator.random()) / COUNT
-    rows = np.searchsorted(np.cumsum(weight), ends).clip(max=wide.count - 1)
+    rows = even_rows(weight, COUNT, generator.random())
     kept = wide.rows(generator.permutation(rows))
     kept = replace(kept, source=f"{start.source}; soles of class {known.name}")
     basis = f"of a sole of class {known.name}"

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import spearmanr
 
+from underfoot.case.surfaces import RQ_PER_RA
 from underfoot.core import to_si
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent
@@ -31,8 +32,6 @@ CORPUS = {"polished_concrete_2015": "bot-3000e", "fiberon_decking": "english-xl"
 """Machine of a source of the corpus whose device is called a slipmeter there."""
 SOFT = 70.0
 """Shore A between the sliders 55 and 96."""
-RQ_PER_RA = (np.pi / 2) ** 0.5
-"""Rq / Ra of Gaussian heights."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ from underfoot.friction.pair_contact import (
     ContactTerms,
     Pair,
     PairConstants,
+    even_rows,
 )
 from underfoot.friction.propagation import named_shares
 from underfoot.friction.tread_error import READING, SharedError
@@ -189,9 +190,7 @@ class JointDraws:
         weight = np.exp(log_likelihood - log_likelihood.max())
         weight /= weight.sum()
         effective = 1 / float((weight**2).sum())
-        places = (np.arange(self.count) + 0.5) / self.count
-        rows = np.searchsorted(np.cumsum(weight), places).clip(max=self.count - 1)
-        rows = np.random.default_rng(self.seed).permutation(rows)
+        rows = np.random.default_rng(self.seed).permutation(even_rows(weight, self.count, 0.5))
         left = min(effective, np.unique(self.constants.constants.kappa_0[rows]).size)
         if left < FEWEST:
             raise InputError(
