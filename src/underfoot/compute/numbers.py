@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
+from underfoot.case.quantity import one_spelling
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.core.arrays import Array
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
@@ -343,8 +344,10 @@ def heel_name(case: Case) -> str:
 def _named(case: Case, *parts: str) -> str:
     if case.shoe.outsole is not None:  # a file written anew has another checksum
         return Path(case.shoe.outsole.file).stem
-    heads = tuple(f"shoe.{part}." for part in parts)
-    return content_hash([row[:2] for row in case.rows() if row[0].startswith(heads)])
+    if case.shoe.wear.depth == 0:  # then no wear of the sole differs from another
+        case = case.replace("shoe.wear", {"edge_radius": case.shoe.wear.edge_radius})
+    heads = (f"shoe.{part}." for part in parts)
+    return content_hash(case.named_values(*heads, spelled=one_spelling))
 
 
 def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:
