@@ -1,5 +1,6 @@
 """What somebody gives counts, or the case says that it does not; how it is spelled never counts."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +119,17 @@ def test_draws_do_not_hang_on_how_a_sole_is_spelled(path, spelled):
     assert heel_name(other) == heel_name(plain)
     assert UncertainBevel.of(other).heel == UncertainBevel.of(plain).heel
     assert sole_name(plain.replace("shoe.heel.width", "71 mm")) != sole_name(plain)
+
+
+def test_copies_of_an_outsole_file_are_one_sole_and_parts_of_it_are_not(tmp_path):
+    names = tmp_path / "alpha.stl", tmp_path / "beta.stl"
+    for name in names:
+        shutil.copy(EXAMPLES / "measured" / "heel.stl", name)
+    fine = {"numerics.quick_grid_spacing": "1 mm"}
+    first, copy = (case_of().replace({**fine, "shoe.outsole": {"file": str(n)}}) for n in names)
+    assert sole_name(first) == sole_name(copy)
+    assert heel_name(first) == heel_name(copy.replace("shoe.outsole.mirror", True))
+    assert sole_name(first) != sole_name(copy.replace("shoe.outsole.region", "heel"))
 
 
 def test_equal_values_are_no_difference_of_two_cases():

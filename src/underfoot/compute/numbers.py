@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -331,6 +330,11 @@ def contact_area(state: SoleState) -> float:
     return float(state.cut.area[touching_cells(state)].sum()) * state.spacing**2
 
 
+SAME_SOLE = ("file", "foot", "mirror", "side")
+"""What makes no other sole of an outsole file, told by its checksum: its name, and the other foot
+of a pair."""
+
+
 def sole_name(case: Case) -> str:
     """Return a name of the geometry of the case's sole: those of one share its grid's error."""
     return _named(case, "heel", "tread", "sole", "wear")
@@ -342,8 +346,11 @@ def heel_name(case: Case) -> str:
 
 
 def _named(case: Case, *parts: str) -> str:
-    if case.shoe.outsole is not None:  # a file written anew has another checksum
-        return Path(case.shoe.outsole.file).stem
+    if case.shoe.outsole is not None:
+        read = dict(case.named_values("shoe.outsole."))
+        for name in SAME_SOLE:
+            read.pop(f"shoe.outsole.{name}", None)
+        return content_hash(read)
     if case.shoe.wear.depth == 0:  # then no wear of the sole differs from another
         case = case.replace("shoe.wear", {"edge_radius": case.shoe.wear.edge_radius})
     heads = (f"shoe.{part}." for part in parts)
