@@ -130,6 +130,8 @@ def test_copies_of_an_outsole_file_are_one_sole_and_parts_of_it_are_not(tmp_path
     assert sole_name(first) == sole_name(copy)
     assert heel_name(first) == heel_name(copy.replace("shoe.outsole.mirror", True))
     assert sole_name(first) != sole_name(copy.replace("shoe.outsole.region", "heel"))
+    for key, value in {"unit": "mm", "forward": "+x", "down": "-z", "cut_floor": True}.items():
+        assert sole_name(first) == sole_name(copy.replace(f"shoe.outsole.{key}", value))
 
 
 def test_equal_values_are_no_difference_of_two_cases():

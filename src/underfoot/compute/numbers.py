@@ -18,6 +18,7 @@ from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
+from .sole import file_outsole
 from .stated_spreads import ODDS, WHOLE, added
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated"
@@ -330,11 +331,6 @@ def contact_area(state: SoleState) -> float:
     return float(state.cut.area[touching_cells(state)].sum()) * state.spacing**2
 
 
-SAME_SOLE = ("file", "foot", "mirror", "side")
-"""What makes no other sole of an outsole file, told by its checksum: its name, and the other foot
-of a pair."""
-
-
 def sole_name(case: Case) -> str:
     """Return a name of the geometry of the case's sole: those of one share its grid's error."""
     return _named(case, "heel", "tread", "sole", "wear")
@@ -347,10 +343,9 @@ def heel_name(case: Case) -> str:
 
 def _named(case: Case, *parts: str) -> str:
     if case.shoe.outsole is not None:
-        read = dict(case.named_values("shoe.outsole."))
-        for name in SAME_SOLE:
-            read.pop(f"shoe.outsole.{name}", None)
-        return content_hash(read)
+        given, read = case.shoe.outsole, file_outsole(case)
+        part = given.sha256, given.solid, given.region, given.region_length
+        return content_hash([*part, read.unit, read.down, read.forward])
     if case.shoe.wear.depth == 0:  # then no wear of the sole differs from another
         case = case.replace("shoe.wear", {"edge_radius": case.shoe.wear.edge_radius})
     heads = (f"shoe.{part}." for part in parts)

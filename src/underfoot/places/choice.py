@@ -161,9 +161,9 @@ class Choice(Presentable):
         """The shoe with the highest chance of being best."""
         return max(self.shoes, key=self._chance)
 
-    def _chance(self, one: ShoeAnswer) -> float:
+    def _chance(self, answer: ShoeAnswer) -> float:
         """Return the chance that a shoe is best: one with all that are the same shoe."""
-        return math.fsum(each.best for each in self.shoes if same_shoe(each.shoe, one.shoe))
+        return math.fsum(each.best for each in self.shoes if same_shoe(each.shoe, answer.shoe))
 
     @property
     def _unlike(self) -> tuple[ShoeAnswer, ...]:

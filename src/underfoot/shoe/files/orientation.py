@@ -393,8 +393,19 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, Me
     y = a + b x + c x^2 through the middles of its rows (x along, y to the left), is positive for a
     right foot. Determined when the sagitta |c| L^2 / 4 is more than 0.6 % of the length L.
     """
-    if settings.foot != "auto":
+    told, how = _foot_by_bend(plan, spacing)
+    if settings.foot == "auto":
+        return told, how
+    if told in ("", settings.foot):
         return settings.foot, Message("")
+    return settings.foot, Message(
+        "Foot: {foot}, as stated; the plan form bends as that of the other foot.",
+        foot=settings.foot,
+    )
+
+
+def _foot_by_bend(plan: Mask, spacing: float) -> tuple[str, Message]:
+    """Return the foot that the bend of a plan form tells, "" where it tells none, and how."""
     rows = np.nonzero(plan.any(axis=1))[0]
     rows = rows[int(0.03 * rows.size) : rows.size - int(0.03 * rows.size)]
     y = np.arange(plan.shape[1], dtype=float)
