@@ -239,3 +239,12 @@ def test_risk_and_models_present_themselves():
         assert len(repr(model)) < 200
         table = model.to_frame()
         assert list(table["probability of a slip"]) == list(model(table["ACOF"], 0.2))
+
+
+def test_draws_beyond_the_friction_that_a_sole_can_have_count_as_the_most_of_it():
+    draws = np.array([0.1, 0.2, 0.3, 9.0])
+    most = slip_risk(SourcedValue(0.3, "1"), samples=np.minimum(draws, 5.0))
+    assert slip_risk(SourcedValue(0.3, "1"), samples=draws).probability == most.probability
+    wide = slip_risk(SourcedValue(0.3, "1", uncertainty=4.0))
+    assert wide.low == pytest.approx(0.0, abs=1e-6)
+    assert wide.high == pytest.approx(1.0, abs=1e-2)

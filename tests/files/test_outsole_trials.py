@@ -4,6 +4,7 @@ import itertools
 import math
 import os
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -378,6 +379,17 @@ def test_forepart_is_no_heel_turned_round(length):
     assert "Assumed: a forepart, cut at its rear" in said(found)
     assert "--forward flip" in said(found)
     assert found.foot in ("", "right")
+
+
+def test_a_stated_foot_that_the_plan_denies_and_a_side_without_a_pair_are_told():
+    sole = plain_sole()
+    foot = read(sole).foot
+    other = {"left": "right", "right": "left"}[foot]
+    assert "bends as that of the other foot" not in said(read(sole, replace(WHOLE, foot=foot)))
+    denied = read(sole, replace(WHOLE, foot=other))
+    assert denied.foot == other
+    assert "bends as that of the other foot" in said(denied)
+    assert "no pair to choose from" in said(read(sole, replace(WHOLE, side="left")))
 
 
 @pytest.mark.parametrize("length", [60, 95])

@@ -1,5 +1,6 @@
 """A drawn outsole turned in space is the same sole: its land, its size, its film."""
 
+import ast
 from dataclasses import replace
 from pathlib import Path
 
@@ -42,3 +43,24 @@ def test_a_sole_turned_in_space_keeps_its_land(rotation):
     after, cells = land_share(turned(mesh, rotation))
     assert after == pytest.approx(share, abs=WITHIN)
     assert cells == shape
+
+
+@pytest.mark.parametrize("degrees", [1.0, 3.0, 5.0, -7.0, 12.0])
+def test_a_heel_turned_in_plan_is_the_same_heel(degrees):
+    mesh = read_mesh(HEEL, "auto")
+    share, shape = land_share(mesh)
+    after = turned(mesh, Rotation.from_euler("z", degrees, degrees=True))
+    assert land_share(after) == (pytest.approx(share, abs=WITHIN), shape)
+    assert outsole_from_mesh(mesh).forward == "+x"
+    along = np.array(ast.literal_eval(outsole_from_mesh(after).forward))
+    assert along == pytest.approx(
+        [np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees)), 0], abs=0.006
+    )
+
+
+def test_a_scan_of_a_heel_that_is_not_quite_alike_stays_as_drawn():
+    mesh = read_mesh(HEEL, "auto")
+    places, which = np.unique(mesh.triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    moved = places + np.random.default_rng(0).normal(0.0, 0.05, places.shape)
+    rough = replace(mesh, triangles=moved[which].reshape(-1, 3, 3).astype(np.float32))
+    assert outsole_from_mesh(rough).forward == "+x"

@@ -89,3 +89,14 @@ def test_a_motion_that_turns_tells_the_angle_at_its_end():
         motion=SimpleNamespace(build=lambda: history, end_time=0.2), contaminant=None
     )
     assert _last_instant(made) == "at the end of the motion (200 ms, shoe angle 4 deg)"
+
+
+@pytest.mark.parametrize(
+    ("name", "mean", "sd"),
+    [("mass", 15.0, 2.0), ("mass", 230.0, 20.0), ("walking_speed", 0.45, 0.05)],
+)
+def test_people_unlike_adults_are_drawn_about_their_own_mean(case, name, mean, sd):
+    asked = case.replace({f"slip.{name}_mean": mean, f"slip.{name}_sd": sd})
+    drawn = getattr(slip_population(asked), name).draw(4000, np.random.default_rng(0))
+    assert drawn.mean() == pytest.approx(mean, abs=4 * sd / 4000**0.5)
+    assert drawn.std() == pytest.approx(sd, rel=0.05)

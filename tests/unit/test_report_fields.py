@@ -284,3 +284,32 @@ def test_an_order_is_stated_from_three_quarters_on(worn_shoe_result):
     assert (near.different, far.different) == ((), ("B",))
     assert decided.table().rows[0][-1] == "higher, 75 %"
     assert undecided.table().rows[0][-1] == "not decided"
+
+
+def test_no_order_is_stated_where_a_spread_is_not_known(worn_shoe_result):
+    def result(name, value):
+        provenance = dataclasses.replace(worn_shoe_result.provenance, case_hash=name)
+        scalars = {**worn_shoe_result.scalars, **cof(value, None)}
+        data = from_xarray(worn_shoe_result.fields.drop_vars("cof_draws"))
+        changes = {"name": name, "scalars": scalars, "provenance": provenance, "data": data}
+        return dataclasses.replace(worn_shoe_result, **changes)
+
+    for apart, shown in ((0.2, "0.200"), (0.0, "less than 0.001")):
+        both = compare(result("a", 0.3 + apart), result("b", 0.3))
+        assert both.order is None
+        [line] = both.headline()
+        assert line.startswith(f"COF of a is {shown} above that of b.")
+        assert "no spread is known of a and b" in line
+
+
+def test_of_three_results_it_is_said_which_differs_from_the_first(worn_shoe_result):
+    def result(name, value):
+        provenance = dataclasses.replace(worn_shoe_result.provenance, case_hash=name)
+        scalars = {**worn_shoe_result.scalars, **cof(value, 0.001)}
+        data = from_xarray(worn_shoe_result.fields.drop_vars("cof_draws"))
+        changes = {"name": name, "scalars": scalars, "provenance": provenance, "data": data}
+        return dataclasses.replace(worn_shoe_result, **changes)
+
+    three = compare(result("a", 0.3), result("b", 0.3), result("c", 0.1))
+    assert three.headline()[0].startswith("a and b are equal for every purpose")
+    assert three.headline()[1] == "These differ from a: coefficient of friction (C)."

@@ -21,7 +21,7 @@ from .motion import Motion, Sensor
 from .numerics import Numerics
 from .parts import FILE_VERSION, CaseParts, field_at, path_kind, unit_at
 from .people import Risk, Walkers
-from .quantity import DOOR
+from .quantity import DOOR, one_value
 from .section import (
     DEFAULT,
     FILE,
@@ -332,15 +332,15 @@ class Case(Presentable):
         """Hash of the values and their uncertainties, the same on every machine.
 
         Files count by their content, options of other packages by their code, and what an option
-        looks up in the catalogue by what stands there. Names, comments and sources don't count.
+        looks up in the catalogue by what stands there. Names, comments, sources and what nothing
+        reads don't count.
         """
         content: dict[str, Any] = {"catalogue": self.consulted.content()}
         content["code"] = {path: section.code() for path, section in walk(self._parts)}
         for path, section, name in self._values():
             cls, here = type(section), f"{path}.{name}"
             if isinstance(section, Option) and name == section.key:
-                packaged = cls.__module__.startswith("underfoot.")
-                content[here] = section.name if packaged else cls
+                content[here] = section.name if _packaged(section) else cls
                 continue
             value = getattr(section, name)
             if here in self.idle_paths or value is None or isinstance(value, Section):
@@ -368,16 +368,30 @@ class Case(Presentable):
 
     @cached_property
     def idle_paths(self) -> frozenset[str]:
-        """Paths of values that none of the chosen options reads."""
-        chosen = {
-            path for option in vars(self._parts).values() for path in getattr(option, "reads", ())
-        }
-        unused = {
-            f"{path}.{name}"
-            for path, section in walk(self._parts)
-            for name in section.unused(self._parts)
-        }
-        return frozenset(set(optional_reads()) - chosen | unused)
+        """Paths of values that count for nothing: nothing that is chosen reads them.
+
+        What an option of another package reads is not known: beside one, every value counts.
+        """
+        sections = list(walk(self._parts))
+        options = [each for _, each in sections if isinstance(each, Option)]
+        idle = set(optional_reads()) - {path for option in options for path in option.reads}
+        if all(map(_packaged, options)):
+            idle |= {
+                f"{path}.{name}"
+                for path, section in sections
+                for name in section.unused(self._parts)
+            }
+        return frozenset(idle)
+
+    @cached_property
+    def idle_given(self) -> Mapping[str, tuple[str, ...]]:
+        """Names of the values that were given and count for nothing, by section."""
+        named: dict[str, tuple[str, ...]] = {}
+        for path, origin in self.origins.items():
+            section, _, name = path.rpartition(".")
+            if origin.kind == GIVEN and path in self.idle_paths:
+                named[section] = (*named.get(section, ()), name)
+        return named
 
     @cached_property
     def origins(self) -> Mapping[str, Origin]:
@@ -407,6 +421,23 @@ class Case(Presentable):
         if isinstance(section, Option) and name == section.key:
             return section.name
         return getattr(section, name) if name in type(section).model_fields else None
+
+    def named_values(
+        self, *heads: str, spelled: Callable[[Any, str], Any] = one_value
+    ) -> list[tuple[str, Any]]:
+        """Return path and value of all that is set below some sections, free of their spelling.
+
+        Draws are named by them: what counts for nothing stands with its default, as if nobody had
+        given it. ``spelled`` takes value and unit.
+        """
+        values = []
+        for path in (path for path in self.origins if path.startswith(heads)):
+            value = self.value(path)
+            if path in self.idle_paths:
+                value = None if (field := field_at(path)) is None else field.default
+            if value is not None:
+                values.append((path, spelled(value, unit_at(path))))
+        return values
 
     def sourced(self, path: str) -> SourcedValue:
         """Return the number at a dotted path with its uncertainty, source and marks."""
@@ -457,7 +488,7 @@ class Case(Presentable):
         return [
             (path, value_text(origin, unit_at(path)), _origin_text(origin))
             for path, origin in self.origins.items()
-            if path not in self.idle_paths
+            if path not in self.idle_paths or origin.kind != DEFAULT
         ]
 
     def _complete_tree(self) -> dict[str, Any]:
@@ -470,11 +501,19 @@ class Case(Presentable):
             table, here = tree, f"{path}.{name}"
             for part in path.split("."):
                 table = table.setdefault(part, {})
-            if here in self.origins and not (here in self.idle_paths or name in section.replaced):
-                table[name] = _origin_toml(self.origins[here], here)
+            origin = self.origins.get(here)
+            if origin is None or name in section.replaced:
+                continue
+            if here not in self.idle_paths or origin.kind == GIVEN:
+                table[name] = _origin_toml(origin, here)
         if self.contaminant is None:
             tree["contaminant"] = DRY
         return tree
+
+
+def _packaged(option: Option) -> bool:
+    """Return whether an option is of this package."""
+    return type(option).__module__.startswith("underfoot.")
 
 
 def value_text(origin: Origin, unit: str, *, spread: bool = True) -> str:

@@ -15,7 +15,8 @@ from underfoot.core.arrays import Array
 
 from .context import Context
 from .quantity import Flag, Quantity, default, optional
-from .section import Option
+from .section import CaseView, Option
+from .sole import is_bare
 from .surfaces import STYLUS_WAVES, WAVES
 from .tables import meant_file, with_checksum
 
@@ -265,6 +266,8 @@ class ComplianceOption(Option):
 
     slot: ClassVar[str] = "compliance"
     usual: ClassVar[str | None] = "layered"
+    layers: ClassVar[bool] = True
+    """Whether the thickness of outsole and midsole counts."""
     cut: ClassVar[bool] = False
     """Whether sipes finer than the grid let the lugs give way further."""
 
@@ -327,6 +330,7 @@ class HalfSpaceCompliance(ComplianceOption):
     """Elastic half-space, for comparison."""
 
     name: ClassVar[str] = "half_space"
+    layers: ClassVar[bool] = False
     source: ClassVar[str] = "Boussinesq half-space"
 
     def build(self, context: Context, sole: SoleMap) -> Compliance:
@@ -345,6 +349,8 @@ class FilmOption(Option):
 
     slot: ClassVar[str] = "film"
     usual: ClassVar[str | None] = "reynolds"
+    bears: ClassVar[bool] = True
+    """Whether the fluid builds up pressure."""
 
     @abstractmethod
     def build(self, context: Context) -> FilmModel | None:
@@ -377,6 +383,12 @@ class ReynoldsFilm(FilmOption):
         assumed=True,
     )
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        edges = ("suction", "dewetting")
+        if case.contaminant is None or is_bare(case):
+            return ("lug_edges", *edges)
+        return () if self.lug_edges else edges
+
     def build(self, context: Context) -> FilmModel | None:
         from underfoot.film import NewtonianFilm
 
@@ -388,6 +400,7 @@ class NoFilm(FilmOption):
     """The fluid changes friction only; it builds up no pressure (as if it drained at once)."""
 
     name: ClassVar[str] = "none"
+    bears: ClassVar[bool] = False
     source: ClassVar[str] = "none: the fluid builds up no pressure"
 
     def build(self, context: Context) -> FilmModel | None:

@@ -1,11 +1,14 @@
 """A case in words: what was assumed, what leaves a tested range, what differs from another."""
 
+import math
+
 from underfoot.core import Breach
 from underfoot.core.remark import Amount, Message, Remark
 
 from .case import Case, value_text
 from .contact import HardnessOption
 from .parts import unit_at
+from .surfaces import STYLUS_WAVES
 
 _NOT_PHYSICAL = ("numerics.", "sensor.", "slip.")
 
@@ -32,6 +35,10 @@ def assumptions(case: Case) -> list[Remark]:
         Remark(section, "{values} ({why})", values=values, why=why)
         for (section, why), values in groups.items()
     ]
+    lines += [
+        Remark(section, "{names}: given, but nothing that is chosen reads it", names=names)
+        for section, names in case.idle_given.items()
+    ]
     if case.interface.name == "composite":
         for path, roughness in (("shoe", case.shoe.roughness), ("floor", case.floor.roughness)):
             if roughness.rq_or_estimate is None:
@@ -42,6 +49,15 @@ def assumptions(case: Case) -> list[Remark]:
                 if roughness.ra is None:
                     told = Message("rq = {rq} (Rz over 5.7; it is over 4 to 8)", rq=rq)
                 lines.append(Remark.of(f"{path}.roughness", told))
+            if roughness.file is None and (roughness.cutoff or math.inf) < STYLUS_WAVES[1]:
+                lines.append(
+                    Remark(
+                        f"{path}.roughness",
+                        "cutoff = {cutoff}: waves from there to {longest} count as none",
+                        cutoff=Amount(roughness.cutoff or 0.0, "m"),
+                        longest=Amount(STYLUS_WAVES[1], "m"),
+                    )
+                )
         rq = case.effective_rq
         if rq.assumed:
             lines.append(

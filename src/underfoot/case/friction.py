@@ -67,6 +67,8 @@ class FrictionOption(Option):
     usual: ClassVar[str | None] = "pair"
     dry: ClassVar[bool] = False
     """Whether the law holds without a fluid."""
+    compound: ClassVar[tuple[str, ...]] = ()
+    """What it reads of the compound beside modulus and relaxation; of the packaged laws."""
 
     @abstractmethod
     def build(self, context: Context) -> FrictionLaw:
@@ -94,6 +96,7 @@ class PairOption(FrictionOption):
     dry: ClassVar[bool] = True
     source: ClassVar[str] = "calibrated on published measurements of other pairs"
     reads: ClassVar[tuple[str, ...]] = ("contaminant.family",)
+    compound: ClassVar[tuple[str, ...]] = ("polymer", "shore_a", "loss_tangent")
     file_paths: ClassVar[tuple[str, ...]] = ("draws_file", "contact_table")
 
     draws_file: str | None = optional(
@@ -226,6 +229,12 @@ class StribeckOption(_Measured):
     tau_hydro: Speed | None = optional("decay speed (Eq. 17)")
     cof_asymptote: Friction | None = optional("COF at high speed (Eq. 17)")
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        if self.cof_bl is None:
+            return ("tau_hydro", "cof_asymptote", "hysteresis_cof")
+        fall = ("tau_hydro", "cof_asymptote")
+        return () if all(getattr(self, name) is not None for name in fall) else fall
+
     def build(self, context: Context) -> FrictionLaw:
         from underfoot.friction import BoundaryLaw, StribeckLaw, stribeck_law_at
 
@@ -256,7 +265,7 @@ class AdhesionBlockingOption(FrictionOption):
     beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required(
         "share of dry adhesion left (Eq. 26)", remedy=_remedy
     )
-    load: Force | None = optional("load at which alpha was measured")
+    load: Force | None = optional("at which alpha was measured; default: 20.9 N, that of Eq. 26")
     pair: str | None = optional("sole and floor it was measured on")
 
     def build(self, context: Context) -> FrictionLaw:
@@ -264,7 +273,12 @@ class AdhesionBlockingOption(FrictionOption):
         from underfoot.friction import AdhesionBlockingLaw
 
         return AdhesionBlockingLaw(
-            AdhesionBlocking(self.alpha, self.beta, self.sourced("alpha").source),
+            AdhesionBlocking(
+                self.alpha,
+                self.beta,
+                self.sourced("alpha").source,
+                **({} if self.load is None else {"normal_force": self.load}),
+            ),
             self.sourced("dry_adhesion_cof"),
             self.sourced("hysteresis_cof"),
             _viscosity(context),
@@ -285,8 +299,9 @@ class ConstantOption(FrictionOption):
         from underfoot.friction import ConstantLaw
 
         part, whole = self.hysteresis_cof or 0.0, self.sourced("cof")
-        measured = (whole.source, context.viscosity_value, whole.uncertainty)
-        return ConstantLaw(self.cof - part, part, *measured)
+        spread = whole.uncertainty  # of the sum: its parts only share it
+        shared = spread, None if spread is None else 0.0
+        return ConstantLaw(self.cof - part, part, whole.source, context.viscosity_value, *shared)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if (self.hysteresis_cof or 0.0) > self.cof:
@@ -304,6 +319,10 @@ class _Mechanism(_Measured):
     tau_hydro: Speed | None = optional(
         "decay speed (Eq. 17): with it, cof_bl is a limit at low speed"
     )
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        limit = self.cof_bl is not None and self.tau_hydro is not None
+        return () if limit else ("cof_bl", "tau_hydro")
 
     def _asperity_law(self, context: Context) -> SpeedEffectLaw:
         from underfoot.friction import asperity_ehl_law
@@ -617,7 +636,7 @@ def _span(
     spread = range_95(SourcedValue(rq, "m", uncertainty=roughness.rq_uncertainty))
     assert spread is not None
     longest = HYSTERESIS_WAVES[2]
-    share = min(1.0, (longest / (roughness.cutoff or longest)) ** hurst)
+    share = roughness.share_up_to(longest, hurst)
     if roughness.file is not None:
         share = roughness.moment(0, HYSTERESIS_WAVES[0], longest) / rq
     return spread[0] * share, spread[1] * share

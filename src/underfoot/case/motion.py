@@ -13,7 +13,7 @@ from pydantic import Field
 from underfoot.core import InputError, RangeError, display, to_si
 
 from .quantity import Flag, Force, Length, Quantity, Speed, default, optional
-from .section import CaseView, Option, Section
+from .section import DEFAULT, CaseView, Leaf, Option, Origin, Section
 from .tables import as_written, plain, table_columns
 
 if TYPE_CHECKING:
@@ -91,6 +91,9 @@ class HeldMotion(Motion):
     def forward(self) -> bool:
         return not self.backward
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return ("duration",) if self.steady else ()
+
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         remedy = "Leave motion.duration out: the march then goes on until sliding is steady"
         if self.end_time is not None and self.end_time < self.force_rise_time:
@@ -166,13 +169,17 @@ class MotionFromHistory(Motion):
             for key, point in (("normal_force", "normal_force"), ("duration", "time")):
                 if point in last:
                     table.setdefault(key, last[point])
-            table.setdefault("force_rise_time", table.get("duration", "30 ms"))
+            rise = Leaf(plain(table.get("duration")) or "30 ms", source="the history")
+            table.setdefault("force_rise_time", Origin(DEFAULT, rise))
             if isinstance(last.get("speed"), str):
                 speed = abs(to_si(last["speed"], "m/s", where=f"{where}.history_points"))
                 table.setdefault("speed", f"{max(speed, SLOWEST):.12g} m/s")
             if "shoe_angle" in last:
                 table.setdefault("shoe_angle", last["shoe_angle"])
         return table
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return ("force_rise_time",)  # the history tells how the force rises
 
     def build(self) -> MotionHistory | None:
         from underfoot.sole_contact.motion_history import MotionHistory
@@ -228,6 +235,15 @@ class FloorArray(Section):
         "has the array under its middle at the end"
     )
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return _without_film(self, case)
+
+
+def _without_film(sensors: Section, case: CaseView) -> tuple[str, ...]:
+    """Return the fields of sensors that no film reaches: all of them."""
+    film = case.contaminant is not None and case.film.bears
+    return () if film else tuple(type(sensors).model_fields)
+
 
 class Sensor(Section):
     """Fluid-pressure sensors in the floor: the scans of one, and an array that stays in place."""
@@ -243,3 +259,6 @@ class Sensor(Section):
         assumed=True,
     )
     array: FloorArray | None = None
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return _without_film(self, case)

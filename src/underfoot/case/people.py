@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field
 
 from .quantity import Friction, FrictionSpread, Quantity, default
-from .section import Option, Section
+from .section import CaseView, Option, Section
 
 if TYPE_CHECKING:
     from underfoot.slip import SlipModel
@@ -142,3 +142,6 @@ class Walkers(Section):
     test_runs: Annotated[int, Field(ge=1, le=100, strict=True)] = default(
         4, 4, "further full slips that it is tested on"
     )
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return ("brake_time_mean", "brake_time_sd") if self.heel_brake == "none" else ()

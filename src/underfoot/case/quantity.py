@@ -95,6 +95,27 @@ class Quantity:
         return core_schema.with_info_plain_validator_function(self.parse)
 
 
+_DRAWN_IN = {"m": (1e3, "mm"), "rad": (180 / math.pi, "deg")}
+
+
+def one_spelling(value: Any, unit: str) -> Any:
+    """Return a value (SI) as a drawing has it, the same however it was spelled.
+
+    >>> one_spelling(0.075, "m"), one_spelling(7.5 * 0.01, "m"), one_spelling("grid", "1")
+    ('75 mm', '75 mm', 'grid')
+    """
+    if isinstance(value, bool) or not isinstance(value, float | int):
+        return value
+    factor, name = _DRAWN_IN.get(unit, (1.0, unit))
+    number = f"{value * factor:.12g}"
+    return number if name == "1" else f"{number} {name}"
+
+
+def one_value(value: Any, unit: str) -> Any:
+    """Return a value (SI) as ``one_spelling`` of it is read: free of the last digit's rounding."""
+    return si_of_text(one_spelling(value, unit), unit) if isinstance(value, float) else value
+
+
 def refusal(kind: Literal["input", "range"], error: InputError) -> PydanticCustomError:
     """Return the validation error that carries our message."""
     context = {"what": error.what, **error.parts}

@@ -57,6 +57,8 @@ class CaseView(Protocol):
     motion: Any
     interface: Any
     numerics: Any
+    film: Any
+    compliance: Any
     friction: Any
 
 
@@ -239,7 +241,7 @@ class Section(BaseModel):
         return None
 
     def unused(self, case: CaseView) -> tuple[str, ...]:
-        """Return the fields of the section that nothing of this case reads."""
+        """Return the fields of the section that count for nothing: this case reads them nowhere."""
         return ()
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:

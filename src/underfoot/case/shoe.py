@@ -48,6 +48,8 @@ LossTangent = Annotated[float, Quantity("1", 0.0, 3.0, open_low=True)]
 Density = Annotated[float, Quantity("kg/m^3", 10.0, 3e4)]
 Direction = Literal["auto", "flip", "+x", "-x", "+y", "-y", "+z", "-z"]
 _mm = 1e-3
+BY_LAW = ("polymer", "shore_a", "loss_tangent")
+"""What friction laws read of a compound beside its modulus and its relaxation."""
 _READ = "read from the file; underfoot check tells what and how"
 
 
@@ -118,6 +120,13 @@ class Material(Section):
             spectrum = with_file_values(given, values.pop("relaxation"), name)
             table = {**table, "relaxation": spectrum}
         return with_file_values(table, values, name)
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        by_law = set(BY_LAW) - set(case.friction.compound)
+        if self.modulus is None:
+            by_law -= {"shore_a"}  # the modulus is made of it
+        tested = () if self.relaxation else ("slowest_tested", "fastest_tested")
+        return ("bulk_modulus", "density", *tested, *(name for name in BY_LAW if name in by_law))
 
     def loss_tested_at(self, rate: float) -> bool:
         """Return whether a test of the compound tells its loss at a rate (rad/s)."""
@@ -190,6 +199,9 @@ class Midsole(Section):
     thickness: Length
     poisson_ratio: Poisson = default(0.3, 0.3, "foam", assumed=True)
 
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return () if case.compliance.layers else tuple(type(self).model_fields)
+
 
 class SoleLayers(Section):
     """What carries the tread: outsole layer and midsole on a stiff foot."""
@@ -201,6 +213,9 @@ class SoleLayers(Section):
     def thickness(self) -> float:
         """Outsole and midsole together, m."""
         return self.outsole_thickness + (self.midsole.thickness if self.midsole else 0.0)
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        return () if case.compliance.layers else ("outsole_thickness",)
 
 
 class OutsoleFile(Section):

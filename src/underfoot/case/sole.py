@@ -360,6 +360,12 @@ class Lugs(TreadPattern):
             )
 
 
+def is_bare(case: CaseView) -> bool:
+    """Return whether the sole of a case has neither tread nor channel; a file may have both."""
+    tread = case.shoe.tread
+    return tread is not None and tread.name == "none" and tread.arc_channel is None
+
+
 def usual_tread(pattern: str) -> dict[str, str]:
     """Return the keys that a pattern needs with usual values, all of them assumed."""
     return {} if pattern == "none" else _USUAL | _FURTHER.get(pattern, {})

@@ -108,6 +108,21 @@ class SurfaceRoughness(Section):
             return RQ_PER_RA * self.ra
         return None if self.rz is None else self.rz / math.sqrt(math.prod(RZ_SPREAD))
 
+    def share_up_to(self, longest: float, hurst: float) -> float:
+        """Return Rq of waves up to ``longest`` (m) over the Rq of the case, where no scan tells it.
+
+        Behind a longer cut-off waves are left out, self-affine with ``hurst``; what a shorter one
+        hides is not known, and its Rq stands as it is.
+        """
+        return min(1.0, (longest / (self.cutoff or longest)) ** hurst)
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        forms = ("rq", "ra", "rz")  # the first that is known counts
+        known = [name for name in forms if getattr(self, name) is not None]
+        scan = ("length_unit", "height_unit", "spacing") if self.file is None else ()
+        filtered = ("cutoff",) if self.file is None and not known else ()
+        return ("rp", "rt", *known[1:], *filtered, *scan)
+
     @property
     def rq_uncertainty(self) -> float | None:
         """Standard deviation of ``rq_or_estimate``, m; None when not given.
@@ -291,7 +306,11 @@ class CompositeInterface(Interface):
     def _height(self, roughness: SurfaceRoughness, usual: tuple[float, float]) -> float:
         """Return Rq with waves up to the longest, m: of the scan, else the factor times Rq."""
         if roughness.sha256 is None:
-            rq = roughness.rq_or_estimate or math.sqrt(math.prod(usual))
+            rq = roughness.rq_or_estimate
+            if rq is None:
+                rq = math.sqrt(math.prod(usual))
+            else:
+                rq *= roughness.share_up_to(STYLUS_WAVES[1], self.hurst)
             return self.roughness_beyond_cutoff * rq
         return roughness.moment(0, STYLUS_WAVES[0], self.longest_wave)
 

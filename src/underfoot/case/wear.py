@@ -15,7 +15,7 @@ from underfoot.core import InputError, RangeError, display, to_si
 
 from .quantity import Angle, Depth, Force, Length, Quantity, Rounding, default, optional
 from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
-from .sole import through_outsole
+from .sole import is_bare, through_outsole
 
 if TYPE_CHECKING:
     from underfoot.shoe.shape import SoleWear, WearOnSole
@@ -50,6 +50,13 @@ class Wear(Option):
     @abstractmethod
     def build(self) -> SoleWear | WearOnSole | None:
         """Return what is worn away as geometry; None where a contact must be solved for it."""
+
+    def unused(self, case: CaseView) -> tuple[str, ...]:
+        edges = ("edge_radius",) if is_bare(case) else ()
+        if self.depth > 0:
+            return edges
+        own = (name for name in type(self).model_fields if name not in Wear.model_fields)
+        return (*own, *edges)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         yield from through_outsole(case, self.depth, f"{where}.depth")

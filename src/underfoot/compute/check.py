@@ -103,6 +103,7 @@ def case_check(case: Case) -> CaseCheck:
         context = resolved(case)
         if not case.value("rough_contact.file"):  # a check computes no contact
             context = replace(context, rough_contact=lambda _: None)
+        breaches += [breach.remark for breach in context.modulus_breaches]
         law = case.friction.build(context)
         local = {
             "contact_pressure": np.array([case.motion.normal_force / USUAL_AREA]),

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.case import Case
+from underfoot.case.quantity import one_spelling
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.core.arrays import Array
 from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
@@ -18,6 +18,7 @@ from underfoot.sole_contact import SensorReading
 from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
+from .sole import file_outsole
 from .stated_spreads import ODDS, WHOLE, added
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated"
@@ -341,10 +342,14 @@ def heel_name(case: Case) -> str:
 
 
 def _named(case: Case, *parts: str) -> str:
-    if case.shoe.outsole is not None:  # a file written anew has another checksum
-        return Path(case.shoe.outsole.file).stem
-    heads = tuple(f"shoe.{part}." for part in parts)
-    return content_hash([row[:2] for row in case.rows() if row[0].startswith(heads)])
+    if case.shoe.outsole is not None:
+        given, read = case.shoe.outsole, file_outsole(case)
+        part = given.sha256, given.solid, given.region, given.region_length
+        return content_hash([*part, read.unit, read.down, read.forward])
+    if case.shoe.wear.depth == 0:  # then no wear of the sole differs from another
+        case = case.replace("shoe.wear", {"edge_radius": case.shoe.wear.edge_radius})
+    heads = (f"shoe.{part}." for part in parts)
+    return content_hash(case.named_values(*heads, spelled=one_spelling))
 
 
 def readings(contact: SoleContact, cof: float, sensor: SensorReading) -> dict[str, float]:

@@ -73,9 +73,7 @@ class UncertainBevel:
             return None
         angle = case.sourced(path)
         deviation = angle.uncertainty or FACET_DEVIATION * angle.assumed
-        paths = (row[0] for row in case.rows())
-        heel = [(one, case.value(one)) for one in paths if one.startswith("shoe.heel.")]
-        name, seed = content_hash(heel), case.numerics.seed
+        name, seed = content_hash(case.named_values("shoe.heel.")), case.numerics.seed
         return cls(deviation, not angle.uncertainty, name, seed) if deviation else None
 
     def turns(self, count: int) -> Array:

@@ -4,9 +4,14 @@ import math
 from dataclasses import replace
 
 from underfoot.case import Case
+from underfoot.case.contact import HARDNESS_SPREAD
 from underfoot.case.context import Context
 from underfoot.case.surfaces import STYLUS_WAVES
 from underfoot.core import Breach, Progress, Range, SourcedValue, breaches, silent
+from underfoot.material import shore_a_gent
+
+SOFTEST = 0.16e6
+"""Pa, Young's modulus of Shore A 0 (Gent)."""
 
 
 def resolved(case: Case, progress: Progress = silent) -> Context:
@@ -20,7 +25,7 @@ def resolved(case: Case, progress: Progress = silent) -> Context:
         motion=case.motion,
         interface=case.interface,
         modulus=modulus,
-        modulus_breaches=(*beyond, *_untested_rates(case)),
+        modulus_breaches=(*beyond, *_untested_rates(case), *_soft_floor(case, modulus)),
         viscosity=None if case.contaminant is None else case.contaminant.build(),
         rq=case.effective_rq,
         rq_deviation=case.interface.rq_deviation(*surfaces),
@@ -42,6 +47,16 @@ def _untested_rates(case: Case) -> list[Breach]:
     )
     rates = [2 * math.pi * abs(case.motion.speed) / wave for wave in waves]
     return breaches("compound", {"frequency": tested}, {"frequency": rates})
+
+
+def _soft_floor(case: Case, modulus: SourcedValue) -> list[Breach]:
+    """Return whether the floor gives way with the sole: the solver takes it as rigid."""
+    if case.floor.shore_a is None or modulus.value is None:
+        return []
+    least = modulus.value * (1 / HARDNESS_SPREAD - 1)  # of the floor: E E_f / (E + E_f) is 0.7 E
+    softest = float(shore_a_gent(max(least, SOFTEST)))
+    rigid = Range(softest, 100.0, "1", "a rigid floor: it softens the contact by less than 30 %")
+    return breaches("floor", {"Shore A": rigid}, {"Shore A": case.floor.shore_a})
 
 
 def turned(context: Context, turn: float) -> Context:

@@ -25,6 +25,9 @@ from .numbers import required_friction
 from .prepare import prepared
 from .solve import pool_depth, start_film
 
+WIDE = 3.0
+"""Standard deviations to either side of a stated mean that are drawn at least."""
+
 
 def slip_setting(case: Case, *, quick: bool = True) -> Setting:
     """Return shoe, floor and fluid of a case as a slip needs them.
@@ -74,7 +77,8 @@ def slip_population(
     def spread(path: str, low: float, high: float) -> Spread:
         mean, sd = case.sourced(f"{path}_mean"), case.value(f"{path}_sd")
         assert mean.value is not None
-        ends = min(low, mean.value), max(high, mean.value)
+        least = max(mean.value - WIDE * sd, mean.value / 2)  # of people unlike adults on the level
+        ends = min(low, least), max(high, mean.value + WIDE * sd)
         return Spread(mean.value, sd, *ends, mean.source, mean.assumed)
 
     angle, asked = case.motion.shoe_angle, case.sourced("risk.rcof_mean")

@@ -307,8 +307,7 @@ def _subject(case: Case, path: str) -> str:
     if not path.startswith("shoe."):
         return name
     owner = path.rpartition(".")[0]
-    beside = [row[0] for row in case.rows() if row[0].startswith(f"{owner}.")]
-    return f"{name} of {content_hash([(one, case.value(one)) for one in beside])}"
+    return f"{name} of {content_hash(case.named_values(f'{owner}.'))}"
 
 
 def _drawn_without(case: Case, path: str) -> bool:

@@ -33,21 +33,25 @@ RANGES = {
 class AdhesionBlocking:
     """How much adhesion friction a fluid leaves: F_lubricated = alpha + beta F_dry.
 
-    ``alpha`` (N, at 20.9 N) is what the fluid itself carries, ``beta`` (1) how much of the dry
-    adhesion of the shoe-floor pair comes through.
+    ``alpha`` (N, at ``normal_force``, N) is what the fluid itself carries, ``beta`` (1) how much of
+    the dry adhesion of the shoe-floor pair comes through.
     """
 
     alpha: float
     beta: float
     source: str = SOURCE
+    normal_force: float = NORMAL_FORCE
 
     def __post_init__(self) -> None:
+        if not (math.isfinite(self.normal_force) and self.normal_force > 0.0):
+            what = f"normal_force is {self.normal_force:g} N"
+            raise InputError(what, where="normal_force", allowed="above 0 N")
         for name, value in (("alpha", self.alpha), ("beta", self.beta)):
             if not (math.isfinite(value) and value >= 0.0):
                 raise InputError(f"{name} is {value:g}", where=name, allowed="0 or more")
 
     def lubricated_adhesion(self, dry_adhesion: ArrayLike) -> Any:
-        """Return the adhesion friction force under the fluid, N (Eq. 26), at 20.9 N.
+        """Return the adhesion friction force under the fluid, N (Eq. 26), at ``normal_force``.
 
         ``dry_adhesion`` in N, any shape, >= 0. Eq. 26 is a regression (R2 = 0.49): below
         ``crossover`` it exceeds the dry adhesion itself; the value is returned as it is.
@@ -61,13 +65,13 @@ class AdhesionBlocking:
         return scalar_or_array(result)
 
     def lubricated_adhesion_cof(self, dry_adhesion_cof: ArrayLike) -> Any:
-        """Return the adhesion part of the COF under the fluid: alpha / 20.9 N + beta COF_dry.
+        """Return the adhesion part of the COF under the fluid: alpha / normal_force + beta COF_dry.
 
-        Exact at 20.9 N. At another load it assumes that adhesion grows in proportion to the
+        Exact at that load. At another load it assumes that adhesion grows in proportion to the
         load, which the tests can't tell: ``strobel_breaches`` marks it.
         """
         dry = np.asarray(dry_adhesion_cof, dtype=float)
-        return self.lubricated_adhesion(dry * NORMAL_FORCE) / NORMAL_FORCE
+        return self.lubricated_adhesion(dry * self.normal_force) / self.normal_force
 
     def estimate(self, dry_adhesion: float) -> SourcedValue:
         """Return Eq. 26 with the uncertainty of the regression, N.

@@ -21,8 +21,9 @@ RANGES = {
 class AdhesionBlockingLaw(UncertainInputs):
     """Adhesion by Eq. 26 from the dry adhesion of the pair, its measured hysteresis, eta V / h.
 
-    mu_adhesion = alpha / 20.9 N + beta mu_dry, at most mu_dry: a fluid adds no adhesion. The
-    report shows dry adhesion and hysteresis of its pairs only in figures: both must be given.
+    mu_adhesion = alpha / N + beta mu_dry, N the load that alpha was measured at, and at most
+    mu_dry: a fluid adds no adhesion. The report shows dry adhesion and hysteresis of its pairs
+    only in figures: both must be given.
 
     Parameters:
         blocking: alpha and beta of the fluid.

@@ -159,22 +159,37 @@ class Choice(Presentable):
     @property
     def first(self) -> ShoeAnswer:
         """The shoe with the highest chance of being best."""
-        return max(self.shoes, key=lambda each: each.best)
+        return max(self.shoes, key=self._chance)
+
+    def _chance(self, answer: ShoeAnswer) -> float:
+        """Return the chance that a shoe is best: one with all that are the same shoe."""
+        return math.fsum(each.best for each in self.shoes if same_shoe(each.shoe, answer.shoe))
+
+    @property
+    def _unlike(self) -> tuple[ShoeAnswer, ...]:
+        """The shoes, of those that are the same the first."""
+        return tuple(
+            one
+            for number, one in enumerate(self.shoes)
+            if not any(same_shoe(one.shoe, other.shoe) for other in self.shoes[:number])
+        )
 
     def headline(self) -> tuple[str, ...]:
         """Return the answer, or that there is none."""
-        first, count = self.first, len(self.shoes)
+        first, best, count = self.first, self._chance(self.first), len(self._unlike)
         rate = f"{value_text('slip_probability', first.slips)} of steps in a fluid slip"
-        if count == 1:
+        if len(self.shoes) == 1:
             lines = [f"{first.shoe.name}: {rate}."]
-        elif first.best >= DECIDED:
+        elif count == 1:
+            lines = [f"Which shoe is best can't be told: all are the same ({rate})."]
+        elif best >= DECIDED:
             lines = [
-                f"{first.shoe.name} is best with a chance of {probability_text(first.best)}: "
-                f"{rate}."
+                f"{first.shoe.name} is best with a chance of {probability_text(best)}: {rate}."
             ]
         else:
-            chance = probability_text(first.best)
-            level = [one.shoe.name for one in self.shoes if probability_text(one.best) == chance]
+            chance = probability_text(best)
+            alike = (one for one in self._unlike if probability_text(self._chance(one)) == chance)
+            level = [one.shoe.name for one in alike]
             told = f"{first.shoe.name} is ahead with a chance of {chance} ({rate})"
             if len(level) > 1:
                 *others, last = level
@@ -183,7 +198,7 @@ class Choice(Presentable):
                     f"(with {first.shoe.name}: {rate})"
                 )
             lines = [f"Which of the {count} shoes is best can't be told: {told}."]
-        if unlikely := [each.shoe.name for each in self.shoes if each.best < UNLIKELY]:
+        if unlikely := [each.shoe.name for each in self.shoes if self._chance(each) < UNLIKELY]:
             lines.append(
                 f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
             )

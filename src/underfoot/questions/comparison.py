@@ -113,7 +113,12 @@ class Comparison(Presentable):
         chance = first.better_than_next
         apart = f"{lead:.3f}" if lead >= LEAST_SHOWN else f"less than {LEAST_SHOWN:.3f}"
         sure = f"probability {_chance(chance, 'not estimated')}"
-        verdict = Verdict.OPEN if self.order is None else self.order.verdict
+        if self.order is None:
+            exact = [one for one in (first, second) if one.interval is None]
+            names = " and ".join(self.label(one.letter) for one in exact)
+            what = f"COF of {better} is {apart} above that of {other}"
+            return (f"{what}. How sure that is can't be told: no spread is known of {names}.",)
+        verdict = self.order.verdict
         if verdict is Verdict.EQUAL:
             return (
                 f"{better} and {other} are equal for every purpose: COF {apart} apart "
@@ -121,7 +126,7 @@ class Comparison(Presentable):
                 f"Readings of one tester repeat within {100 * SEEN:.0f} %.",
                 self._different(),
             )
-        if verdict is not Verdict.HIGHER and self.order is not None:
+        if verdict is not Verdict.HIGHER:
             order = f"Whether {better} or {other} has more friction is open: COF {apart} apart"
             return (
                 f"{order} ({sure} that the first has more).",
@@ -231,10 +236,15 @@ class Comparison(Presentable):
             if not quantity.label.startswith(" "):
                 parent = label
             if quantity.different:
-                labels.append((label if label == parent else f"{parent} {label}").lower())
+                name = (label if label == parent else f"{parent} {label}").lower()
+                letters = f" ({', '.join(quantity.different)})" if len(self.results) > 2 else ""
+                labels.append(f"{name.replace('cof', 'COF')}{letters}")
         if not labels:
             return "No other quantity differs for sure."
-        return f"These differ: {'; '.join(labels).replace('cof', 'COF')}."
+        listed = "; ".join(labels)
+        if len(self.results) > 2:
+            return f"These differ from {self.label('A')}: {listed}."
+        return f"These differ: {listed}."
 
 
 def compare(
@@ -329,10 +339,15 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 def case_differences(cases: Sequence[Case]) -> list[tuple[str, ...]]:
     """Return (path, value in each case) of the inputs in which the cases are not all alike."""
-    return differences([{path: value for path, value, _ in case.rows()} for case in cases])
+    texts = [{path: value for path, value, _ in case.rows()} for case in cases]
+    values = [
+        {path: (value, case.origins[path].uncertainty) for path, value in case.named_values("")}
+        for case in cases
+    ]
+    return [(path, *(text.get(path, "-") for text in texts)) for path, *_ in differences(values)]
 
 
-def differences(tables: Sequence[Mapping[str, str]]) -> list[tuple[str, ...]]:
+def differences(tables: Sequence[Mapping[str, Any]]) -> list[tuple[Any, ...]]:
     """Return (key, value in each table) of what is not alike in all tables; "-" where missing."""
     paths = dict.fromkeys(path for table in tables for path in table)
     rows = [(path, *(table.get(path, "-") for table in tables)) for path in paths]

@@ -8,8 +8,6 @@ from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
@@ -71,7 +69,8 @@ class Condition:
     ``cof`` is that of steady sliding, as the method's averaging window takes it, or of the instant
     that the method sets, with the standard deviation of the friction law and of the open inputs;
     ``low`` and ``high`` bound 95 % of it. ``probability`` is that of ``cof`` at or above ``limit``;
-    None where the method sets no limit or where the COF was not determined.
+    None where the method sets no limit, where the COF was not determined, and with ``low`` and
+    ``high`` where the spread of the law is not known.
     """
 
     name: str
@@ -92,8 +91,10 @@ class Condition:
         return [each for each in self.outcome.breaches if each.about not in MODELS]
 
     def __str__(self) -> str:
-        if self.cof.value is None or self.low is None:
+        if self.cof.value is None:
             return f"{self.title}: not determined: {self.cof.reason}."
+        if self.low is None:
+            return f"{self.title}: COF {self.cof.value:.3f}; no interval: {self.cof.reason}."
         text = (
             f"{self.title}: COF {self.cof.value:.3f} (95 %: {self.low:.2f} to "
             f"{self.high:.2f}; {self.cof.note})"
@@ -431,24 +432,23 @@ def _condition(
     if not outcome.usable:
         cof = SourcedValue(None, "1", reason=str(outcome.status))
     else:
-        mean = outcome.number("cof")
-        known = float(np.nan_to_num(outcome.spread("cof")))
+        mean, law = outcome.number("cof"), outcome.scalars["cof"]
         inputs = band.inputs if band else 0.0
         cof = SourcedValue(
             mean,
             "1",
-            source=outcome.scalars["cof"].source,
-            uncertainty=math.hypot(known, inputs),
+            source=law.source,
+            uncertainty=None if law.uncertainty is None else math.hypot(law.uncertainty, inputs),
+            reason=law.reason,
             note="friction law and open inputs" if band else "friction law alone",
         )
-        # of ln COF, each side as wide as the interval of the run, and the open inputs
-        below, above = (
-            math.hypot(side, inputs / max(mean, 1e-9)) for side in _sides(outcome.scalars["cof"])
-        )
-        low, high = mean * math.exp(-_Z95 * below), mean * math.exp(_Z95 * above)
-        if limit is not None and limit.value:
-            least = math.log(limit.value) - math.log(max(mean, 1e-9))
-            probability = probability_at_least(0.0, below if least < 0 else above, least)
+        if law.uncertainty is not None:
+            # of ln COF, each side as wide as the interval of the run, and the open inputs
+            below, above = (math.hypot(side, inputs / max(mean, 1e-9)) for side in _sides(law))
+            low, high = mean * math.exp(-_Z95 * below), mean * math.exp(_Z95 * above)
+            if limit is not None and limit.value:
+                least = math.log(limit.value) - math.log(max(mean, 1e-9))
+                probability = probability_at_least(0.0, below if least < 0 else above, least)
     floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
     return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
                      outcome)  # fmt: skip

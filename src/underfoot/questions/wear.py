@@ -133,11 +133,18 @@ class WearSeries(Presentable):
         sentences = [self._crossing(name) for name in LOADS]
         if known.size > 1:
             first, last = cof[known[0]], cof[known[-1]]
-            sentences.append(f"COF {first:.3f} new and {last:.3f} at the last state{self._sure()}.")
+            ends = f"COF {first:.3f} new and {last:.3f} at the last state"
+            if (known[0], known[-1]) != (0, cof.size - 1):
+                ends = f"COF {first:.3f} at state {known[0]} and {last:.3f} at state {known[-1]}"
+            sentences.append(f"{ends}{self._sure()}.")
         if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
             bare = self.untreaded.number("cof")
-            sentences[-1] = f"{sentences[-1][:-1]}; {bare:.3f} if that sole had no tread at all."
-            if known.size > 1 and bare < cof[known[0]] < cof[known[-1]]:
+            untreaded = f"{bare:.3f} if that sole had no tread at all."
+            if known.size > 1:
+                sentences[-1] = f"{sentences[-1][:-1]}; {untreaded}"
+            else:
+                sentences.append(f"COF {untreaded}")
+            if known.size == cof.size and bare < cof[known[0]] < cof[known[-1]]:
                 sentences[-1] = (
                     f"COF {cof[known[0]]:.3f} new and {bare:.3f} with the tread gone; shortly "
                     f"before that {cof[known[-1]]:.3f}{self._sure()}, no reason to wear it down."
@@ -458,7 +465,7 @@ def wear_series(
             name: limit_crossing(points, name, limit, draws=draws, seed=seed, between=between)
             for name in LOADS
         },
-        assumptions=_assumptions(cases[-1], mode, inputs),
+        assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced(case)),
         quick=quick,
         untreaded=results[-1] if bare else None,
         walker=Walker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
@@ -626,6 +633,17 @@ def _measures(case: Case) -> WearMeasures:
     from underfoot.compute.sole import sole_shape
 
     return wear_measures(sole_shape(case))
+
+
+def _replaced(case: Case) -> tuple[str, ...]:
+    """Return that the wear of the case itself counts for nothing; empty of a new shoe."""
+    depth = case.shoe.wear.depth
+    if depth == 0:
+        return ()
+    return (
+        f"the series begins with the new sole: shoe.wear.depth = {display(depth, 'm')} counts "
+        "for nothing",
+    )
 
 
 def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, ...]:

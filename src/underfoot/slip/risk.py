@@ -74,13 +74,14 @@ def slip_chances(
     and ``choose``.
 
     Parameters:
-        acof: Draws (n,) of the available friction; below 0 counts as 0.
+        acof: Draws (n,) of the available friction; below 0 counts as 0, beyond what any sole has
+            as the most it has.
         rcof: Required friction of the population, on a slope ``rcof.on_slope``.
         model: A slip model. One without ``drawn`` is taken as exact.
         normal: Standard normal draws (n,) by name, of the model's constants and of what the
             population is off by; None draws them.
     """
-    drawn = np.maximum(np.asarray(acof, dtype=float), 0.0)
+    drawn = np.clip(np.asarray(acof, dtype=float), 0.0, LARGEST_ACOF)
     normal = normal or _named(drawn.size)
     people = rcof.drawn(normal)
     known = getattr(model, "drawn", None)

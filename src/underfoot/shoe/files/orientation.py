@@ -35,6 +35,12 @@ _LINE_OVER, _LINE = 0.8, 0.02  # of the width: over which, and within which, an 
 ONE_STRAIGHT_END = 0.2
 """More of the width straight at one end than at the other: a cut against a rounded end."""
 _MOST_OBLIQUE = math.tan(math.radians(25))
+_FARTHEST_TURN = math.radians(16)
+_AS_DRAWN, _ALIKE = 0.999, 0.995
+"""Share of a plan form on which its mirror image lies: drawn along an axis of the file, and alike
+about another."""
+_LEFT_UNLIKE = 0.25
+"""Of what is unlike about an axis of the file: a scan is never quite alike."""
 _BEND = 0.006  # of the length
 _BLOCK = 3e-3  # m: one low point a block, so that noise and single spikes don't carry the sole
 _NEAR_FLOOR = 2e-3  # m
@@ -65,8 +71,9 @@ def box_axes(
     Thin: the direction in which the area spreads least (second moments of the triangles, A / 12
     (sum of the corners' squares + 9 times their mean's)), taken
     as the file's axis when within 20 degrees of it. Long and across: the smallest rectangle around
-    the plan form, or the file's axes when that rectangle is less than 10 % larger. ``down``, where
-    the file's bodies tell it, is thin as it stands.
+    the plan form, or the file's axes when that rectangle is less than 10 % larger; of a piece that
+    is alike on both sides its own axis there. ``down``, where the file's bodies tell it, is thin as
+    it stands.
     """
     corners, weights = _sample(triangles)
     if settings.down in DIRECTIONS:
@@ -138,12 +145,46 @@ def _long_axis(corners: Array, thin: Array) -> Array:
             continue
         angle = math.atan2(float(axis @ v), float(axis @ u))
         if np.prod(_extents(hull, np.array([angle]))) <= _NEARLY * least:
-            best = angle
+            best = angle + _from_mirror_axis(hull, angle)
             break
     length, width = _extents(hull, np.array([best]))[:, 0]
     if width > length:
         best += math.pi / 2
     return math.cos(best) * u + math.sin(best) * v
+
+
+def _from_mirror_axis(hull: Array, angle: float) -> float:
+    """Return how far (rad) from an axis of the file the sides of a piece are alike; 0 as drawn.
+
+    A heel is alike on both sides. Turned by some degrees its rectangle hardly grows, but its
+    length, its land and the way it slides change. A whole sole is not alike: there it is 0.
+    """
+    import shapely
+
+    length, width = sorted(_extents(hull, np.array([angle]))[:, 0], reverse=True)
+    plan = shapely.Polygon(hull)
+    if length > _WHOLE * width or plan.area == 0:
+        return 0.0
+    middle = np.array(plan.centroid.coords[0])
+
+    def likeness(turn: float) -> float:
+        both = []
+        for axis in (angle + turn, angle + turn + math.pi / 2):
+            along = np.array([math.cos(axis), math.sin(axis)])
+            mirrored = 2 * np.outer((hull - middle) @ along, along) - (hull - middle) + middle
+            both.append(plan.intersection(shapely.Polygon(mirrored)).area / plan.area)
+        return max(both)
+
+    drawn = likeness(0.0)
+    if drawn >= _AS_DRAWN:
+        return 0.0
+    turn, step = 0.0, _FARTHEST_TURN / 16
+    near = np.linspace(-_FARTHEST_TURN, _FARTHEST_TURN, 33)
+    while step > 1e-6:
+        turn = float(near[np.argmax([likeness(one) for one in near])])
+        near, step = turn + np.linspace(-step, step, 9), step / 4
+    best = likeness(turn)
+    return turn if best >= _ALIKE and 1 - best < _LEFT_UNLIKE * (1 - drawn) else 0.0
 
 
 def _extents(points: Array, angles: Array) -> Array:
@@ -352,8 +393,19 @@ def foot_of(plan: Mask, spacing: float, settings: FileSettings) -> tuple[str, Me
     y = a + b x + c x^2 through the middles of its rows (x along, y to the left), is positive for a
     right foot. Determined when the sagitta |c| L^2 / 4 is more than 0.6 % of the length L.
     """
-    if settings.foot != "auto":
+    told, how = _foot_by_bend(plan, spacing)
+    if settings.foot == "auto":
+        return told, how
+    if told in ("", settings.foot):
         return settings.foot, Message("")
+    return settings.foot, Message(
+        "Foot: {foot}, as stated; the plan form bends as that of the other foot.",
+        foot=settings.foot,
+    )
+
+
+def _foot_by_bend(plan: Mask, spacing: float) -> tuple[str, Message]:
+    """Return the foot that the bend of a plan form tells, "" where it tells none, and how."""
     rows = np.nonzero(plan.any(axis=1))[0]
     rows = rows[int(0.03 * rows.size) : rows.size - int(0.03 * rows.size)]
     y = np.arange(plan.shape[1], dtype=float)

@@ -109,6 +109,9 @@ def outsole_from_mesh(
     outsole = found_outsole(mesh, chosen, where)
     remarks = [*mesh.remarks, *outsole.remarks]
     if len(outsole.meshes) == 1:
+        if chosen.side != "auto":
+            told = Message("The file holds one shoe: there is no pair to choose from.")
+            remarks.append(told)
         return _outsole(outsole.meshes[0], sound, outsole, remarks, chosen, name, where)
     shoes = [_outsole(one, sound, outsole, remarks, chosen, name, where) for one in outsole.meshes]
     matching = [shoe for shoe in shoes if shoe.foot == chosen.side]
@@ -158,8 +161,8 @@ def _outsole(
         _, unit_remark = length_unit(whole_length / unit, width / unit, where=where)
     remarks += [unit_remark, *side_remarks, *level_remarks, *sound.remarks()]
     remarks += [*view_remarks(seen, sound, mesh, where), *repaired]
-    foot, foot_remark = "", ""
-    if whole_length > HEEL[1] or chosen.foot != "auto":
+    foot, foot_remark = chosen.foot if chosen.foot != "auto" else "", ""
+    if whole_length > HEEL[1]:  # the bend of a heel tells nothing
         foot, foot_remark = orientation.foot_of(np.isfinite(height), seen.spacing, chosen)
     remarks += [foot_remark] if foot_remark else []
     if chosen.mirror:
