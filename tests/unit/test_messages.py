@@ -60,7 +60,7 @@ def faults(tree):
             yield call.lineno, "it has a value that the template lacks"
 
 
-KINDS = {"assumed", "assumptions", "conventions", "explanation", "reason"}
+KINDS = {"assumed", "assumptions", "cautions", "conventions", "explanation", "reason", "warnings"}
 """Arguments that take messages alone."""
 
 
