@@ -216,8 +216,8 @@ def test_every_example_is_read_and_its_first_designs_can_be_built(path):
 # --- goals on records ---
 
 STATES = (
-    Condition("oil", {"shoe.wear.depth": 0.0}),
-    Condition("oil, 2 mm", {"shoe.wear.depth": 2e-3}),
+    Condition(("oil",), {"shoe.wear.depth": 0.0}),
+    Condition(("oil", "2 mm"), {"shoe.wear.depth": 2e-3}),
 )
 
 
@@ -253,7 +253,7 @@ def test_goals_are_statistics_over_conditions_and_draws(text, value):
 @pytest.mark.parametrize("turned", [False, True])
 def test_wear_life_is_that_of_the_first_condition_that_fails(turned):
     states = [
-        Condition(f"{fluid}, {1e3 * wear:g} mm", {"contaminant": fluid, "shoe.wear.depth": wear})
+        Condition((fluid, f"{1e3 * wear:g} mm"), {"contaminant": fluid, "shoe.wear.depth": wear})
         for fluid in ("oil", "water")
         for wear in (0.0, 2e-3)
     ]

@@ -14,7 +14,7 @@ from underfoot.core import DataError, Provenance, SourcedValue, Status, Underfoo
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import checksum, whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
-from underfoot.core.remark import Remark, stored_form
+from underfoot.core.remark import Remark, from_stored, stored_form
 
 from . import summary
 
@@ -170,7 +170,7 @@ class Result(Presentable):
             "name": self.name,
             "status": status,
             **scalars,
-            "labels": self.labels,
+            "labels": stored_form(self.labels),
             "breaches": stored_form(self.breaches),
             "assumptions": stored_form(self.assumptions),
             "provenance": self.provenance.to_dict(),
@@ -291,7 +291,7 @@ class Result(Presentable):
             return cls(
                 name=stored["name"],
                 scalars=scalars,
-                labels=stored["labels"],
+                labels=from_stored(stored["labels"]),
                 data=fields,
                 status=Status(stored["status"]["value"]),
                 breaches=tuple(map(Remark.stored, stored["breaches"])),

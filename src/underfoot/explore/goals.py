@@ -36,15 +36,15 @@ _BOUND = re.compile(r"(.+?)\s*(<=|>=|<|>)\s*(.+)")
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A state that every design is run in: its label, and the changes that make it."""
+    """A state that every design is run in: what it is called, in parts, and what makes it."""
 
-    label: str
+    parts: tuple[str, ...]
     changes: Mapping[str, Any]
 
     @property
-    def parts(self) -> tuple[str, ...]:
-        """The words of the label."""
-        return tuple(self.label.split(", ")) if self.label else ()
+    def label(self) -> str:
+        """All parts in one line."""
+        return ", ".join(self.parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +182,7 @@ class WearLife:
         for number in _chosen(states, self.requirement.goal.within):
             changes = dict(states[number].changes)
             wear = float(changes.pop(WEAR))
-            values = self._bounded.values(outputs[:, [number]], [Condition("", {})])
+            values = self._bounded.values(outputs[:, [number]], [Condition((), {})])
             margins = np.asarray(self.requirement.margin(values))
             groups.setdefault(repr(changes), {})[wear] = margins
         lives = []

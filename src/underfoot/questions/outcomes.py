@@ -18,7 +18,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
-from underfoot.core.remark import Remark, stored_form
+from underfoot.core.remark import Remark, from_stored, stored_form
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -94,6 +94,7 @@ class Outcome:
         plain = json.loads(text)
         plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
         plain["status"] = Status(plain["status"])
+        plain["labels"] = from_stored(plain["labels"])
         for name in ("breaches", "assumptions"):
             plain[name] = tuple(map(Remark.stored, plain[name]))
         return cls(**plain)

@@ -11,7 +11,7 @@ import numpy as np
 
 from underfoot.compute.numbers import required_friction
 from underfoot.compute.run import run
-from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
+from underfoot.compute.summary import FrictionLimit, cautions, friction_limit, no_result
 from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
@@ -67,7 +67,7 @@ class RiskAssessment(Presentable):
 
     ``missing_friction`` is the COF that is missing for the ``target`` probability, with a spread of
     the friction that grows with it: 0 where the slip probability meets the target, None where no
-    friction does.
+    friction does. ``slip_model`` is the name of the case's own.
     """
 
     kind: ClassVar[str] = "risk"
@@ -79,6 +79,7 @@ class RiskAssessment(Presentable):
     target: float
     missing_friction: float | None
     changes: tuple[ChangeEffect, ...]
+    slip_model: str = ""
 
     def __repr__(self) -> str:
         return f"<RiskAssessment of {self.name!r}: {self.outcome.scalars['slip_probability']}>"
@@ -123,7 +124,7 @@ class RiskAssessment(Presentable):
 
     def headline(self) -> tuple[str, ...]:
         if not self.usable:
-            return (f"No result: {self.outcome.status}. {self.outcome.remedy}",)
+            return (no_result(self.outcome.status),)
         scalars = self.outcome.scalars
         slip = scalars["slip_probability"]
         extrapolated = ", extrapolated" if slip.note else ""
@@ -133,7 +134,7 @@ class RiskAssessment(Presentable):
         sentences = [
             f"Slip probability {value_text('slip_probability', slip)}{extrapolated}{often} at an "
             f"available COF of {value_text('cof', scalars['cof'])}.",
-            str(self.limit),
+            self.limit.sentence(),
         ]
         if probability <= self.target:
             sentences.append(
@@ -153,8 +154,6 @@ class RiskAssessment(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         outcome = self.outcome
-        source = outcome.scalars["slip_probability"].source
-        model_name = next((model.name for model in self.models if model.source == source), "")
         others = [
             f"Another model has {probability_text(one.probability)} for the same friction and "
             f"people ({one.name}): {one.assumption[0].lower()}{one.assumption[1:]}"
@@ -163,7 +162,7 @@ class RiskAssessment(Presentable):
         return (
             *cautions(
                 *(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions),
-                model_name,
+                self.slip_model,
                 outcome.labels,
             ),
             *others,
@@ -342,6 +341,7 @@ def risk_assessment(
         target,
         None if own is None else max(own - outcome.number("cof"), 0.0),
         change_effects(case, present, tried, quick=quick, processes=processes, progress=rest),
+        present.provenance.closures.get("slip", ""),
     )
 
 

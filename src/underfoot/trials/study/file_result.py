@@ -115,7 +115,8 @@ class Sample:
 class FileResult:
     """Outcome of one file.
 
-    ``file`` and ``checksum``: name and SHA-256. ``verdict``: "accepted", "caution" (read the
+    ``file`` and ``checksum``: name and SHA-256. ``run``: place among the results of its recording,
+    from 1. ``verdict``: "accepted", "caution" (read the
     reasons before using the numbers) or "refused". ``reasons``: why, in words; ``kinds``: the same
     without the numbers and places of this file, each once. ``numbers``: all numbers of the file, a
     row each. ``curves``: series for figures, thinned. ``conditions``: what the laboratory noted
@@ -138,6 +139,7 @@ class FileResult:
     steps: tuple[StepResult, ...] = ()
     body: Mapping[str, float] = field(default_factory=dict)
     sample: Sample = Sample()
+    run: int = 1
     main: Mapping[str, float] = field(init=False, repr=False, compare=False)
     facts: Mapping[str, float] = field(init=False, repr=False, compare=False)
 
