@@ -46,8 +46,8 @@ class Message(str):
     Parameters:
         code: The sentence in English with named fields, by which other languages know it. A field
             formats as in ``str.format``; besides, ``{count:step|steps}`` is the first where the
-            count is 1, ``{part:capital}`` begins a sentence, and several values are joined by what
-            stands behind the colon, else by a comma.
+            count is 1, ``{part:capital}`` begins a sentence, ``{part:small}`` does not, and several
+            values are joined by what stands behind the colon, else by a comma.
         values: What the fields hold: numbers, amounts, names, other messages, or several of them.
 
     Raises:
@@ -256,7 +256,8 @@ def _is_series(value: list[Any] | tuple[Any, ...]) -> bool:
 class _Fields(Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
         if isinstance(value, str):
-            return value[:1].upper() + value[1:] if format_spec == "capital" else str(value)
+            first = {"capital": value[:1].upper(), "small": value[:1].lower()}
+            return first.get(format_spec, value[:1]) + value[1:]
         if isinstance(value, Iterable):
             return (format_spec or ", ").join(map(str, value))
         one, plural, many = format_spec.partition("|")
@@ -292,7 +293,7 @@ def _of_page(value: Any, spec: str) -> Any:
         return value.page_data()
     if isinstance(value, tuple):
         return [_of_page(each, "") for each in value]
-    return _FIELDS.format_field(value, "" if "|" in spec or spec == "capital" else spec)
+    return _FIELDS.format_field(value, "" if "|" in spec or isinstance(value, str) else spec)
 
 
 def _copied(kind: type[Message], text: str, parts: Mapping[str, Any]) -> Message:
