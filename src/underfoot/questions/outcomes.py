@@ -92,7 +92,9 @@ class Outcome:
     def from_text(cls, text: str) -> Outcome:
         """Return the outcome written by ``as_text``."""
         plain = json.loads(text)
-        plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
+        plain["scalars"] = {
+            name: SourcedValue(**from_stored(value)) for name, value in plain["scalars"].items()
+        }
         plain["status"] = Status(plain["status"])
         plain["labels"] = from_stored(plain["labels"])
         for name in ("breaches", "assumptions"):
