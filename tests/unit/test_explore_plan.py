@@ -358,3 +358,19 @@ def test_inputs_that_are_the_same_are_refused(old, new, words):
         plan(GOOD.replace(old, new, 1))
     for word in words:
         assert word in str(caught.value)
+
+
+def test_a_condition_whose_name_holds_a_comma_is_one():
+    states = [
+        Condition((floor, fluid), {"contaminant": fluid})
+        for floor in ("vinyl", "vinyl, worn") for fluid in ("oil", "water")
+    ]  # fmt: skip
+    read = {text: read_goal(f"cof in {text}", UNITS, states).within for text in (
+        "vinyl, oil", "vinyl, worn, oil", "oil, vinyl, worn", "vinyl",
+    )}  # fmt: skip
+    assert read == {
+        "vinyl, oil": ("vinyl", "oil"),
+        "vinyl, worn, oil": ("vinyl, worn", "oil"),
+        "oil, vinyl, worn": ("oil", "vinyl, worn"),
+        "vinyl": ("vinyl",),
+    }

@@ -10,7 +10,7 @@ A bare output is its mean. Over conditions and draws, where nothing is said.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -275,14 +275,24 @@ def read_goal(
     over = clauses.get("over", OVER[2])
     if over not in OVER:
         raise unknown_name("word after over", over, OVER)
-    within = tuple(part.strip() for part in clauses.get("in", "").split(",") if part.strip())
     words = sorted({part for state in states for part in state.parts})
+    within = tuple(_listed(clauses.get("in", ""), words))
     for word in within:
         if word not in words:
             raise unknown_name("condition", word, words)
     if not _chosen(states, within):
         raise InputError(f"no condition is {' and '.join(within)}")
     return Goal(output, units[output], statistic, share, over, within)
+
+
+def _listed(text: str, names: Sequence[str]) -> Iterator[str]:
+    """Yield the parts of a list with commas, of which a name may hold some too."""
+    parts = [part.strip() for part in text.split(",") if part.strip()]
+    while parts:
+        sizes = range(len(parts), 1, -1)
+        size = next((size for size in sizes if ", ".join(parts[:size]) in names), 1)
+        yield ", ".join(parts[:size])
+        parts = parts[size:]
 
 
 def read_requirement(
