@@ -279,7 +279,7 @@ BOUNDS = {
 
 
 def test_numbers_of_goals_are_read_right_or_asked():
-    states = (Condition("", {}),)
+    states = (Condition((), {}),)
 
     def statistic(text):
         goal = read_goal(text, {"cof": "1"}, states)

@@ -11,7 +11,7 @@ from underfoot.explore.surrogate import fitted
 
 WEARS = (0.0, 1e-3, 2e-3)
 STATES = [
-    Condition(f"{fluid}, {1e3 * wear:g} mm", {"contaminant": fluid, WEAR: wear})
+    Condition((fluid, f"{1e3 * wear:g} mm"), {"contaminant": fluid, WEAR: wear})
     for fluid in ("oil", "water")
     for wear in WEARS
 ]
@@ -80,7 +80,7 @@ def test_a_wear_life_is_that_of_the_worst_fluid_and_lengthens_with_friction():
     assert (LIFE.values(OUTPUTS + 0.01, STATES) >= both).all()
     assert (LIFE.values(OUTPUTS + 0.01, STATES) > both).any()
     # the same falls at half the wear: half the life
-    half = [Condition(one.label, {**one.changes, WEAR: 0.5 * one.changes[WEAR]}) for one in STATES]
+    half = [Condition(one.parts, {**one.changes, WEAR: 0.5 * one.changes[WEAR]}) for one in STATES]
     np.testing.assert_allclose(LIFE.values(OUTPUTS, half), 0.5 * both)
 
 

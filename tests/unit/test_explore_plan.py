@@ -216,8 +216,8 @@ def test_every_example_is_read_and_its_first_designs_can_be_built(path):
 # --- goals on records ---
 
 STATES = (
-    Condition("oil", {"shoe.wear.depth": 0.0}),
-    Condition("oil, 2 mm", {"shoe.wear.depth": 2e-3}),
+    Condition(("oil",), {"shoe.wear.depth": 0.0}),
+    Condition(("oil", "2 mm"), {"shoe.wear.depth": 2e-3}),
 )
 
 
@@ -253,7 +253,7 @@ def test_goals_are_statistics_over_conditions_and_draws(text, value):
 @pytest.mark.parametrize("turned", [False, True])
 def test_wear_life_is_that_of_the_first_condition_that_fails(turned):
     states = [
-        Condition(f"{fluid}, {1e3 * wear:g} mm", {"contaminant": fluid, "shoe.wear.depth": wear})
+        Condition((fluid, f"{1e3 * wear:g} mm"), {"contaminant": fluid, "shoe.wear.depth": wear})
         for fluid in ("oil", "water")
         for wear in (0.0, 2e-3)
     ]
@@ -358,3 +358,19 @@ def test_inputs_that_are_the_same_are_refused(old, new, words):
         plan(GOOD.replace(old, new, 1))
     for word in words:
         assert word in str(caught.value)
+
+
+def test_a_condition_whose_name_holds_a_comma_is_one():
+    states = [
+        Condition((floor, fluid), {"contaminant": fluid})
+        for floor in ("vinyl", "vinyl, worn") for fluid in ("oil", "water")
+    ]  # fmt: skip
+    read = {text: read_goal(f"cof in {text}", UNITS, states).within for text in (
+        "vinyl, oil", "vinyl, worn, oil", "oil, vinyl, worn", "vinyl",
+    )}  # fmt: skip
+    assert read == {
+        "vinyl, oil": ("vinyl", "oil"),
+        "vinyl, worn, oil": ("vinyl, worn", "oil"),
+        "oil, vinyl, worn": ("oil", "vinyl, worn"),
+        "vinyl": ("vinyl",),
+    }

@@ -19,6 +19,8 @@ from underfoot.core.remark import (
     Message,
     Remark,
     from_stored,
+    kind_of,
+    of_several,
     remarks,
     stored_form,
     subjects,
@@ -56,6 +58,47 @@ def faults(tree):
             yield call.lineno, "its values are not those of the template"
         if None in given and not given - {None} <= fields(code.value).keys():
             yield call.lineno, "it has a value that the template lacks"
+
+
+KINDS = {"assumed", "assumptions", "cautions", "conventions", "explanation", "reason", "warnings"}
+"""Arguments that take messages alone."""
+
+
+def put_together(node):
+    """Yield the places of a tree where text is made of parts, but for the values of messages."""
+    if isinstance(node, ast.Call) and getattr(node.func, "id", "") in CODE_AT:
+        return
+    method = node.func.attr if isinstance(getattr(node, "func", None), ast.Attribute) else ""
+    sides = [node.left, node.right] if isinstance(node, ast.BinOp) else ()
+    texts = [side for side in sides if isinstance(getattr(side, "value", None), str)]
+    if isinstance(node, ast.JoinedStr) or texts or method in ("format", "join"):
+        yield node.lineno
+        return
+    for child in ast.iter_child_nodes(node):
+        yield from put_together(child)
+
+
+def takes_messages(annotation):
+    return annotation is not None and "Message" in ast.unparse(annotation)
+
+
+def places_of_messages(tree):
+    """Yield what stands where messages are asked for: arguments, fields, what functions return."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            yield from (each.value for each in node.keywords if each.arg in KINDS)
+            if isinstance(node.func, ast.Attribute) and node.func.attr == "not_estimated":
+                yield from node.args[1:2]
+        elif isinstance(node, ast.AnnAssign) and takes_messages(node.annotation):
+            yield from [node.value] if node.value else []
+        elif isinstance(node, ast.FunctionDef) and takes_messages(node.returns):
+            within = (one for each in node.body for one in ast.walk(each))
+            told = (one for one in within if isinstance(one, ast.Return | ast.Yield))
+            yield from (one.value for one in told if one.value)
+
+
+def texts_for_messages(tree):
+    return [line for place in places_of_messages(tree) for line in put_together(place)]
 
 
 @cache
@@ -105,6 +148,31 @@ def test_a_template_with_its_values_is_taken():
 
 def test_every_message_is_a_template_and_its_values():
     found = {place: list(faults(tree)) for place, tree in trees().items() if place not in OWN}
+    assert not {place: lines for place, lines in found.items() if lines}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'Measurement("rcof", None, reason=f"{n} steps")',
+        'Measurement.not_estimated("rcof", "steps: " + n)',
+        'Measurement("rcof", 1.0, conventions={"gate": f"{n} N"})',
+        'StribeckLaw(assumed=("; ".join(names),))',
+        'def why(n) -> Message: return "{} steps".format(n)',
+        'parts: tuple[Message, ...] = (f"{n} steps",)',
+    ],
+)
+def test_a_text_where_a_message_is_asked_for_is_seen(code):
+    assert texts_for_messages(ast.parse(code))
+
+
+def test_the_values_of_a_message_may_be_put_together():
+    code = 'def why(n) -> Message: return Message("{size} N", size=[f"{one:.1f}" for one in n])'
+    assert not texts_for_messages(ast.parse(code))
+
+
+def test_reasons_conventions_and_assumptions_are_messages():
+    found = {place: texts_for_messages(tree) for place, tree in trees().items()}
     assert not {place: lines for place, lines in found.items() if lines}
 
 
@@ -171,6 +239,19 @@ def test_a_message_keeps_template_and_values_wherever_it_goes():
     assert remarks([remark, "a text"])[1].values == {"text": "a text"}
     whole = subjects(remarks([remark, "the whole", remark, "the whole"]))
     assert whole == ("shoe.heel", "the whole")
+
+
+def test_lines_that_differ_in_numbers_are_told_as_one():
+    def bridged(time, name, count):
+        here = Message(" ({count} frames)", count=count)
+        line = {"gap": Message("{time:g} ms", time=time), "name": name, "here": here}
+        return Message("{name}: bridged up to {gap}{here}", **line)
+
+    heel, wider, toe = bridged(8, "heel", 3), bridged(50.0, "heel", 4), bridged(8, "toe", 3)
+    assert heel == "heel: bridged up to 8 ms (3 frames)"
+    assert kind_of(heel) == kind_of(from_stored(stored_form(wider))) != kind_of(toe)
+    assert of_several([wider, heel]) == "heel: bridged up to 8 to 50 ms"
+    assert of_several([heel, heel]) == "heel: bridged up to 8 ms"
 
 
 def test_a_page_gets_formatted_values_and_escaped_text():

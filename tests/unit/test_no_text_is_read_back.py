@@ -1,14 +1,11 @@
 """No rule hangs on the text of a message: what a line means is handed on as a value."""
 
 import ast
-import pickle
-from copy import deepcopy
 from pathlib import Path
 
 import pytest
 
 import underfoot
-from underfoot.trials.recording.measurement import Choice
 
 SOURCE = Path(underfoot.__file__).parent
 CUTS = {
@@ -123,17 +120,3 @@ def test_trials_look_for_patterns_in_text_of_others_alone():
     files = {file.relative_to(rooms).as_posix(): file for file in rooms.rglob("*.py")}
     found = {place for place, file in files.items() if "re" in _imported(file.read_text())}
     assert {p.split("/")[0] if p.startswith("readers/") else p for p in found} == PATTERNS.keys()
-
-
-def test_a_choice_keeps_its_kind_and_numbers_wherever_it_goes():
-    choice = Choice("bridged up to {:g} ms", 30.0)
-    stored = Choice.stored(["bridged up to {:g} ms", [30.0], "bridged up to 30 ms"])
-    for copy in (deepcopy(choice), pickle.loads(pickle.dumps(choice)), stored):
-        assert (copy, copy.kind, copy.numbers) == (
-            "bridged up to 30 ms",
-            "bridged up to {:g} ms",
-            (30.0,),
-        )
-    others = [Choice("bridged up to {:g} ms", number) for number in (50.0, 8.0)]
-    assert Choice.range_of([choice, *others]) == "bridged up to 8 to 50 ms"
-    assert Choice.range_of([choice, choice]) == choice

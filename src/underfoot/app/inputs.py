@@ -122,7 +122,7 @@ def sliders(
     for each in inputs:
         value = each.given(case)
         if value is not None:
-            origin = _origin(session, case, each.path)[0].partition(":")[0]  # in a word
+            origin, _ = _origin(session, case, each.path, "guess")  # in a word
             rows.append(_row(session, each, value, origin))
     root = ui.html("".join(rows) + '<p data-part="problem" role="alert"></p>', sanitize=False)
     root.classes("sliders").props(f'data-own="{escape(session.text("origin.given"))}"')
@@ -139,12 +139,15 @@ def sliders(
     return root
 
 
-def _origin(session: Session, case: Case, path: str) -> tuple[str, str]:
-    """Return in words where a value of a case comes from, and its source; empty where not known."""
+def _origin(session: Session, case: Case, path: str, assumed: str = "assumed") -> tuple[str, str]:
+    """Return in words where a value of a case comes from, and its source; empty where not known.
+
+    ``assumed`` is the key of what stands for a guess.
+    """
     origin = case.origins.get(path)
     if origin is None:
         return "", ""
-    kind = "assumed" if origin.leaf.assumed else origin.kind
+    kind = assumed if origin.leaf.assumed else origin.kind
     return session.text(f"origin.{kind}"), origin.leaf.source or ""
 
 

@@ -174,7 +174,7 @@ def trial_view(
         "steps": [*map(parts, one.steps)],
         "edits": [*map(parts, one.edits)],
         "kind": study.protocol.kind,
-        "run": _run_number(recording.name, one.file),
+        "run": one.run,
         **_plots(study, recording, one, step),
         **texts,
     }
@@ -208,12 +208,6 @@ def _analysis(study: Study, progress: Progress) -> FolderAnalysis:
     )
 
 
-def _run_number(recording: str, file: str) -> int:
-    """Return which run of its recording a result is; 1 where there is one alone."""
-    run = file.removeprefix(recording).removeprefix(" #")
-    return int(run) if run.isdigit() else 1
-
-
 def _changed(
     study: Study, name: str, record: FileResult, change: Change
 ) -> tuple[str, str, list[Edit]]:
@@ -225,8 +219,7 @@ def _changed(
     own = [(line, e) for line, f, e in edit_rows(study.folder, [name], others=True) if f == name]
     row: tuple[str, ...] = ()
     if change.what == "take back":
-        run = _run_number(name, record.file)
-        logged = own if record.steps else [row for row in own if row[1].step == run]
+        logged = own if record.steps else [row for row in own if row[1].step == record.run]
         gone, new = {logged[change.step][0]}, []
     else:
         row = (name, str(change.step), change.what, change.value, change.why)
@@ -303,7 +296,7 @@ def _plots(
         return {"whole": None, "chosen": None, "plot": run_plot(record)}
     profile, _ = profile_of(study.folder, None)
     trials, *_ = recording_trials(recording.paths, profile)
-    trial = trials[_run_number(recording.name, record.file) - 1]
+    trial = trials[record.run - 1]
     signals = record_signals(trial, study.protocol, profile)
     order = {"accepted": 1, "caution": 1}
     first = min(record.steps, key=lambda s: 0 if s.judged_for_slip else order.get(s.verdict, 2))

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.remark import Message, Remark
 
 if TYPE_CHECKING:
     from underfoot.friction import StribeckLaw
@@ -49,7 +50,11 @@ def stribeck_law_from_fit(
             note=parameter.remark,
         )
 
-    notes = [f"{p.name}: {p.remark}." for p in (fit.boundary, fit.tau, fit.asymptote) if p.remark]
+    notes = [
+        Remark.of(p.name, Message("{remark}.", remark=p.remark))
+        for p in (fit.boundary, fit.tau, fit.asymptote)
+        if p.remark
+    ]
     return StribeckLaw(
         sourced(fit.boundary),
         sourced(fit.tau),

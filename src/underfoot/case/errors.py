@@ -154,7 +154,7 @@ def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
     extra = field.json_schema_extra if field is not None else None
     stated = extra if isinstance(extra, dict) else {}
     what, remedy = str(stated.get("missing", "is missing")), stated.get("remedy")
-    if owner is not None and issubclass(owner, Option) and what == "is missing":
+    if owner is not None and issubclass(owner, Option) and "missing" not in stated:
         what = f'is missing for {owner.key} = "{owner.name}"'
     if remedy is None and field is not None and field.description:
         remedy = f"Give {key}: {field.description}"

@@ -12,6 +12,7 @@ import numpy as np
 
 from underfoot.core import InputError, RangeError, SourcedValue
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.remark import Message
 
 from .context import Context
 from .quantity import (
@@ -515,7 +516,9 @@ class TableOption(FrictionOption):
             ratio = fluids / viscosity
             if (np.abs(ratio - 1) > SAME_VISCOSITY).any():
                 speed = speed * ratio
-                notes.append("Readings under another viscosity count at equal viscosity x speed.")
+                notes.append(
+                    Message("Readings under another viscosity count at equal viscosity x speed.")
+                )
         speeds, group = np.unique(np.round(speed, 12), return_inverse=True)
         counts = np.bincount(group)
         mean = np.bincount(group, cof) / counts
@@ -526,7 +529,7 @@ class TableOption(FrictionOption):
         elif (counts > 1).all():
             deviation = np.sqrt(scatter)
         if self.hysteresis_cof is None:
-            notes.append("All of the friction read counts as adhesion.")
+            notes.append(Message("All of the friction read counts as adhesion."))
         return SpeedTableLaw(
             speeds,
             mean,

@@ -7,7 +7,7 @@ from typing import Any
 from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
 from underfoot.core.fields import Fields, labelled
-from underfoot.core.remark import Remark, remarks
+from underfoot.core.remark import Remark, joined, remarks
 from underfoot.film import NewtonianFilm
 
 from . import numbers
@@ -41,7 +41,7 @@ def answer(
     objects = object_texts(parts.objects)
     labels = dict(reading.labels)
     if objects:
-        labels["objects"] = "; ".join(f"{slot}: {text}" for slot, text in objects.items())
+        labels["objects"] = joined(Remark.of(slot, text) for slot, text in objects.items())
     risk = reading.risk
     return Result(
         name=case.name,

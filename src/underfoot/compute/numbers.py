@@ -11,7 +11,8 @@ from underfoot.case import Case
 from underfoot.case.quantity import one_spelling
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.core.arrays import Array
-from underfoot.film import SHARE_LIMITS, lubrication_by_load_share
+from underfoot.core.remark import NOTHING, Amount, Message, joined
+from underfoot.film import SHARE_LIMITS, Lubrication, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
 from underfoot.sole_contact import SensorReading
@@ -201,14 +202,15 @@ def required_friction(case: Case) -> RcofPopulation:
     return level.on_slope(case.floor.slope or 0.0, slope.uncertainty or 0.0)
 
 
-def slope_words(case: Case) -> str:
-    """Return what a slope asks of people; "" on the level."""
+def slope_words(case: Case) -> Message:
+    """Return what a slope asks of people; nothing on the level."""
     if not case.floor.slope:
-        return ""
-    needed = required_friction(case).mean
-    return (
-        f"{display(case.floor.slope, 'rad')} down: people who need {case.risk.rcof_mean:.2f} on "
-        f"the level need {needed:.2f} here"
+        return NOTHING
+    return Message(
+        "{slope} down: people who need {level:.2f} on the level need {needed:.2f} here",
+        slope=Amount(case.floor.slope, "rad"),
+        level=case.risk.rcof_mean,
+        needed=required_friction(case).mean,
     )
 
 
@@ -226,9 +228,14 @@ def slip_probability(
     probability = replace(
         risk.probability,
         assumed=risk.probability.assumed or mean.assumed or spread.assumed,
-        note="; ".join(
-            f"extrapolated: {one.quantity} = {one.low:.3f} is outside the tested "
-            f"{one.range.low:g} to {one.range.high:g}"
+        note=joined(
+            Message(
+                "extrapolated: {quantity} = {value:.3f} is outside the tested {low:g} to {high:g}",
+                quantity=one.quantity,
+                value=one.low,
+                low=one.range.low,
+                high=one.range.high,
+            )
             for one in risk.breaches
         ),
     )
@@ -255,57 +262,73 @@ def regime(share: float) -> dict[str, str]:
     low, high = SHARE_LIMITS
     name = lubrication_by_load_share(min(max(share, 0.0), 1.0))
     return {
-        "regime": str(name) if name == "full film" else f"{name} lubrication",
-        "regime_rule": f"by load share: below {100 * low:g} % boundary, "
-        f"above {100 * high:g} % full film",
+        "regime": str(name) if name is Lubrication.FULL_FILM else f"{name} lubrication",
+        "regime_rule": Message(
+            "by load share: below {low:g} % boundary, above {high:g} % full film",
+            low=100 * low,
+            high=100 * high,
+        ),
     }
 
 
-def overload_words(overload: Sequence[Breach]) -> str:
-    """Return a caution where contact pressure exceeds what the rubber can bear; "" elsewhere."""
-    return "".join(
-        f"{one.high:.0%} of the load rests on pressures above the modulus of the rubber, which it "
-        "cannot bear, and so does this COF"
-        for one in overload
+def overload_words(overload: Sequence[Breach]) -> Message:
+    """Return a caution where contact pressure exceeds what the rubber can bear."""
+    if not overload:
+        return NOTHING
+    return Message(
+        "{share:.0%} of the load rests on pressures above the modulus of the rubber, which it "
+        "cannot bear, and so does this COF",
+        share=overload[0].high,
     )
 
 
-def no_result_words(contact: SoleContact, overload: Sequence[Breach]) -> str:
+def no_result_words(contact: SoleContact, overload: Sequence[Breach]) -> Message:
     """Return what was under the sole where a march ended without a result."""
     share = contact.fluid_load / contact.normal_force if contact.normal_force else 0.0
-    film = f"the film carried {share:.0%} of {display(contact.normal_force, 'N')}"
-    where = f"the march stopped at {display(contact.time, 's')}, where {film}"
+    where = Message(
+        "the march stopped at {time}, where the film carried {share:.0%} of {load}",
+        time=Amount(contact.time, "s"),
+        share=share,
+        load=Amount(contact.normal_force, "N"),
+    )
     if overload:
-        crushed = f"{overload[0].high:.0%} of the load rests on pressures above the modulus"
-        return (
-            f"lugs crushed: {crushed} of the rubber; {where}. More land, less load or a harder "
-            "compound"
+        return Message(
+            "lugs crushed: {share:.0%} of the load rests on pressures above the modulus of the "
+            "rubber; {where}. More land, less load or a harder compound",
+            share=overload[0].high,
+            where=where,
         )
     if share > SHARE_LIMITS[1]:
-        return f"the sole floats and tips from one film to another: {where}"
-    return f"film and contact change places faster than steps in time can follow: {where}"
+        return Message("the sole floats and tips from one film to another: {where}", where=where)
+    return Message(
+        "film and contact change places faster than steps in time can follow: {where}", where=where
+    )
 
 
 def spread_origin(sampled: SampledCof | None) -> dict[str, str]:
     """Return in words which inputs the spread of COF comes from, and how it was sampled."""
     if sampled is None:
         return {}
-    words = sorted(sampled.share.items(), key=lambda one: -one[1])
     parts = [
-        f"{INPUTS.get(name, name)} {share:.0%}" if share >= SMALL else f"{INPUTS[name]} below 1%"
-        for name, share in words
+        Message("{input} {share:.0%}", input=INPUTS.get(name, name), share=share)
+        if share >= SMALL
+        else Message("{input} below 1%", input=INPUTS[name])
+        for name, share in sorted(sampled.share.items(), key=lambda one: -one[1])
         if share >= SMALL or name in ROUGH
     ]
     if sampled.left_out:
-        names = ", ".join(INPUTS.get(name, name) for name in sampled.left_out)
-        parts.append(f"taken as exact: {names}")
-    held = "film thickness as computed"
+        names = [INPUTS.get(name, name) for name in sampled.left_out]
+        parts.append(Message("taken as exact: {names}", names=names))
+    held = Message("film thickness as computed")
     if "tread_position" in sampled.share:
-        held = "contact and film at each position of the tread in turn"
+        held = Message("contact and film at each position of the tread in turn")
     elif "shoe_angle" in sampled.share:
-        held = "contact and film at each shoe angle in turn"
-    drawn = f"{sampled.cof.size} draws, seed {sampled.seed}; {held}"
-    return {"cof_spread_from": ", ".join(parts), "cof_spread_how": drawn}
+        held = Message("contact and film at each shoe angle in turn")
+    drawn = {"count": sampled.cof.size, "seed": sampled.seed, "held": held}
+    return {
+        "cof_spread_from": Message("{parts}", parts=parts),
+        "cof_spread_how": Message("{count} draws, seed {seed}; {held}", **drawn),
+    }
 
 
 def touching_cells(state: SoleState) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, Progress, SourcedValue, display, silent
+from underfoot.core.remark import NOTHING, Message
 from underfoot.friction import SampledCof
 from underfoot.friction.propagation import normal_draws
 from underfoot.sole_contact.solver import SoleContact
@@ -59,7 +60,7 @@ class NumericalErrors:
 
     grid: Mapping[str, float]
     steps: Mapping[str, float]
-    origin: str
+    origin: Message
 
     def deviation(self, name: str) -> float:
         """Return the standard deviation of a number, grid and steps together."""
@@ -87,17 +88,27 @@ class NumericalErrors:
             result[name] = replace(value, **change)
         return result
 
-    def sentence(self, values: Mapping[str, SourcedValue]) -> str:
+    def sentence(self, values: Mapping[str, SourcedValue]) -> Message:
         """Return the errors in one sentence."""
 
-        def parts(errors: Mapping[str, float]) -> str:
-            return ", ".join(
-                f"{name.replace('_', ' ')} ± {_error(error, values[name])}"
+        def parts(errors: Mapping[str, float]) -> list[Message]:
+            names = {name: name.replace("_", " ") for name in errors}
+            return [
+                Message("{name} ± {error}", name=names[name], error=_error(error, values[name]))
                 for name, error in errors.items()
-            )
+            ]
 
-        steps = f"; steps in time: {parts(self.steps)} (from twice as many)" if self.steps else ""
-        return f"grid: {parts(self.grid)} ({self.origin}){steps}"
+        steps = NOTHING
+        if self.steps:
+            steps = Message(
+                "; steps in time: {errors} (from twice as many)", errors=parts(self.steps)
+            )
+        return Message(
+            "grid: {errors} ({origin}){steps}",
+            errors=parts(self.grid),
+            origin=self.origin,
+            steps=steps,
+        )
 
 
 def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole: str) -> SampledCof:
@@ -176,7 +187,7 @@ def numerical_errors(
         finely = replace(parts, case=case.replace("numerics.cells_along", finer))
         return _compared(finely, numbers, progress)
     if positions is None:
-        return "not estimated with numerics.tread_positions = 1"
+        return Message("not estimated with numerics.tread_positions = 1")
     grid, count, lost = {}, len(positions.places), positions.left_out
     lugs, force = not isinstance(positions, ShoeAngles), solution.contact.normal_force
     alone, size = positions.uncompared > 0, positions.uncompared / ALONE or 1.0
@@ -195,12 +206,15 @@ def numerical_errors(
         rule = float(np.std(values, ddof=1)) / count**rate if lugs and count > 1 else 0.0
         missing = lost / (count + lost) * float(np.abs(values - values.mean()).max())
         grid[name] = math.hypot(error, positions.between.get(name, 0.0), rule, missing)
-    origin = f"{count} {positions.several}"
+    origin = Message("{count} {several}", count=count, several=positions.several)
     if not (lugs or alone):
-        origin = f"difference to {_cells(parts, columns)}"
-    origin += ", and finer grids"
+        origin = Message("difference to {cells}", cells=_cells(parts, columns))
+    origin = Message("{origin}, and finer grids", origin=origin)
     if remembers(case) and not positions.in_time:
-        origin += "; steps in time not estimated: a march with twice as many did not converge"
+        origin = Message(
+            "{origin}; steps in time not estimated: a march with twice as many did not converge",
+            origin=origin,
+        )
     return NumericalErrors(grid, errors_by_steps(positions, numbers, force), origin)
 
 
@@ -243,11 +257,12 @@ def _compared(
         contacts.append(solved_at(parts, Place(finer=2), spacing, progress=progress)[1])
     cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
-        return f"not estimated: a march on {cells} did not converge"
+        return Message("not estimated: a march on {cells} did not converge", cells=cells)
     coarse = [_read(here, each) for each in contacts]
     grid = {name: abs(value - coarse[0][name]) for name, value in numbers.items()}
     by_steps = {name: 2 * abs(value - coarse[-1][name]) for name, value in coarse[0].items()}
-    return NumericalErrors(grid, by_steps if len(coarse) > 1 else {}, f"difference to {cells}")
+    origin = Message("difference to {cells}", cells=cells)
+    return NumericalErrors(grid, by_steps if len(coarse) > 1 else {}, origin)
 
 
 def _cells(parts: Prepared, columns: int) -> str:

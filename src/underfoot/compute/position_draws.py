@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import SourcedValue, content_hash, display
 from underfoot.core.arrays import Array
-from underfoot.core.remark import Amount, Message, Remark
+from underfoot.core.remark import NOTHING, Amount, Message, Remark
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.friction.propagation import normal_draws
 
@@ -226,38 +226,52 @@ class TreadPositions:
 
     def labels(self) -> dict[str, str]:
         """Return what was averaged in words."""
-        failed = f"{self.left_out} did not converge and are left out" if self.left_out else ""
-        told = {}
-        if failed:
-            told["positions_left_out"] = (
-                f"{self.left_out} of {self.left_out + len(self.places)} positions of the tread did "
-                "not converge. Most such positions float: COF may be lower and the load on the "
-                "film higher than the means over the others."
+        failed, count, told = NOTHING, self.left_out, {}
+        if count:
+            failed = Message("; {count} did not converge and are left out", count=count)
+            told["positions_left_out"] = Message(
+                "{count} of {all} positions of the tread did not converge. Most such positions "
+                "float: COF may be lower and the load on the film higher than the means over the "
+                "others.",
+                count=count,
+                all=count + len(self.places),
             )
         told |= self._bevel_label()
         if len(self.places) == 1:
-            return {"tread_position": f"as the case describes it; {failed} of the average", **told}
-        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
+            alone = Message(
+                "as the case describes it; {count} did not converge and are left out of the "
+                "average",
+                count=count,
+            )
+            return {"tread_position": alone, **told}
         if not self.by_angle:
-            told["angle_as_exact"] = (
+            told["angle_as_exact"] = Message(
                 "The shoe could not be solved turned: its angle counts as exact, and the interval "
                 "is too narrow."
             )
         else:
-            up = display(math.degrees(ANGLE_DEVIATION), "1")
-            more, film = (self.by_angle[name] for name in ("cof", "fluid_load"))
-            told["shoe_angle"] = (
-                f"{up} deg toe up, one standard deviation of it, moves COF by "
-                f"{display(more, '1')} and the load on the film by {display(film, 'N')}"
+            told["shoe_angle"] = Message(
+                "{up} deg toe up, one standard deviation of it, moves COF by {cof} and the load "
+                "on the film by {film}",
+                up=Amount(math.degrees(ANGLE_DEVIATION)),
+                cof=Amount(self.by_angle["cof"]),
+                film=Amount(self.by_angle["fluid_load"], "N"),
             )
-        return {
-            "tread_position": f"COF {self._range('cof')}, load on the film "
-            f"{self._range('fluid_load', 'N')} over {len(self.places)} positions of the tread. "
-            "Numbers are means over them; maps, histories and drainage show the position that the "
-            f"case describes (COF {display(cof, '1')}, {display(load, 'N')} on the film)"
-            + (f"; {failed}" if failed else ""),
-            **told,
-        }
+        average = Message(
+            "COF {range}, load on the film {loads} over {count} positions of the tread. Numbers "
+            "are means over them; maps, histories and drainage show the position that the case "
+            "describes (COF {cof}, {load} on the film){failed}",
+            **self._ranges(),
+            count=len(self.places),
+            failed=failed,
+        )
+        return {"tread_position": average, **told}
+
+    def _ranges(self) -> dict[str, Any]:
+        """Return the ranges of COF and film load over all places, and both at the case's own."""
+        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
+        values = {"range": self._range("cof"), "loads": self._range("fluid_load", "N")}
+        return {**values, "cof": Amount(cof), "load": Amount(load, "N")}
 
     def _bevel_label(self) -> dict[str, str]:
         """Return that the bevel of the heel is drawn; empty where its angle counts as exact."""
@@ -336,14 +350,15 @@ class ShoeAngles(TreadPositions):
         if len(self.places) == 1:
             return {}
         least, most = (math.degrees(bound([p.turn for p in self.places])) for bound in (min, max))
-        cof, load = self.at_own_place["cof"], self.at_own_place["fluid_load"]
-        return {
-            "shoe_angle": f"COF {self._range('cof')}, load on the film "
-            f"{self._range('fluid_load', 'N')} from {least:.1f} to +{most:.1f} deg beside the "
+        average = Message(
+            "COF {range}, load on the film {loads} from {least:.1f} to +{most:.1f} deg beside the "
             "case's angle. Numbers are means over them; maps and histories show the case's angle "
-            f"(COF {display(cof, '1')}, {display(load, 'N')} on the film)",
-            **self._bevel_label(),
-        }
+            "(COF {cof}, {load} on the film)",
+            **self._ranges(),
+            least=least,
+            most=most,
+        )
+        return {"shoe_angle": average, **self._bevel_label()}
 
     def fields(self) -> dict[str, Any]:
         """Return the variables of a data set: the angles, COF and load there."""

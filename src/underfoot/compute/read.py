@@ -6,7 +6,8 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.case.motion import SLOWEST
-from underfoot.core import Breach, Progress, SourcedValue, display, silent
+from underfoot.core import Breach, Progress, SourcedValue, silent
+from underfoot.core.remark import NOTHING, Amount, Message
 from underfoot.friction import FrictionLaw, PairContactLaw, SampledCof
 from underfoot.friction.pair_contact import UnexpectedReading
 from underfoot.shoe.lug_drainage import LugDrainage, lug_drainage
@@ -63,7 +64,7 @@ def readings(
     overload = overload_breaches(contact, parts.context.youngs_modulus)
     if not contact.status.usable:
         nothing = numbers.undetermined(case, contact.status)
-        labels = {"no_result": numbers.no_result_words(contact, overload)}
+        labels: dict[str, str] = {"no_result": numbers.no_result_words(contact, overload)}
         return Reading(nothing, labels, solution.friction.sampled, overload)
     friction, sampled = solution.friction.sums, solution.friction.sampled
     if positions:
@@ -93,7 +94,7 @@ def readings(
         drainage = lug_drainage(parts.sole, contact.fluid_pressure, contact.film_thickness)
     share = (values["fluid_load"].value or 0.0) / contact.normal_force
     remarks = {
-        "drainage": drainage.advice() if drainage else "",
+        "drainage": drainage.advice() if drainage else NOTHING,
         "overload": numbers.overload_words(overload),
         "slope": numbers.slope_words(case),
         **(positions.labels() if positions else {}),
@@ -101,14 +102,14 @@ def readings(
     labels = numbers.regime(share) | numbers.spread_origin(sampled)
     unknown = micro is not None or parts.context.leak_deviation > 0
     if unknown and not solution.spreads and share > FILM_MATTERS:
-        labels["film_spread"] = (
+        labels["film_spread"] = Message(
             "leaves out the roughness that lets fluid leak, which could not be estimated"
         )
     else:
-        labels["film_spread_basis"] = "with the roughness that lets fluid leak"
+        labels["film_spread_basis"] = Message("with the roughness that lets fluid leak")
     rocker = case.origins.get("shoe.heel.profile.radius")
     if rocker is None or not rocker.leaf.assumed:
-        labels["film_heel_basis"] = "with lengths of the heel that nobody measured"
+        labels["film_heel_basis"] = Message("with lengths of the heel that nobody measured")
     labels |= _remarks(parts, solution, remarks) | solution.stated.labels()
     if isinstance(errors, NumericalErrors):
         values = errors.added(values)
@@ -140,8 +141,10 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
         "edge_peak": peak.remark,
         "film_inlet": ""
         if sole.cells or sole.tread_depth.any()
-        else "Square cells do not resolve where the film enters: COF and film load of a flat heel "
-        'may be off by half; numerics.cells_along = "auto" resolves it.',
+        else Message(
+            "Square cells do not resolve where the film enters: COF and film load of a flat heel "
+            'may be off by half; numerics.cells_along = "auto" resolves it.'
+        ),
         "sensor": blind_sensor(case, sensor, contact),
         "floor_reading": " ".join(map(str, _unexpected_readings(parts.law))),
     }
@@ -153,24 +156,34 @@ def _unexpected_readings(law: FrictionLaw) -> tuple[UnexpectedReading, ...]:
     return law.draws.outside if isinstance(law, PairContactLaw) else ()
 
 
-def _last_instant(case: Case) -> str:
+def _last_instant(case: Case) -> Message:
     """Return when the numbers of a motion that ends are taken, and what is assumed of its start."""
     history, end = case.motion.build(), case.motion.end_time
     if end is None:
-        return ""
-    at = f"at {display(end, 's')}"
+        return NOTHING
+    parts = [Message("at {time}", time=Amount(end, "s"))]
     if history is not None and np.ptp(history.shoe_angle):
-        angle = display(history.shoe_angle[-1], "rad")
-        at = f"at the end of the motion ({display(end, 's')}, shoe angle {angle})"
+        angle = Amount(float(history.shoe_angle[-1]), "rad")
+        parts = [
+            Message(
+                "at the end of the motion ({time}, shoe angle {angle})",
+                time=Amount(end, "s"),
+                angle=angle,
+            )
+        ]
     if history is not None and abs(history.speed[-1]) < SLOWEST:
-        at += f", where the shoe is at rest: that of sliding off at {display(SLOWEST, 'm/s')}"
+        rest = Amount(SLOWEST, "m/s")
+        parts.append(
+            Message("where the shoe is at rest: that of sliding off at {speed}", speed=rest)
+        )
     if case.contaminant is not None:
-        at += f", from {display(start_film(case, steady=False), 'm')} above the floor at touch-down"
+        film = Amount(start_film(case, steady=False), "m")
+        parts.append(Message("from {film} above the floor at touch-down", film=film))
         if history is not None and history.normal_force[0] > 0:
-            rise = min(case.motion.force_rise_time, LANDED)
-            load = display(history.normal_force[0], "N")
-            at += f", where {load} come up within {display(rise, 's')}"
-    return at
+            rise = Amount(min(case.motion.force_rise_time, LANDED), "s")
+            load = Amount(float(history.normal_force[0]), "N")
+            parts.append(Message("where {load} come up within {rise}", load=load, rise=rise))
+    return Message("{parts}", parts=parts)
 
 
 def chamfer_remark(case: Case) -> str:

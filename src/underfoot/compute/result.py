@@ -14,7 +14,7 @@ from underfoot.core import DataError, Provenance, SourcedValue, Status, Underfoo
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import checksum, whole_folder
 from underfoot.core.presentation import Presentable, Table, value_text
-from underfoot.core.remark import Remark, stored_form
+from underfoot.core.remark import NOTHING, Message, Remark, from_stored, stored_form
 
 from . import summary
 
@@ -74,12 +74,12 @@ class Result(Presentable):
         """Return maps and histories as a labelled data set of xarray."""
         return self.data.to_xarray()
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         return summary.headline(self.status, self.scalars, self.labels)
 
-    def verdict(self) -> tuple[str, str]:
+    def verdict(self) -> tuple[str, Message]:
         """Return "grips", "doubtful" or "slips", and what it means for steps; empty if unknown."""
-        return summary.verdict_sentence(self.scalars, self.labels) if self.usable else ("", "")
+        return summary.verdict_sentence(self.scalars, self.labels) if self.usable else ("", NOTHING)
 
     def cautions(self) -> tuple[str, ...]:
         slip_model = self.provenance.closures.get("slip", "")
@@ -170,7 +170,7 @@ class Result(Presentable):
             "name": self.name,
             "status": status,
             **scalars,
-            "labels": self.labels,
+            "labels": stored_form(self.labels),
             "breaches": stored_form(self.breaches),
             "assumptions": stored_form(self.assumptions),
             "provenance": self.provenance.to_dict(),
@@ -291,7 +291,7 @@ class Result(Presentable):
             return cls(
                 name=stored["name"],
                 scalars=scalars,
-                labels=stored["labels"],
+                labels=from_stored(stored["labels"]),
                 data=fields,
                 status=Status(stored["status"]["value"]),
                 breaches=tuple(map(Remark.stored, stored["breaches"])),

@@ -2,6 +2,7 @@
 
 from underfoot.case import Case
 from underfoot.core.presentation import percent
+from underfoot.core.remark import NOTHING, Message
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact import SensorReading, floor_sensor_reading
 from underfoot.sole_contact.reading import BLIND
@@ -30,15 +31,16 @@ def scanned(
     )
 
 
-def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> str:
+def blind_sensor(case: Case, reading: SensorReading, state: SoleState) -> Message:
     """Return the caution about an inlet that cannot see the film; empty where it can."""
     if reading.seen >= BLIND or state.fluid_load < FILM_WORTH_SEEING * (
         state.fluid_load + state.contact_load
     ):
-        return ""
-    inlet = f"an inlet of {1e3 * case.sensor.inlet_diameter:.3g} mm"
-    return (
-        f"of the film's load {percent(reading.seen)} lies where {inlet} reads half of its pressure "
-        "or more: elsewhere its rim meets a channel or the film's end and reads less. "
-        "A low reading does not show that there is no film."
+        return NOTHING
+    return Message(
+        "of the film's load {share} lies where an inlet of {inlet:.3g} mm reads half of its "
+        "pressure or more: elsewhere its rim meets a channel or the film's end and reads less. "
+        "A low reading does not show that there is no film.",
+        share=percent(reading.seen),
+        inlet=1e3 * case.sensor.inlet_diameter,
     )

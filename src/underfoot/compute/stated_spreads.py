@@ -11,6 +11,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import InputError, SourcedValue, content_hash
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.friction.propagation import LOGNORMAL_ABOVE
 
 from .position_draws import COF_PARTS, LOADS, ON_CONTACT, UncertainBevel, log_film_odds
@@ -108,15 +109,18 @@ class StatedEffects:
         acting = [one.path for one in self.effects if one.acts]
         told = {}
         if acting:
-            told["stated_spreads"] = (
-                f"{', '.join(acting)}: contact and film at one standard deviation to either side"
+            told["stated_spreads"] = Message(
+                "{paths}: contact and film at one standard deviation to either side", paths=acting
             )
         if idle:
-            told["stated_idle"] = f"{', '.join(idle)}: no number moves within what is stated"
+            told["stated_idle"] = Message(
+                "{paths}: no number moves within what is stated", paths=idle
+            )
         if self.left_out:
-            told["stated_left_out"] = (
-                f"The intervals leave out what is stated of {', '.join(self.left_out)}: contact "
-                "and film could not be solved there."
+            told["stated_left_out"] = Message(
+                "The intervals leave out what is stated of {paths}: contact and film could not be "
+                "solved there.",
+                paths=self.left_out,
             )
         return told
 

@@ -18,7 +18,7 @@ from underfoot.core.presentation import (
     shows_interval,
     value_text,
 )
-from underfoot.core.remark import Message, Remark, subjects
+from underfoot.core.remark import NOTHING, Message, Remark, subjects
 from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
 
 FILM_MATTERS = 0.05
@@ -125,23 +125,30 @@ class FrictionLimit:
             return "film"
         return "shear" if self.film_share > FILM_BEARS else "boundary"
 
-    def sentence(self, regime: str = "") -> str:
-        """Return the limit as a sentence; ``regime`` (" (mixed)") stands behind the film's load."""
+    def sentence(self, regime: str = "") -> Message:
+        """Return the limit as a sentence; ``regime`` ("mixed") stands behind the film's load."""
         if self.kind == "no fluid":
-            return "The case has no fluid: the friction of the pair, as given, is the limit."
-        limit = (
+            return Message(
+                "The case has no fluid: the friction of the pair, as given, is the limit."
+            )
+        limit = Message(
             "the rest touches the floor, where wet rubber sticks less than dry: that is the limit."
         )
         if self.kind == "film":
-            limit = (
-                "without the film the same surfaces would have a COF of about "
-                f"{self.cof_without_film:.2f}."
+            limit = Message(
+                "without the film the same surfaces would have a COF of about {cof:.2f}.",
+                cof=self.cof_without_film,
             )
         elif self.kind == "shear":
             touching = (1.0 - self.film_share) * self.cof_without_film / self.cof
-            sheared = 1.0 if math.isnan(touching) else 1.0 - touching
-            limit = f"shearing the fluid makes {percent(sheared)} of this COF."
-        return f"The film carries {percent(self.film_share)} of the load{regime}; {limit}"
+            sheared = percent(1.0 if math.isnan(touching) else 1.0 - touching)
+            limit = Message("shearing the fluid makes {share} of this COF.", share=sheared)
+        values = {"share": percent(self.film_share), "limit": limit}
+        if not regime:
+            return Message("The film carries {share} of the load; {limit}", **values)
+        return Message(
+            "The film carries {share} of the load ({regime}); {limit}", **values, regime=regime
+        )
 
     def __str__(self) -> str:
         return self.sentence()
@@ -175,23 +182,26 @@ def verdict(
 
 def verdict_sentence(
     scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
-) -> tuple[str, str]:
+) -> tuple[str, Message]:
     """Return the verdict and what it means for steps, both empty where there is none."""
     word = verdict(scalars, labels)
     slip = scalars.get("slip_probability", SourcedValue(None, reason="not asked for"))
     if slip.value is None:
-        return "", ""
+        return "", NOTHING
     low, high = map(probability_text, slip.interval or (slip.value, slip.value))
-    steps = {
-        "grips": f"fewer than 1 of {1 / GRIPS:.0f} steps slips",
-        "slips": f"more than 1 of {1 / SLIPS:.0f} steps slips",
-    }.get(word, f"from {low} to {high} of steps may slip")
-    return word, f"{steps} (95 % interval{', extrapolated' if slip.note else ''})"
+    steps = Message("from {low} to {high} of steps may slip", low=low, high=high)
+    if word == "grips":
+        steps = Message("fewer than 1 of {count:.0f} steps slips", count=1 / GRIPS)
+    elif word == "slips":
+        steps = Message("more than 1 of {count:.0f} steps slips", count=1 / SLIPS)
+    if slip.note:
+        return word, Message("{steps} (95 % interval, extrapolated)", steps=steps)
+    return word, Message("{steps} (95 % interval)", steps=steps)
 
 
 def headline(
     status: Status, scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]
-) -> tuple[str, ...]:
+) -> tuple[Message, ...]:
     """Return the answer in a few sentences: COF and what spoils it, film, slip probability.
 
     Parameters:
@@ -200,31 +210,44 @@ def headline(
         labels: Its sentences by name.
     """
     if not status.usable:
-        reason = f" ({labels['no_result']})" if "no_result" in labels else ""
-        return (f"No result: {status}{reason}. {status.remedy}",)
+        return (no_result(status, labels.get("no_result", "")),)
     cof = scalars["cof"]
-    text = value_text("cof", cof)
+    parts: list[str] = [value_text("cof", cof)]
     if cof.uncertainty is not None:
-        measure = "95 % interval" if shows_interval("cof", cof) else "one standard deviation"
-        text += f", {measure} {labels.get('cof_spread_basis', 'of friction law and film load')}"
+        basis = labels.get("cof_spread_basis") or Message("of friction law and film load")
+        parts.append(
+            Message("95 % interval {basis}", basis=basis)
+            if shows_interval("cof", cof)
+            else Message("one standard deviation {basis}", basis=basis)
+        )
     if "cof_tread_position" in scalars:
-        text += ", mean over positions of the tread"
+        parts.append(Message("mean over positions of the tread"))
     if "instant" in labels:
-        text += f", {labels['instant']}"
-    sentences = [f"Available COF {text}.", *steadiness(scalars)]
+        parts.append(labels["instant"])
+    sentences = [Message("Available COF {parts}.", parts=parts), *steadiness(scalars)]
     if "overload" in labels:
-        sentences.append(f"{labels['overload'][0].upper()}{labels['overload'][1:]}.")
-    regime = f" ({labels['regime']})" if "regime" in labels else ""
-    sentences.append(friction_limit(scalars).sentence(regime))
+        sentences.append(Message("{overload:capital}.", overload=labels["overload"]))
+    sentences.append(friction_limit(scalars).sentence(labels.get("regime", "")))
     slip = scalars.get("slip_probability")
     if slip is not None and slip.value is not None:
-        text = value_text("slip_probability", slip)
-        extrapolated = ", extrapolated" if slip.note else ""
-        sentences.append(f"Slip probability {text}{extrapolated}.")
+        values = {"value": value_text("slip_probability", slip)}
+        sentences.append(
+            Message("Slip probability {value}, extrapolated.", **values)
+            if slip.note
+            else Message("Slip probability {value}.", **values)
+        )
     return tuple(sentences)
 
 
-def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[str, ...]:
+def no_result(status: Status, reason: str = "") -> Message:
+    """Return that there is no result, why, and what to do."""
+    values = {"status": str(status), "remedy": status.remedy}
+    if not reason:
+        return Message("No result: {status}. {remedy}", **values)
+    return Message("No result: {status} ({reason}). {remedy}", **values, reason=reason)
+
+
+def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[Message, ...]:
     """Return what to say of an answer that is not that of steady sliding, or only of a long one."""
     if "later_cof" in scalars:
         time, film = (
@@ -232,12 +255,19 @@ def steadiness(scalars: Mapping[str, SourcedValue]) -> tuple[str, ...]:
             for name, unit in (("time", "s"), ("fluid_load", "N"))
         )
         cof = value_text("later_cof", scalars["later_cof"])
-        return (f"Not steady: held on to {time} COF is {cof}, the load on the film {film}.",)
+        values = {"time": time, "cof": cof, "film": film}
+        return (
+            Message(
+                "Not steady: held on to {time} COF is {cof}, the load on the film {film}.", **values
+            ),
+        )
     slide = scalars.get("steady_slide")
     if slide is None or (slide.value or 0.0) <= LONGEST_SLIDE:
         return ()
     way = quantity_text(slide.value or 0.0, "m")
-    return (f"Sliding is steady only after {way}, further than a slip tester slides.",)
+    return (
+        Message("Sliding is steady only after {way}, further than a slip tester slides.", way=way),
+    )
 
 
 def cautions(
@@ -254,35 +284,41 @@ def cautions(
     reasons = [labels[name] for name in CAUTIONS if name in labels]
     slip = scalars.get("slip_probability")
     if slip is not None and slip.note:
-        reasons.append(f"Slip probability {slip.note}.")
+        reasons.append(Message("Slip probability {note}.", note=slip.note))
     if others := [name for name in subjects(breaches) if name != slip_model]:
         reasons.append(beyond_tests(others))
     sections = subjects(assumptions)
     left_out = {}
     if "film_spread_basis" not in labels:
-        left_out["interface"] = "interface roughness"
+        left_out["interface"] = Message("interface roughness")
     if "film_heel_basis" not in labels:
-        left_out["shoe.heel.profile"] = "heel shape"
-    inputs = " and ".join(text for name, text in left_out.items() if name in sections)
+        left_out["shoe.heel.profile"] = Message("heel shape")
+    inputs = [text for name, text in left_out.items() if name in sections]
     mind = inputs or "film_inlet" in labels
     filmed = bool(mind) and friction_limit(scalars).kind in ("film", "shear")
     if inputs and filmed:
         reasons.append(
-            f"The film load depends on assumed values ({inputs}) that its interval leaves out; "
-            "underfoot sensitivity gives their effect."
+            Message(
+                "The film load depends on assumed values ({inputs: and }) that its interval leaves "
+                "out; underfoot sensitivity gives their effect.",
+                inputs=inputs,
+            )
         )
     if "film_inlet" in labels and filmed:
         reasons.append(labels["film_inlet"])
     return tuple(reasons)
 
 
-def beyond_tests(models: Iterable[str]) -> str:
+def beyond_tests(models: Iterable[str]) -> Message:
     """Return in plain words which parts of the answer go beyond what their models were tested for.
 
     The technical name of each model stands in brackets, as the list of ranges has it.
     """
-    named = [f"{PARTS[name]} ({name})" if name in PARTS else name for name in models]
-    return f"Beyond what was tested: {', '.join(named)}."
+    named = [
+        Message("{part} ({model})", part=PARTS[name], model=name) if name in PARTS else name
+        for name in models
+    ]
+    return Message("Beyond what was tested: {named}.", named=named)
 
 
 def in_words(breaches: Iterable[Remark]) -> tuple[str, ...]:
@@ -339,7 +375,7 @@ def drainage_table(fields: Fields) -> Table:
 
 def notes(labels: Mapping[str, str]) -> tuple[str, ...]:
     """Return the remarks of a result that are sentences, with their title in front."""
-    return tuple(f"{title}: {labels[key]}" for key, title in LABELS.items() if key in labels)
+    return tuple(Remark.of(title, labels[key]) for key, title in LABELS.items() if key in labels)
 
 
 def ranked_assumptions(assumptions: Sequence[Remark]) -> list[Remark]:
@@ -362,7 +398,9 @@ def _load_share(scalars: Mapping[str, SourcedValue], name: str) -> str:
     if name not in ("fluid_load", "fluid_load_sensor"):
         return ""
     load, total = scalars[name].value, scalars["normal_force"].value
-    return f"{percent(load / total)} of the load" if load is not None and total else ""
+    if load is None or not total:
+        return NOTHING
+    return Message("{share} of the load", share=percent(load / total))
 
 
 def _number(scalars: Mapping[str, SourcedValue], name: str) -> float:

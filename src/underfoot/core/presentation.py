@@ -9,6 +9,8 @@ from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
 
+from underfoot.core.remark import Message
+
 from .units import display_unit, number_text, unit_system
 from .values import SourcedValue
 
@@ -46,8 +48,8 @@ class AssumingModel(SourcedModel, Protocol):
     """A model that says what it assumes."""
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What no measurement stands behind, in words."""
+    def assumptions(self) -> tuple[Message, ...]:
+        """What no measurement stands behind, a line each."""
         ...
 
 

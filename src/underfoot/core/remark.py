@@ -7,8 +7,9 @@ fields beside it.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from html import escape
 from string import Formatter
 from typing import Any, Self
@@ -19,6 +20,8 @@ MARK = "data-message"
 """Attribute of an element of a page that holds ``page_data`` of its text, as JSON."""
 ASSUMED = "Assumed"
 """What a line is about that tells a guess: what nobody stated."""
+HERE = "here"
+"""Field of a message for what it tells of one case alone: a line of several leaves it out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +46,8 @@ class Message(str):
     Parameters:
         code: The sentence in English with named fields, by which other languages know it. A field
             formats as in ``str.format``; besides, ``{count:step|steps}`` is the first where the
-            count is 1, ``{part:capital}`` begins a sentence, and several values are joined by what
-            stands behind the colon, else by a comma.
+            count is 1, ``{part:capital}`` begins a sentence, ``{part:small}`` does not, and several
+            values are joined by what stands behind the colon, else by a comma.
         values: What the fields hold: numbers, amounts, names, other messages, or several of them.
 
     Raises:
@@ -78,12 +81,14 @@ class Message(str):
         """Return a text that nobody made of values, as a message of itself."""
         return text if isinstance(text, Message) else Message("{text}", text=text)
 
+    @property
+    def subject(self) -> str:
+        """What the line is about; the line itself where it is about the whole."""
+        return self._parts().get("about") or self
+
     def page_data(self) -> dict[str, Any]:
         """Return template and formatted values, which a page puts into its language."""
-        specs: dict[str, str] = {}
-        for _, name, spec, _ in Formatter().parse(self.code):
-            if name and ("|" in specs.setdefault(name, spec or "")):
-                specs[name] = spec or ""
+        specs = _specs(self.code)
         values = {name: _of_page(self.values[name], spec) for name, spec in specs.items()}
         return {"code": self.code, "values": values}
 
@@ -158,6 +163,36 @@ def joined(lines: Iterable[object]) -> Message:
     return Message("{texts:; }", texts=texts)
 
 
+def kind_of(line: Any) -> Any:
+    """Return what a line shares with others that differ from it in numbers alone."""
+    if isinstance(line, tuple):
+        return tuple(map(kind_of, line))
+    if not isinstance(line, Message):
+        return line if isinstance(line, str) else None
+    values = {name: kind_of(value) for name, value in line.values.items() if name != HERE}
+    return line.code, *values.items()
+
+
+def of_several(lines: Sequence[Message]) -> Message:
+    """Return one line for several of one kind: "3 ms" and "9 ms" give "3 to 9 ms"."""
+    first = lines[0]
+    values = {
+        name: "" if name == HERE else _span([line.values[name] for line in lines], spec)
+        for name, spec in _specs(first.code).items()
+    }
+    return Message(first.code, **values)
+
+
+def _span(values: Sequence[Any], spec: str) -> Any:
+    first = values[0]
+    if isinstance(first, Message):
+        return of_several(values)
+    if not isinstance(first, int | float):
+        return first
+    low, high = (format(end, spec) for end in (min(values), max(values)))
+    return first if low == high else Message("{low} to {high}", low=low, high=high)
+
+
 def assumed(code: str, /, **values: Any) -> Remark:
     """Return the line that tells a guess, of a template and its values."""
     return Remark(ASSUMED, code, **values)
@@ -170,13 +205,18 @@ def is_assumed(line: str) -> bool:
 
 def remarks(lines: Iterable[object]) -> tuple[Remark, ...]:
     """Return lines as remarks, each once; what says nothing of it is about the whole."""
-    made = (line if isinstance(line, Remark) else Remark.of("", str(line)) for line in lines)
+    made = (
+        line
+        if isinstance(line, Remark)
+        else Remark.of("", line if isinstance(line, str) else str(line))
+        for line in lines
+    )
     return tuple(dict.fromkeys(made))
 
 
-def subjects(lines: Iterable[Remark]) -> tuple[str, ...]:
-    """Return what remarks are about, each once; the line itself where it is about the whole."""
-    return tuple(dict.fromkeys(line.about or line for line in lines))
+def subjects(lines: Iterable[Message]) -> tuple[str, ...]:
+    """Return what lines are about, each once; the line itself where it is about the whole."""
+    return tuple(dict.fromkeys(line.subject for line in lines))
 
 
 def stored_form(value: Any) -> Any:
@@ -216,7 +256,8 @@ def _is_series(value: list[Any] | tuple[Any, ...]) -> bool:
 class _Fields(Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
         if isinstance(value, str):
-            return value[:1].upper() + value[1:] if format_spec == "capital" else str(value)
+            first = {"capital": value[:1].upper(), "small": value[:1].lower()}
+            return first.get(format_spec, value[:1]) + value[1:]
         if isinstance(value, Iterable):
             return (format_spec or ", ").join(map(str, value))
         one, plural, many = format_spec.partition("|")
@@ -224,6 +265,16 @@ class _Fields(Formatter):
 
 
 _FIELDS = _Fields()
+
+
+@cache
+def _specs(code: str) -> Mapping[str, str]:
+    """Return how each field of a template is formatted; that of a plural has no format."""
+    specs: dict[str, str] = {}
+    for _, name, spec, _ in Formatter().parse(code):
+        if name and ("|" in specs.setdefault(name, spec or "")):
+            specs[name] = spec or ""
+    return specs
 
 
 def _plain(value: Any) -> Any:
@@ -242,7 +293,7 @@ def _of_page(value: Any, spec: str) -> Any:
         return value.page_data()
     if isinstance(value, tuple):
         return [_of_page(each, "") for each in value]
-    return _FIELDS.format_field(value, "" if "|" in spec or spec == "capital" else spec)
+    return _FIELDS.format_field(value, "" if "|" in spec or isinstance(value, str) else spec)
 
 
 def _copied(kind: type[Message], text: str, parts: Mapping[str, Any]) -> Message:
@@ -250,3 +301,7 @@ def _copied(kind: type[Message], text: str, parts: Mapping[str, Any]) -> Message
     for name, value in parts.items():
         setattr(line, name, value)
     return line
+
+
+NOTHING = Message("")
+"""A line that says nothing."""

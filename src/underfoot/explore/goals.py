@@ -10,7 +10,7 @@ A bare output is its mean. Over conditions and draws, where nothing is said.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -36,15 +36,15 @@ _BOUND = re.compile(r"(.+?)\s*(<=|>=|<|>)\s*(.+)")
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A state that every design is run in: its label, and the changes that make it."""
+    """A state that every design is run in: what it is called, in parts, and what makes it."""
 
-    label: str
+    parts: tuple[str, ...]
     changes: Mapping[str, Any]
 
     @property
-    def parts(self) -> tuple[str, ...]:
-        """The words of the label."""
-        return tuple(self.label.split(", ")) if self.label else ()
+    def label(self) -> str:
+        """All parts in one line."""
+        return ", ".join(self.parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +182,7 @@ class WearLife:
         for number in _chosen(states, self.requirement.goal.within):
             changes = dict(states[number].changes)
             wear = float(changes.pop(WEAR))
-            values = self._bounded.values(outputs[:, [number]], [Condition("", {})])
+            values = self._bounded.values(outputs[:, [number]], [Condition((), {})])
             margins = np.asarray(self.requirement.margin(values))
             groups.setdefault(repr(changes), {})[wear] = margins
         lives = []
@@ -275,14 +275,24 @@ def read_goal(
     over = clauses.get("over", OVER[2])
     if over not in OVER:
         raise unknown_name("word after over", over, OVER)
-    within = tuple(part.strip() for part in clauses.get("in", "").split(",") if part.strip())
     words = sorted({part for state in states for part in state.parts})
+    within = tuple(_listed(clauses.get("in", ""), words))
     for word in within:
         if word not in words:
             raise unknown_name("condition", word, words)
     if not _chosen(states, within):
         raise InputError(f"no condition is {' and '.join(within)}")
     return Goal(output, units[output], statistic, share, over, within)
+
+
+def _listed(text: str, names: Sequence[str]) -> Iterator[str]:
+    """Yield the parts of a list with commas, of which a name may hold some too."""
+    parts = [part.strip() for part in text.split(",") if part.strip()]
+    while parts:
+        sizes = range(len(parts), 1, -1)
+        size = next((size for size in sizes if ", ".join(parts[:size]) in names), 1)
+        yield ", ".join(parts[:size])
+        parts = parts[size:]
 
 
 def read_requirement(

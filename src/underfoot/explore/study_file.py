@@ -258,7 +258,7 @@ def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Readin
     sd = spread_to_si(table["sd"], given, unit, where=".sd")
     if sd <= 0:
         raise InputError(f"{table['sd']}", where=".sd", allowed="above 0")
-    return Condition(str(table.get("name", name)), changes), Reading(outputs[0], unit, value, sd)
+    return Condition((str(table.get("name", name)),), changes), Reading(outputs[0], unit, value, sd)
 
 
 class _Reader:
@@ -381,7 +381,7 @@ class _Reader:
         if self.refuse_many("conditions", "conditions", math.prod(map(len, choices))):
             return ()
         return tuple(
-            Condition(", ".join(str(text) for *_, text in row), {path: v for path, v, _ in row})
+            Condition(tuple(str(text) for *_, text in row), {path: v for path, v, _ in row})
             for row in product(*choices)
         )
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive, positive_array
+from underfoot.core.remark import Message
 
 from .soft_ehl import lambda_ratio, soft_ehl
 
@@ -60,7 +61,7 @@ class RegimeMap:
     speed: Array
     lambda_ratio: Array
     fluid_share: Array | None
-    assumptions: tuple[str, ...]
+    assumptions: tuple[Message, ...]
     breaches: tuple[Breach, ...]
 
 
@@ -182,10 +183,12 @@ def regime_map(
         speed_is=speed_is,
     )
     share = None
-    assumptions = [f"film of a smooth soft contact, {speed_is} speed"]
+    assumptions = [Message("film of a smooth soft contact, {speed_is} speed", speed_is=speed_is)]
     if law is not None and mean_pressure is not None:
         share = fluid_load_share(film.central, law, mean_pressure)
-        assumptions.append("load share at the film of smooth walls, limits 0.1 and 0.9 assumed")
+        assumptions.append(
+            Message("load share at the film of smooth walls, limits 0.1 and 0.9 assumed")
+        )
     return RegimeMap(
         viscosity=eta,
         speed=v,

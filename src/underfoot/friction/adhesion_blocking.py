@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from underfoot.core import Range, SourcedValue
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.fluid import AdhesionBlocking
 
 from .law import FILM_RANGE, PIN_PRESSURE, REPORT, UncertainInputs, coefficient
@@ -37,10 +38,13 @@ class AdhesionBlockingLaw(UncertainInputs):
     cof_hysteresis: SourcedValue
     viscosity: float | None = None
     name: str = field(default="adhesion_blocking", init=False)
-    assumptions: tuple[str, ...] = field(
+    assumptions: tuple[Message, ...] = field(
         default=(
-            "Contact friction is proportional to the contact pressure and the same at all speeds.",
-            "A fluid blocks the same share of adhesion on every pair (R2 = 0.49).",
+            Message(
+                "Contact friction is proportional to the contact pressure and the same at all "
+                "speeds."
+            ),
+            Message("A fluid blocks the same share of adhesion on every pair (R2 = 0.49)."),
         ),
         init=False,
     )

@@ -14,6 +14,7 @@ from scipy.special import erfc
 from underfoot.core import Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import choice, positive
+from underfoot.core.remark import Message
 from underfoot.reference import soft_ehl_film
 from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
 
@@ -75,13 +76,18 @@ class AsperityEHL:
         choice(self.blocking, BLOCKINGS, "blocking")
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
         return (
-            "Films at single asperities block adhesion; the fine roughness they must cover "
-            f"({self._fine * 1e9:.3g} nm) is calibrated on friction, not measured.",
-            "The film formula of soft contacts (Eq. 18) holds at asperities, beyond the range "
-            "it was fitted in.",
+            Message(
+                "Films at single asperities block adhesion; the fine roughness they must cover "
+                "({fine:.3g} nm) is calibrated on friction, not measured.",
+                fine=self._fine * 1e9,
+            ),
+            Message(
+                "The film formula of soft contacts (Eq. 18) holds at asperities, beyond the range "
+                "it was fitted in."
+            ),
         )
 
     def at(self, values: Mapping[str, float]) -> AsperityEHL:
@@ -214,14 +220,16 @@ def asperity_ehl_law(
         assert friction is not None
         boundary = friction.cof_boundary
         if friction.pair:
-            notes.append(f"Friction at rest was measured on {friction.pair}.")
+            notes.append(Message("Friction at rest was measured on {pair}.", pair=friction.pair))
     else:
         assert levels.cof_boundary is not None
         boundary = levels.cof_boundary
         notes.append(
-            "Only the viscosity of the fluid enters: friction at rest is one for all. Each of six "
-            "fluids was so predicted from the other five within 0.040 of COF on average; from one "
-            "fluid alone it was 0.061, more than the 0.05 aimed at."
+            Message(
+                "Only the viscosity of the fluid enters: friction at rest is one for all. Each of "
+                "six fluids was so predicted from the other five within 0.040 of COF on average; "
+                "from one fluid alone it was 0.061, more than the 0.05 aimed at."
+            )
         )
     fine = fine_roughness or levels.fine_roughness
     spreads = {

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .law import PIN_RANGES, UncertainInputs, coefficient
 from .measured import BoundaryFriction, friction_left
@@ -34,7 +35,7 @@ class BoundaryLaw(UncertainInputs):
     cof_boundary: SourcedValue
     cof_hysteresis: SourcedValue
     viscosity: float | None = None
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[Message, ...] = ()
     name: str = field(default="boundary", init=False)
 
     @classmethod
@@ -84,10 +85,13 @@ class BoundaryLaw(UncertainInputs):
         return self.cof_boundary.source or "given"
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
         return (
-            "Contact friction is proportional to the contact pressure and the same at all speeds.",
+            Message(
+                "Contact friction is proportional to the contact pressure and the same at all "
+                "speeds."
+            ),
             *self.assumed,
         )
 

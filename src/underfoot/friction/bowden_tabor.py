@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
+from underfoot.core.remark import Message
 
 from .law import UncertainInputs, drawn_value, with_values
 
@@ -117,9 +118,9 @@ class BowdenTaborLaw(UncertainInputs):
         return "; ".join(dict.fromkeys(part for part in parts if part))
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
-        return ("Adhesion is one shear strength times the real contact area.",)
+        return (Message("Adhesion is one shear strength times the real contact area."),)
 
     def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         area = np.clip(np.asarray(self.real_contact_fraction(pressure, velocity)), 0.0, 1.0)

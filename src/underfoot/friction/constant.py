@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative
+from underfoot.core.remark import Message
 
 from .law import UncertainInputs
 
@@ -28,8 +29,9 @@ class ConstantLaw(UncertainInputs):
     adhesion_deviation: float | None = None
     hysteresis_deviation: float | None = None
     name: str = field(default="constant", init=False)
-    assumptions: tuple[str, ...] = field(
-        default=("Contact friction does not depend on pressure, speed or film.",), init=False
+    assumptions: tuple[Message, ...] = field(
+        default=(Message("Contact friction does not depend on pressure, speed or film."),),
+        init=False,
     )
 
     def __post_init__(self) -> None:

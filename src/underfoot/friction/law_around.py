@@ -9,6 +9,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, SourcedValue
+from underfoot.core.remark import Message
 
 from .law import FrictionLaw
 
@@ -33,7 +34,7 @@ class LawAround:
         return self.law.source
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """Assumptions behind the law."""
         return self.law.assumptions
 

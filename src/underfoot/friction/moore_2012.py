@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array, scalar_or_array
+from underfoot.core.remark import Message
 
 from .law import PIN_RANGES, REPORT, UncertainInputs, coefficient
 from .measured import AT_BOUND, BoundaryFriction, boundary_friction_at, friction_left, viscous_decay
@@ -72,7 +73,7 @@ class StribeckLaw(UncertainInputs):
     cof_asymptote: SourcedValue
     viscosity: float | None = None
     cof_hysteresis: SourcedValue | None = None
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[Message, ...] = ()
     model_deviation: float | None = None
     name: str = field(default="stribeck", init=False)
     source: str = field(default=SOURCE, init=False)
@@ -107,12 +108,16 @@ class StribeckLaw(UncertainInputs):
             )
         notes = [f"Friction was measured on {friction.pair}."] if friction.pair else []
         if friction.cof_boundary.assumed:
-            notes.append(friction.cof_boundary.note or f"COF_BL of {friction.fluid} is assumed.")
+            level = Message("COF_BL of {fluid} is assumed.", fluid=friction.fluid)
+            notes.append(Message.plain(friction.cof_boundary.note or level))
         at_bound = (friction.cof_asymptote.value or 0.0) < AT_BOUND
         if cof_hysteresis is None and at_bound and others:
             cof_hysteresis = friction_left(others)
             notes.append(
-                "Hysteresis is the friction that stays at high speed under glycerol, at most COF."
+                Message(
+                    "Hysteresis is the friction that stays at high speed under glycerol, at most "
+                    "COF."
+                )
             )
         return cls(
             friction.cof_boundary,
@@ -124,11 +129,14 @@ class StribeckLaw(UncertainInputs):
         )
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
         return (
-            "Contact friction is proportional to the contact pressure.",
-            "The fall with speed of a pin happens between the asperities, not in a film under it.",
+            Message("Contact friction is proportional to the contact pressure."),
+            Message(
+                "The fall with speed of a pin happens between the asperities, not in a film under "
+                "it."
+            ),
             *self.assumed,
         )
 
@@ -172,9 +180,12 @@ def stribeck_law_at(
         cof_asymptote=left,
         viscosity=viscosity,
         assumed=(
-            f"{between.cof_boundary.note}.",
-            "One constant viscosity x tau_hydro holds for all fluids of the pair "
-            f"({1e3 * (decay.value or math.nan):.3g} mPa m).",
+            Message("{note}.", note=between.cof_boundary.note),
+            Message(
+                "One constant viscosity x tau_hydro holds for all fluids of the pair "
+                "({decay:.3g} mPa m).",
+                decay=1e3 * (decay.value or math.nan),
+            ),
         ),
         model_deviation=LEFT_OUT_DEVIATION,
     )

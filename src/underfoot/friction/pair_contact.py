@@ -44,7 +44,7 @@ from scipy.special import erf, ndtri
 from underfoot.core import DataError, InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 
 from .law import FILM_RANGE, PIN_PRESSURE, UncertainInputs
 from .propagation import named_shares
@@ -461,9 +461,9 @@ class PairContactLaw(UncertainInputs):
         return self.draws.source
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
-        words = [*self.draws.notes]
+        words: list[Message] = [*self.draws.notes]
         if LABORATORY not in self.draws.errors:
             words.append(
                 Remark(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
+from underfoot.core.remark import Message
 from underfoot.reference import soft_ehl_film
 from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
 
@@ -58,8 +59,10 @@ class ViscoelasticArea:
     rest_speed: float = REST_SPEED
     name: str = field(default="viscoelastic_area", init=False)
     source: str = field(default="Persson 2001, J. Chem. Phys. 115:3840-3861", init=False)
-    assumptions: tuple[str, ...] = field(
-        default=("The fall with speed is that of the real contact area of a stiffening rubber.",),
+    assumptions: tuple[Message, ...] = field(
+        default=(
+            Message("The fall with speed is that of the real contact area of a stiffening rubber."),
+        ),
         init=False,
     )
 
@@ -109,8 +112,10 @@ class MeanFilmSharing:
         "91-108; Persson 2007",
         init=False,
     )
-    assumptions: tuple[str, ...] = field(
-        default=("The fall with speed is the film of the whole pin, not one of the asperities.",),
+    assumptions: tuple[Message, ...] = field(
+        default=(
+            Message("The fall with speed is the film of the whole pin, not one of the asperities."),
+        ),
         init=False,
     )
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import SourcedValue
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import NOTHING, Message
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
 from .propagation import Propagated, propagated
@@ -113,15 +114,16 @@ class SampledCof:
         """Return ``value`` with the standard deviation and the interval of the draws ``name``."""
         draws = getattr(self, name)
         if np.std(draws) <= 1e-9 * np.abs(draws).max(initial=0.0):
-            exact = ", ".join(self.left_out) or "what it depends on"
-            return replace(value, reason=f"{exact} came without a standard deviation")
+            exact = self.left_out or Message("what it depends on")
+            why = Message("{exact} came without a standard deviation", exact=exact)
+            return replace(value, reason=why)
         tail = 0.5 * (1 - self.confidence)
         low, high = np.quantile(draws, [tail, 1 - tail])
         return replace(
             value,
             uncertainty=float(np.std(draws, ddof=1)),
             interval=(float(low), float(high)),
-            reason="",
+            reason=NOTHING,
         )
 
 

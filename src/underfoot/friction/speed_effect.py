@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import AssumingModel
+from underfoot.core.remark import Message
 
 from .law import PIN_PRESSURE, PIN_RANGES, UncertainInputs, coefficient, sourced_fields, with_values
 
@@ -86,7 +87,7 @@ class SpeedEffectLaw(UncertainInputs):
     cof_hysteresis: SourcedValue
     viscosity: float | None = None
     model_deviation: float | None = None
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[Message, ...] = ()
     effect_inputs: Mapping[str, SourcedValue] = field(default_factory=dict)
     calibrated_product: Range | None = None
 
@@ -108,15 +109,15 @@ class SpeedEffectLaw(UncertainInputs):
         return "; ".join(dict.fromkeys((self.effect.source, self.cof_boundary.source)))
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
         levels = [
-            value.note
+            Message.plain(value.note)
             for value in (self.cof_boundary, self.cof_hysteresis)
             if value.assumed and value.note
         ]
         return (
-            "Contact friction at rest is proportional to the contact pressure.",
+            Message("Contact friction at rest is proportional to the contact pressure."),
             *self.effect.assumptions,
             *levels,
             *self.assumed,

@@ -11,6 +11,7 @@ from underfoot.core import InputError, Range, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative
 from underfoot.core.presentation import Table
+from underfoot.core.remark import Message
 
 from .law import FILM_RANGE, UncertainInputs, with_values
 
@@ -44,7 +45,7 @@ class SpeedTableLaw(UncertainInputs):
     viscosity: float | None = None
     cof_deviation: Array | None = None
     pressure: tuple[float, float] | None = None
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[Message, ...] = ()
     name: str = field(default="speed_table", init=False)
 
     def __post_init__(self) -> None:
@@ -75,9 +76,9 @@ class SpeedTableLaw(UncertainInputs):
         UncertainInputs.__post_init__(self)
 
     @property
-    def assumptions(self) -> tuple[str, ...]:
+    def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
-        return ("Contact friction is proportional to the contact pressure.", *self.assumed)
+        return (Message("Contact friction is proportional to the contact pressure."), *self.assumed)
 
     def contact_shear(self, pressure: Array, velocity: Array) -> tuple[Array, ...]:
         place = np.log(np.maximum(velocity, self.speed[0]))

@@ -44,6 +44,7 @@ from underfoot.core.presentation import (
     probability_text,
     value_text,
 )
+from underfoot.core.remark import Message, Remark
 from underfoot.core.threads import threads_limited
 from underfoot.friction import PairContactLaw
 from underfoot.friction.pair_contact import (
@@ -174,71 +175,102 @@ class Choice(Presentable):
             if not any(same_shoe(one.shoe, other.shoe) for other in self.shoes[:number])
         )
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the answer, or that there is none."""
         first, best, count = self.first, self._chance(self.first), len(self._unlike)
-        rate = f"{value_text('slip_probability', first.slips)} of steps in a fluid slip"
+        slips = value_text("slip_probability", first.slips)
+        rate = Message("{slips} of steps in a fluid slip", slips=slips)
+        chance = probability_text(best)
+        answer = {"shoe": first.shoe.name, "chance": chance, "rate": rate}
         if len(self.shoes) == 1:
-            lines = [f"{first.shoe.name}: {rate}."]
+            lines = [Message("{shoe}: {rate}.", shoe=first.shoe.name, rate=rate)]
         elif count == 1:
-            lines = [f"Which shoe is best can't be told: all are the same ({rate})."]
-        elif best >= DECIDED:
             lines = [
-                f"{first.shoe.name} is best with a chance of {probability_text(best)}: {rate}."
+                Message("Which shoe is best can't be told: all are the same ({rate}).", rate=rate)
             ]
+        elif best >= DECIDED:
+            lines = [Message("{shoe} is best with a chance of {chance}: {rate}.", **answer)]
         else:
-            chance = probability_text(best)
             alike = (one for one in self._unlike if probability_text(self._chance(one)) == chance)
             level = [one.shoe.name for one in alike]
-            told = f"{first.shoe.name} is ahead with a chance of {chance} ({rate})"
+            told = Message("{shoe} is ahead with a chance of {chance} ({rate})", **answer)
             if len(level) > 1:
                 *others, last = level
-                told = (
-                    f"{', '.join(others)} and {last} are level with a chance of {chance} each "
-                    f"(with {first.shoe.name}: {rate})"
+                told = Message(
+                    "{others} and {last} are level with a chance of {chance} each (with {shoe}: "
+                    "{rate})",
+                    **answer,
+                    others=others,
+                    last=last,
                 )
-            lines = [f"Which of the {count} shoes is best can't be told: {told}."]
+            lines = [
+                Message(
+                    "Which of the {count} shoes is best can't be told: {told}.",
+                    count=count,
+                    told=told,
+                )
+            ]
         if unlikely := [each.shoe.name for each in self.shoes if self._chance(each) < UNLIKELY]:
             lines.append(
-                f"Hardly the best (chance below {100 * UNLIKELY:.0f} %): {', '.join(unlikely)}."
+                Message(
+                    "Hardly the best (chance below {limit:.0f} %): {shoes}.",
+                    limit=100 * UNLIKELY,
+                    shoes=unlikely,
+                )
             )
         most = self.levers[0] if self.levers else None
         if most is not None and most.left[1] < 1 and most.fewer > 0.5 + TOSS_UP:
             lines.append(
-                f"Most is gained by {most.name}: it leaves {_share(most.left)} of the slips of "
-                f"today, fewer with a probability of {drawn_probability_text(most.fewer)}."
+                Message(
+                    "Most is gained by {change}: it leaves {share} of the slips of today, fewer "
+                    "with a probability of {chance}.",
+                    change=most.name,
+                    share=_share(most.left),
+                    chance=drawn_probability_text(most.fewer),
+                )
             )
         else:
-            lines.append("No change that was tried surely leaves fewer slips.")
+            lines.append(Message("No change that was tried surely leaves fewer slips."))
         if self.measurements and self.measurements[0].changes >= 0.05:
             one = self.measurements[0]
             lines.append(
-                f"Measure first: {one.name}; it changes the choice with a chance of "
-                f"{_of_bins(one.changes)}."
+                Message(
+                    "Measure first: {name}; it changes the choice with a chance of {chance}.",
+                    name=one.name,
+                    chance=_of_bins(one.changes),
+                )
             )
         return tuple(lines)
 
     def cautions(self) -> tuple[str, ...]:
         """Return what the numbers are not."""
         lines = [
-            "A slip is a heel faster than 0.2 m/s of people who walk as if no fluid were there: "
-            "many more than people report. Compare shoes by their ratio. Steps on dry floors count "
-            f"as safe; a worker takes {self.place.wet_steps:,.0f} steps a day in a fluid.",
+            Message(
+                "A slip is a heel faster than 0.2 m/s of people who walk as if no fluid were "
+                "there: many more than people report. Compare shoes by their ratio. Steps on dry "
+                "floors count as safe; a worker takes {steps:,.0f} steps a day in a fluid.",
+                steps=self.place.wet_steps,
+            ),
+            *(Remark.of(floor, str(told)) for floor, told in self.outside),
         ]
-        lines += [f"{floor}: {told}" for floor, told in self.outside]
         twins = [
-            f"{one.shoe.name} and {two.shoe.name}"
+            Message("{first} and {second}", first=one.shoe.name, second=two.shoe.name)
             for number, one in enumerate(self.shoes)
             for two in self.shoes[number + 1 :]
             if same_shoe(one.shoe, two.shoe)
         ]
         if twins:
-            lines.append(f"The same shoe twice, which shares its chance: {'; '.join(twins)}.")
+            lines.append(
+                Message("The same shoe twice, which shares its chance: {twins:; }.", twins=twins)
+            )
         for floor in self.place.floors:
             if not floor.known:
                 lines.append(
-                    f"{floor.name} has neither roughness nor reading: it was drawn over all usual "
-                    "floors."
+                    Message(
+                        "{floor} has neither roughness nor reading: it was drawn over all usual "
+                        "floors.",
+                        floor=floor.name,
+                    )
                 )
         return tuple(lines)
 
@@ -644,7 +676,7 @@ def _cleaning(
     today = _sum(shares)
     for fluid in place.fluids():
         halved = {key: (0.5 if key[1] == fluid else 1.0) * x for key, x in shares.items()}
-        name = f"{fluid_name(fluid)} wiped up sooner, on half the steps"
+        name = Message("{fluid} wiped up sooner, on half the steps", fluid=fluid_name(fluid))
         levers.append(_lever(name, _sum(halved), today))
     oily = [fluid for fluid in place.fluids() if _is_oil(place, shoe, fluid)]
     if oily:
@@ -657,8 +689,11 @@ def _cleaning(
             (floor, fluid): washed[floor, WASHED] if fluid in oily else cell
             for (floor, fluid), cell in new.items()
         }
-        names = ", ".join(map(fluid_name, oily))
-        name = f"{names} washed off with {WASHED}, the floor left wet"
+        name = Message(
+            "{fluids} washed off with {washed}, the floor left wet",
+            fluids=[*map(fluid_name, oily)],
+            washed=WASHED,
+        )
         after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
         levers.append(_lever(name, after, before))
     return levers

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from underfoot.core.presentation import quantity_text
+from underfoot.core.remark import NOTHING, Message
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -33,10 +34,10 @@ class Change:
     """
 
     name: str
-    action: str
+    action: Message
     lever: str
     values: Mapping[str, Any]
-    reason: str = ""
+    reason: Message = NOTHING
 
 
 def possible_changes(case: Case) -> list[Change]:
@@ -48,41 +49,53 @@ def _possible_changes(case: Case) -> Iterator[Change]:
     shoe, tread_depth = case.shoe, case.value("shoe.tread.depth") or 0.0
     worn_out = tread_depth < WORN_OUT
     if shoe.tread is not None and worn_out:  # else the outsole comes from a file
-        action = "replace the worn shoe by one with 3 mm of tread (lugs 5 mm, channels 2.5 mm)"
+        action = Message(
+            "replace the worn shoe by one with 3 mm of tread (lugs 5 mm, channels 2.5 mm)"
+        )
         yield Change("new_tread", action, "shoe", TREAD)
     channel = case.value("shoe.tread.channel_width")
     if channel and not worn_out:
         wider = 1.5 * channel
-        action = f"channels 50 % wider ({_length(wider)})"
+        action = Message("channels 50 % wider ({width})", width=_length(wider))
         yield Change("wider_channels", action, "shoe", {"shoe.tread.channel_width": wider})
     hardness = shoe.material.shore_a
     if hardness is not None and shoe.material.modulus is None and hardness - 15 >= SOFTEST:
-        action = f"a softer compound (Shore A {hardness - 15:.0f} for {hardness:.0f})"
+        action = Message(
+            "a softer compound (Shore A {softer:.0f} for {hardness:.0f})",
+            softer=hardness - 15,
+            hardness=hardness,
+        )
         yield Change("softer_compound", action, "shoe", {"shoe.material.shore_a": hardness - 15})
     rq = shoe.roughness.rq_or_estimate
     if rq is not None and rq <= 15e-6:
-        action = f"abrade the sole to twice its roughness (Rq {_length(2 * rq)})"
+        action = Message("abrade the sole to twice its roughness (Rq {rq})", rq=_length(2 * rq))
         values = {"shoe.roughness.rq": 2 * rq, "shoe.roughness.ra": None}
         yield Change("abraded_sole", action, "shoe", values)
     rq = case.floor.roughness.rq_or_estimate
     if rq is not None and rq <= ROUGH_FLOOR_RQ / 2:
-        action = f"a floor of Rq {_length(ROUGH_FLOOR_RQ)} (as a rough ceramic tile)"
+        action = Message("a floor of Rq {rq} (as a rough ceramic tile)", rq=_length(ROUGH_FLOOR_RQ))
         yield Change("rougher_floor", action, "floor", {"floor.roughness.rq": ROUGH_FLOOR_RQ})
     viscosity = case.value("contaminant.viscosity") or 0.0
     if viscosity >= THIN:
-        action, reason = "rinse with water (as a clean wet floor)", ""
+        action, reason = Message("rinse with water (as a clean wet floor)"), NOTHING
         family = case.origins.get("contaminant.family")
         if case.contaminant is not None and case.contaminant.chemistry == "oil":
-            reason = "water spreads oil; a film of it stays on the floor under the water"
+            reason = Message("water spreads oil; a film of it stays on the floor under the water")
         elif family is not None and family.leaf.assumed:
-            reason = "contaminant.family is not given: whether it mixes with water is not known"
+            reason = Message(
+                "contaminant.family is not given: whether it mixes with water is not known"
+            )
         yield Change("rinse", action, "cleaning", {"contaminant": "water"}, reason)
     if viscosity >= 5 * THIN:
-        action = "clean with a detergent solution (as the floor wet with it alone)"
+        action = Message("clean with a detergent solution (as the floor wet with it alone)")
         yield Change("dilute", action, "cleaning", {"contaminant": "detergent"})
     mean = case.risk.rcof_mean
     if mean >= 0.12:
-        action = f"shorter, slower steps (required friction {mean - 0.03:.2f} for {mean:.2f})"
+        action = Message(
+            "shorter, slower steps (required friction {lower:.2f} for {mean:.2f})",
+            lower=mean - 0.03,
+            mean=mean,
+        )
         yield Change("shorter_steps", action, "walking", {"risk.rcof_mean": mean - 0.03})
 
 

@@ -18,7 +18,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.cache import Cache
 from underfoot.core.pool import in_processes, workers
 from underfoot.core.progress import part
-from underfoot.core.remark import Remark, stored_form
+from underfoot.core.remark import Remark, from_stored, stored_form
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -92,8 +92,11 @@ class Outcome:
     def from_text(cls, text: str) -> Outcome:
         """Return the outcome written by ``as_text``."""
         plain = json.loads(text)
-        plain["scalars"] = {name: SourcedValue(**v) for name, v in plain["scalars"].items()}
+        plain["scalars"] = {
+            name: SourcedValue(**from_stored(value)) for name, value in plain["scalars"].items()
+        }
         plain["status"] = Status(plain["status"])
+        plain["labels"] = from_stored(plain["labels"])
         for name in ("breaches", "assumptions"):
             plain[name] = tuple(map(Remark.stored, plain[name]))
         return cls(**plain)

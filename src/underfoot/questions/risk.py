@@ -11,7 +11,7 @@ import numpy as np
 
 from underfoot.compute.numbers import required_friction
 from underfoot.compute.run import run
-from underfoot.compute.summary import FrictionLimit, cautions, friction_limit
+from underfoot.compute.summary import FrictionLimit, cautions, friction_limit, no_result
 from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
@@ -24,6 +24,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.progress import part
+from underfoot.core.remark import NOTHING, Message
 from underfoot.slip import MODELS, RcofPopulation, needed_acof, slip_model, slip_risk
 
 from .changes import Change, possible_changes
@@ -67,7 +68,7 @@ class RiskAssessment(Presentable):
 
     ``missing_friction`` is the COF that is missing for the ``target`` probability, with a spread of
     the friction that grows with it: 0 where the slip probability meets the target, None where no
-    friction does.
+    friction does. ``slip_model`` is the name of the case's own.
     """
 
     kind: ClassVar[str] = "risk"
@@ -79,6 +80,7 @@ class RiskAssessment(Presentable):
     target: float
     missing_friction: float | None
     changes: tuple[ChangeEffect, ...]
+    slip_model: str = ""
 
     def __repr__(self) -> str:
         return f"<RiskAssessment of {self.name!r}: {self.outcome.scalars['slip_probability']}>"
@@ -121,66 +123,81 @@ class RiskAssessment(Presentable):
             if abs(one.probability - own) > APART or (one.probability > target) != (own > target)
         ]
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         if not self.usable:
-            return (f"No result: {self.outcome.status}. {self.outcome.remedy}",)
+            return (no_result(self.outcome.status),)
         scalars = self.outcome.scalars
         slip = scalars["slip_probability"]
-        extrapolated = ", extrapolated" if slip.note else ""
         probability = self.outcome.number("slip_probability")
         rare = probability < RARE and not is_wide(slip.interval)
-        often = f", {odds(probability)}," if rare else ""
-        sentences = [
-            f"Slip probability {value_text('slip_probability', slip)}{extrapolated}{often} at an "
-            f"available COF of {value_text('cof', scalars['cof'])}.",
-            str(self.limit),
-        ]
-        if probability <= self.target:
-            sentences.append(
-                f"Friction is sufficient for a slip probability below {percent(self.target)}."
+        sentence = Message(
+            "Slip probability {slip}{extrapolated}{often} at an available COF of {cof}.",
+            slip=value_text("slip_probability", slip),
+            cof=value_text("cof", scalars["cof"]),
+            extrapolated=Message(", extrapolated") if slip.note else NOTHING,
+            often=Message(", {odds},", odds=odds(probability)) if rare else NOTHING,
+        )
+        target = percent(self.target)
+        enough = Message(
+            "Friction is sufficient for a slip probability below {target}.", target=target
+        )
+        if probability > self.target:
+            enough = (
+                Message(
+                    "No COF gives a slip probability of {target} while so little is known of the "
+                    "friction.",
+                    target=target,
+                )
+                if self.missing_friction is None
+                else Message(
+                    "A slip probability of {target} needs a COF higher by {missing:.2f}.",
+                    target=target,
+                    missing=self.missing_friction,
+                )
             )
-        elif self.missing_friction is None:
-            sentences.append(
-                f"No COF gives a slip probability of {percent(self.target)} while so little is "
-                "known of the friction."
-            )
-        else:
-            sentences.append(
-                f"A slip probability of {percent(self.target)} needs a COF higher by "
-                f"{self.missing_friction:.2f}."
-            )
-        return tuple(sentences)
+        return sentence, self.limit.sentence(), enough
 
     def cautions(self) -> tuple[str, ...]:
         outcome = self.outcome
-        source = outcome.scalars["slip_probability"].source
-        model_name = next((model.name for model in self.models if model.source == source), "")
         others = [
-            f"Another model has {probability_text(one.probability)} for the same friction and "
-            f"people ({one.name}): {one.assumption[0].lower()}{one.assumption[1:]}"
+            Message(
+                "Another model has {probability} for the same friction and people ({name}): "
+                "{assumption:small}",
+                probability=probability_text(one.probability),
+                name=one.name,
+                assumption=one.assumption,
+            )
             for one in self.apart
         ]
         return (
             *cautions(
                 *(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions),
-                model_name,
+                self.slip_model,
                 outcome.labels,
             ),
             *others,
         )
 
-    def change_sentences(self, most: int = MOST_CHANGES) -> list[str]:
+    def change_sentences(self, most: int = MOST_CHANGES) -> list[Message]:
         """Return the most effective changes with the COF and probability they lead to."""
-        before = f"{self.outcome.number('cof'):.2f}"
         chance = _chance(self.outcome.scalars["slip_probability"])
         lines = [
-            f"{each.change.action}: COF {before} to {each.number('cof'):.2f}, slip probability "
-            f"{chance} to {_chance(each.scalars['slip_probability'])}"
-            + (" (extrapolated)" if _note(each) else "")
-            + (f", higher COF with a probability of {_sure(each)}" if _sure(each) else "")
+            Message(
+                "{action}: COF {before:.2f} to {after:.2f}, slip probability {chance} to "
+                "{changed}{extrapolated}{sure}",
+                action=each.change.action,
+                before=self.outcome.number("cof"),
+                after=each.number("cof"),
+                chance=chance,
+                changed=_chance(each.scalars["slip_probability"]),
+                extrapolated=Message(" (extrapolated)") if _note(each) else NOTHING,
+                sure=Message(", higher COF with a probability of {chance}", chance=_sure(each))
+                if _sure(each)
+                else NOTHING,
+            )
             for each in self.best[:most]
         ]
-        return lines or ["No tested change reduces the slip probability."]
+        return lines or [Message("No tested change reduces the slip probability.")]
 
     def table(self) -> Table:
         place = {id(each): number for number, each in enumerate(self.best, 1)}
@@ -189,7 +206,8 @@ class RiskAssessment(Presentable):
         for each in sorted(told, key=lambda one: place.get(id(one), len(told) + 1)):
             rank = place.get(id(each))
             if not each.computed:
-                rows.append(("-", each.change.action, "", "", "", f"not computed: {each.reason}"))
+                why = Message("not computed: {reason}", reason=each.reason)
+                rows.append(("-", each.change.action, "", "", "", why))
                 continue
             texts = [value_text(k, each.scalars[k]) for k in ("cof", "slip_probability")]
             note = "extrapolated" if _note(each) else ""
@@ -342,6 +360,7 @@ def risk_assessment(
         target,
         None if own is None else max(own - outcome.number("cof"), 0.0),
         change_effects(case, present, tried, quick=quick, processes=processes, progress=rest),
+        present.provenance.closures.get("slip", ""),
     )
 
 
@@ -377,15 +396,15 @@ def model_risks(
     return tuple(risks)
 
 
-def odds(probability: float) -> str:
+def odds(probability: float) -> Message:
     """Return a probability as people say it: "1 in 12 steps" below a fifth, else percent."""
     if math.isnan(probability):
-        return "not determined"
+        return Message("not determined")
     if probability < 1e-3:
-        return "fewer than 1 in 1000 steps"
+        return Message("fewer than 1 in 1000 steps")
     if probability < RARE:
-        return f"1 in {1 / probability:.0f} steps"
-    return f"{probability_text(probability)} of steps"
+        return Message("1 in {count:.0f} steps", count=1 / probability)
+    return Message("{probability} of steps", probability=probability_text(probability))
 
 
 def _note(effect: ChangeEffect) -> str:

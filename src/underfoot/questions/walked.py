@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from underfoot.core import InputError, to_si
+from underfoot.core.remark import Message
 from underfoot.core.units import metres, si_unit
 
 LANDING_LOAD = 180.0
@@ -24,7 +25,7 @@ STEPS_A_DAY = (4000.0, 18000.0)
 DAYS_A_MONTH = 365.25 / 12
 MONTH = DAYS_A_MONTH * 86400.0
 """s."""
-SOURCES = (
+SOURCES = Message(
     "walked: V / (k F s) landings of one shoe, k the wear rate of the case, F 180 N (Iraqi et al. "
     "2018), s 2 to 13 mm (McGorry et al. 2008), steps of 0.5 to 0.75 m (30 to 43 % of 1.7 m), "
     "4,000 to 18,000 steps a day, every day in these shoes (Tudor-Locke et al. 2011)"

@@ -15,6 +15,7 @@ from underfoot.core import InputError, Progress, display, silent, to_si, unknown
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
+from underfoot.core.remark import Amount, Message, Remark
 from underfoot.core.units import tread_unit
 
 from .outcomes import Outcome, outcomes
@@ -110,7 +111,7 @@ class WearSeries(Presentable):
     limit: float
     points: tuple[WearPoint, ...]
     crossings: dict[str, LimitCrossing]
-    assumptions: tuple[str, ...]
+    assumptions: tuple[Message, ...]
     quick: bool = True
     untreaded: Outcome | None = None
     soles: tuple[SoleSurface, ...] = ()
@@ -635,45 +636,56 @@ def _measures(case: Case) -> WearMeasures:
     return wear_measures(sole_shape(case))
 
 
-def _replaced(case: Case) -> tuple[str, ...]:
+def _replaced(case: Case) -> tuple[Message, ...]:
     """Return that the wear of the case itself counts for nothing; empty of a new shoe."""
     depth = case.shoe.wear.depth
     if depth == 0:
         return ()
     return (
-        f"the series begins with the new sole: shoe.wear.depth = {display(depth, 'm')} counts "
-        "for nothing",
+        Message(
+            "the series begins with the new sole: shoe.wear.depth = {depth} counts for nothing",
+            depth=Amount(depth, "m"),
+        ),
     )
 
 
-def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[str, ...]:
+def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[Message, ...]:
     wear: Any = case.shoe.wear  # the option that ``mode`` names
     if mode == "archard":
         low, high = (math.degrees(wear.angle + side * wear.angle_range / 2) for side in (-1, 1))
-        shape = (
-            f"worn dry at {low:.0f}, {math.degrees(wear.angle):.0f} and {high:.0f} deg with equal "
-            "sliding, depth proportional to pressure times sliding (Archard); the wear rate sets "
-            "the sliding distance only"
+        shape = Message(
+            "worn dry at {low:.0f}, {angle:.0f} and {high:.0f} deg with equal sliding, depth "
+            "proportional to pressure times sliding (Archard); the wear rate sets the sliding "
+            "distance only",
+            low=low,
+            angle=math.degrees(wear.angle),
+            high=high,
         )
     elif mode == "walk":
-        shape = (
+        shape = Message(
             "cut by the floor at every angle from heel contact to flat, in proportion to the load "
             "that ten recorded steps bear there; equal sliding at each"
         )
     elif mode == "plane":
-        shape = f"ground flat at {math.degrees(wear.angle):.0f} deg"
+        shape = Message("ground flat at {angle:.0f} deg", angle=math.degrees(wear.angle))
     else:
-        shape = (
-            f"patch worn to the channel floor, wear tapering off at "
-            f"{math.degrees(wear.patch_taper):.0f} deg around it"
+        shape = Message(
+            "patch worn to the channel floor, wear tapering off at {angle:.0f} deg around it",
+            angle=math.degrees(wear.patch_taper),
         )
     return (
         shape,
-        "the worn surface is as rough as the new one",
+        Message("the worn surface is as rough as the new one"),
         SOURCES,
-        f"wear rounds the edges of lugs by up to {display(wear.edge_radius, 'm')} "
-        "(shoe.wear.edge_radius; nobody measured it, 0.1 to 0.5 mm are plausible)",
-        *(f"interval: {each.path}, {each.reason}" for each in inputs),
+        Message(
+            "wear rounds the edges of lugs by up to {radius} (shoe.wear.edge_radius; nobody "
+            "measured it, 0.1 to 0.5 mm are plausible)",
+            radius=Amount(wear.edge_radius, "m"),
+        ),
+        *(
+            Remark("interval", "{path}, {reason}", path=each.path, reason=each.reason)
+            for each in inputs
+        ),
     )
 
 

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 from underfoot.core import InputError, Range
+from underfoot.core.remark import Message
 
 from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
 from .report_g6 import FIFTY_PERCENT_AT
@@ -38,10 +39,12 @@ class Beschorner2016(LogisticModel):
     fifty_percent_sd: float = FIFTY_PERCENT_SD
     name: str = field(default="beschorner_2016", init=False)
     source: str = field(default=SOURCE, init=False)
-    assumptions: tuple[str, ...] = field(
+    assumptions: tuple[Message, ...] = field(
         default=(
-            "The study gives the effect of RCOF alone; the point of even odds is that of the "
-            "report's G.6, and ACOF acts as strongly as RCOF.",
+            Message(
+                "The study gives the effect of RCOF alone; the point of even odds is that of the "
+                "report's G.6, and ACOF acts as strongly as RCOF."
+            ),
         ),
         init=False,
     )

@@ -10,6 +10,7 @@ from scipy.special import ndtr
 
 from underfoot.core import Breach
 from underfoot.core.arrays import Array, scalar_or_array
+from underfoot.core.remark import Message
 
 from ._checks import PresentableModel, available, deviation, required
 
@@ -30,8 +31,8 @@ class Chang2004(PresentableModel):
 
     name: str = field(default="chang_2004", init=False)
     source: str = field(default=SOURCE, init=False)
-    assumptions: tuple[str, ...] = field(
-        default=("Every step that needs more friction than there is slips.",), init=False
+    assumptions: tuple[Message, ...] = field(
+        default=(Message("Every step that needs more friction than there is slips."),), init=False
     )
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 
 from underfoot.core import InputError, Range
+from underfoot.core.remark import Message
 
 from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
 
@@ -36,10 +37,12 @@ class ReportG6(LogisticModel):
     fifty_percent_sd: float = FIFTY_PERCENT_SD
     name: str = field(default="report_g6", init=False)
     source: str = field(default=SOURCE, init=False)
-    assumptions: tuple[str, ...] = field(
+    assumptions: tuple[Message, ...] = field(
         default=(
-            "The available friction was found under the conditions of the study's slip tester "
-            "(250 N, 0.3 m/s, 7 deg), or means the same.",
+            Message(
+                "The available friction was found under the conditions of the study's slip tester "
+                "(250 N, 0.3 m/s, 7 deg), or means the same."
+            ),
         ),
         init=False,
     )

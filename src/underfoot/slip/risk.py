@@ -12,6 +12,7 @@ from scipy.special import ndtri
 from underfoot.core import Breach, InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 from underfoot.friction.propagation import normal_draws
 
 from ._checks import LARGEST_ACOF
@@ -38,7 +39,7 @@ class SlipRisk(Presentable):
     at_best_estimate: float
     model: str
     rcof: RcofPopulation
-    assumptions: tuple[str, ...]
+    assumptions: tuple[Message, ...]
     breaches: tuple[Breach, ...]
 
     def table(self) -> Table:
@@ -143,8 +144,12 @@ def slip_risk(
     assumptions = list(chosen.assumptions)
     if rcof.assumed:
         assumptions.append(
-            f"Required friction {rcof.mean:g} with a standard deviation of {rcof.sd:g} "
-            f"({rcof.source})."
+            Message(
+                "Required friction {mean:g} with a standard deviation of {sd:g} ({source}).",
+                mean=rcof.mean,
+                sd=rcof.sd,
+                source=rcof.source,
+            )
         )
     about: dict[str, Any] = {
         "source": chosen.source,

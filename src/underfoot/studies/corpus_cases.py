@@ -178,7 +178,8 @@ def stand(table: Mapping[str, Any]) -> Stand:
             times = [_contact_time(case) for case in cases]
             return Stand(cases, tuple(taken), contact_time=sum(times) / len(times))
     except InputError as error:
-        return Stand(reason=" ".join(str(error).split()))
+        why = " ".join(str(error).split())
+        return Stand(reason=why)
     return Stand(cases, tuple(taken))
 
 

@@ -17,6 +17,7 @@ from underfoot.case import Case
 from underfoot.compute.slips import slip_setting, slips
 from underfoot.core import ConvergenceError, content_hash
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.remark import Message
 from underfoot.friction import FrictionLaw, PairContactLaw
 from underfoot.slip.dynamics import SlipStudy
 from underfoot.slip.dynamics.full_model import Setting, SoleFoot
@@ -112,10 +113,18 @@ def compute(options: Options) -> Computed:
         figures(fine, passages, films),
         (*conclusions(fine, passages), words, wedge_sentence(films)),
         assumptions=(
-            f"{population.effective_mass:.3g} of the body moves with the heel (not printed, not "
-            "measured).",
-            f"RCOF {rcof.mean:.2f} ± {rcof.sd:.2f}, heel speed at contact {speed.mean:.2f} ± "
-            f"{speed.sd:.2f} m/s: not printed.",
+            Message(
+                "{share:.3g} of the body moves with the heel (not printed, not measured).",
+                share=population.effective_mass,
+            ),
+            Message(
+                "RCOF {rcof:.2f} ± {rcof_sd:.2f}, heel speed at contact {speed:.2f} ± "
+                "{speed_sd:.2f} m/s: not printed.",
+                rcof=rcof.mean,
+                rcof_sd=rcof.sd,
+                speed=speed.mean,
+                speed_sd=speed.sd,
+            ),
             *bare.setting.friction.assumptions,
         ),
     )

@@ -19,6 +19,7 @@ from underfoot.calibrate.stribeck_points import (
     roughness_series,
 )
 from underfoot.core import InputError, unknown_name
+from underfoot.core.remark import Message
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
@@ -56,7 +57,7 @@ class OneConstant:
     constant: float
     name: str = "one constant"
     source: str = "Eq. 17 with viscosity x tau_hydro constant"
-    assumptions: tuple[str, ...] = ()
+    assumptions: tuple[Message, ...] = ()
 
     def adhesion_left(
         self, *, viscosity: float | None, speed: ArrayLike, contact_pressure: ArrayLike

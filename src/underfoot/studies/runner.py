@@ -17,6 +17,7 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
+from underfoot.core.remark import Message
 
 from .figure import Figure
 from .statements import Study, studies, study, study_module
@@ -69,7 +70,7 @@ class Computed:
     figures: Mapping[str, Figure] = field(default_factory=dict)
     conclusions: Sequence[str] = ()
     notes: Sequence[str] = ()
-    assumptions: Sequence[str] = ()
+    assumptions: Sequence[Message] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

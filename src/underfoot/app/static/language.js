@@ -126,7 +126,7 @@ function valueInLanguage(value, form = "") {
   if (Array.isArray(value)) return value.map((each) => valueInLanguage(each)).join(form || ", ");
   if (form.includes("|")) return form.split("|")[value === "1" ? 0 : 1];
   const said = typeof value === "object" ? messageInLanguage(value) : isOwn(value) ? value : inLanguage(value);
-  return form === "capital" ? capital(said) : said;
+  return form === "capital" ? capital(said) : form === "small" ? said[0].toLowerCase() + said.slice(1) : said;
 }
 
 // The text of an element that holds template and values; a template without words is the same in all.

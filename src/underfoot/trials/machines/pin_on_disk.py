@@ -7,14 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.core.remark import NOTHING, Message
 
-from ..recording.measurement import Choice, Measurement, caution
+from ..recording.measurement import RATIOS, TOO_FEW, Flag, Measurement, caution
 from ..recording.signals import runs
 from ..recording.trial import Channel, Trial
 
 BATCH = 5
 _LATEST = 0.5
-RULE = "MSER-5: run-in cut where the standard error of the rest is smallest (White 1997)"
+RULE = Message("MSER-5: run-in cut where the standard error of the rest is smallest (White 1997)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +26,7 @@ class SteadyWindow:
     stop: int
     steady: bool
     drift: float
-    rule: str
+    rule: Message
 
 
 def steady_window(values: np.ndarray) -> SteadyWindow:
@@ -94,7 +95,7 @@ _LIFTED = 0.1  # share of the load below which the pin has left the disk
 _LONG = 30, 0.5  # samples and s that an unloaded stretch needs to be a zero
 _KEPT = 0.2, 0.8  # part of such a stretch, away from where the pin touches and leaves
 _STROKE = 0.25, 0.75  # part of a stroke, away from where it turns
-_STROKES = "the middle half of each, in both directions"
+_STROKES = Message("the middle half of each, in both directions")
 _FEWEST_TURNS = 4
 _LONGEST_REST = 0.45  # of the time: the middle half between rests slides
 _REGULAR = 0.2  # relative scatter of the strokes of a machine
@@ -147,26 +148,30 @@ def friction_point(
         used = np.flatnonzero(finite)[steady.start : steady.stop]
         choices["window"] = steady.rule
         if not steady.steady:
-            flags.append(f"not steady: drifts by {steady.drift:.1f} times its scatter")
+            flags.append(
+                caution("not steady: drifts by {times:.1f} times its scatter", times=steady.drift)
+            )
     else:
         used = np.flatnonzero(finite & (time >= window[0]) & (time < window[1]))
-        choices["window"] = Choice("{:g} to {:g} s, given", *window)
+        choices["window"] = Message("{begin:g} to {end:g} s, given", begin=window[0], end=window[1])
     if len(used) < 2:
         raise DataError("no samples in the window", where=trial.name)
     values = ratio[used]
     error = correlated_error(values)
     if values.mean() > 2.0:
-        flags.append("a COF above 2: are the force columns or units right?")
-    choices["average"] = "mean of the ratios of the samples"
-    choices["uncertainty"] = "standard error of the mean from batch means"
-    reason = "" if error is not None else "too few samples for a scatter"
-    mean, seen = float(values.mean()), tuple(map(caution, flags))
+        flags.append(caution("a COF above 2: are the force columns or units right?"))
+    choices["average"] = RATIOS
+    choices["uncertainty"] = Message("standard error of the mean from batch means")
+    reason = TOO_FEW if error is None else NOTHING
+    mean = float(values.mean())
     if error is not None and normal is not None and zero_error is not None:
         load = float(np.abs(normal[used]).mean())
         from_zero = float(np.hypot(zero_error[0], mean * zero_error[1])) / load
         error = float(np.hypot(error, from_zero))
-        choices["uncertainty"] += f", and {from_zero:.2g} of the zero"
-    measurement = Measurement("cof", mean, "1", error, reason, len(values), seen, choices)
+        choices["uncertainty"] = Message(
+            "{scatter}, and {zero:.2g} of the zero", scatter=choices["uncertainty"], zero=from_zero
+        )
+    measurement = Measurement("cof", mean, "1", error, reason, len(values), tuple(flags), choices)
     speed = _speed(trial, used) if speed is None else speed
     forces = normal, shear
     load, push = (None if f is None else float(np.abs(f[used]).mean()) for f in forces)
@@ -224,8 +229,8 @@ def _ratio(
     np.ndarray | None,
     np.ndarray | None,
     Channel,
-    dict[str, str],
-    list[str],
+    dict[str, Message],
+    list[Flag],
     tuple[float, float] | None,
 ]:
     """Return the COF of every sample, both forces, their channel, choices, flags, the zero's error.
@@ -238,7 +243,7 @@ def _ratio(
         channel = _channel(trial, COF)
         if channel is None:
             raise problem from None
-        choices, values = {"cof": "column of the file"}, channel.values.astype(float)
+        choices, values = {"cof": Message("column of the file")}, channel.values.astype(float)
         size = np.abs(values)
         away = [
             (a, b)
@@ -248,7 +253,9 @@ def _ratio(
         for start, stop in away:
             values[start:stop] = np.nan
         if away:
-            choices["unloaded"] = f"{sum(b - a for a, b in away)} samples without friction left out"
+            choices["unloaded"] = Message(
+                "{count} samples without friction left out", count=sum(b - a for a, b in away)
+            )
         ratio = np.abs(values)
         if (strokes := _strokes(values, zeroed=False)) is not None:
             choices["strokes"] = _STROKES
@@ -256,7 +263,7 @@ def _ratio(
         return ratio, None, None, channel, choices, [], None
     if len(normal.values) != len(shear.values):
         raise DataError("normal and shear force differ in length", where=trial.name)
-    choices, flags = {"cof": "|shear| / |normal|"}, []
+    choices, flags = {"cof": Message("|shear| / |normal|")}, []
     load, push, zero_error = normal.values, shear.values, None
     stretches = _unloaded_stretches(load, normal.rate)
     if stretches:
@@ -264,9 +271,15 @@ def _ratio(
         zeros = [_zero_line(values, time, stretches) for values in (push, load)]
         (push_zero, push_error), (load_zero, load_error) = zeros
         push, load, zero_error = push - push_zero, load - load_zero, (push_error, load_error)
-        parts = " and ".join(f"{time[a]:.3g} to {time[b - 1]:.3g} s" for a, b in stretches[:4])
-        size = np.nanmean(push_zero)
-        choices["zero"] = f"of the unloaded pin ({parts}): {size:.3g} {shear.unit} of shear"
+        choices["zero"] = Message(
+            "of the unloaded pin ({parts: and }): {size:.3g} {unit} of shear",
+            parts=[
+                Message("{begin:.3g} to {end:.3g} s", begin=time[a], end=time[b - 1])
+                for a, b in stretches[:4]
+            ],
+            size=np.nanmean(push_zero),
+            unit=shear.unit,
+        )
     size = np.abs(load)
     loaded = np.isfinite(size)
     for start, stop in stretches:
@@ -289,9 +302,15 @@ def _ratio(
         lifted[start:stop] = False
     inside = np.flatnonzero(pressed)
     if lost := int(lifted[inside[0] : inside[-1]].sum()):
-        flags.append(f"{lost} samples with hardly any load left out")
+        flags.append(caution("{count} samples with hardly any load left out", count=lost))
     if normal.unit != shear.unit:
-        flags.append(f'units differ: normal "{normal.unit}", shear "{shear.unit}"')
+        flags.append(
+            caution(
+                'units differ: normal "{normal}", shear "{shear}"',
+                normal=normal.unit,
+                shear=shear.unit,
+            )
+        )
     return ratio, load, push, normal, choices, flags, zero_error
 
 

@@ -241,15 +241,25 @@ def pressure_map(
             Message("a gap of {gap:.0f} mm between scans: one may be missing", gap=1e3 * gaps.max())
         )
     choices = {
-        "load": "sum of p dx v dt (Eq. 27), baseline subtracted",
-        "dx": f"{1e3 * spacing:g} mm, given" if spacing else "from the measured lateral places",
-        "covered width": f"{1e3 * (lateral[-1] - lateral[0]):.0f} mm between the outermost scans",
-        "hidden": f"bumps narrower than about {1e3 * NARROW * mean_gap:.0f} mm can hide "
-        "between scans",
-        "uncertainty": "sensor noise; scans left out and positions are judged by the flags",
+        "load": Message("sum of p dx v dt (Eq. 27), baseline subtracted"),
+        "dx": Message("{spacing:g} mm, given", spacing=1e3 * spacing)
+        if spacing
+        else Message("from the measured lateral places"),
+        "covered width": Message(
+            "{width:.0f} mm between the outermost scans", width=1e3 * (lateral[-1] - lateral[0])
+        ),
+        "hidden": Message(
+            "bumps narrower than about {width:.0f} mm can hide between scans",
+            width=1e3 * NARROW * mean_gap,
+        ),
+        "uncertainty": Message(
+            "sensor noise; scans left out and positions are judged by the flags"
+        ),
     }
     if change is not None:
-        choices["every second scan left out"] = f"changes the load by up to {100 * change:.1f} %"
+        choices["every second scan left out"] = Message(
+            "changes the load by up to {change:.1f} %", change=100 * change
+        )
     grid = np.arange(
         min(scan.along.min() for scan in ordered), max(s.along.max() for s in ordered), step
     )
@@ -263,8 +273,10 @@ def pressure_map(
     if inlet_diameter:
         lost = _inlet_loss(pressure, which, grid, float(ordered[which].along[top]), inlet_diameter)
         if lost is not None:
-            choices["inlet"] = (
-                f"{1e3 * inlet_diameter:g} mm wide: lowers the peak by about {lost / 1e3:.1f} kPa"
+            choices["inlet"] = Message(
+                "{width:g} mm wide: lowers the peak by about {lost:.1f} kPa",
+                width=1e3 * inlet_diameter,
+                lost=lost / 1e3,
             )
     largest = Measurement(
         "peak fluid pressure", peak, "Pa", deviation, n=len(ordered),
@@ -276,7 +288,7 @@ def pressure_map(
     )  # fmt: skip
     forward = float(ordered[which].along[top])
     at_along = Measurement("peak along", forward, "m", step, conventions=choices)
-    even = {**choices, "uncertainty": "half a spacing, taken as evenly likely"}
+    even = {**choices, "uncertainty": Message("half a spacing, taken as evenly likely")}
     place, sd = float(lateral[which]), mean_gap / np.sqrt(12.0)
     at_lateral = Measurement("peak lateral", place, "m", sd, conventions=even)
     places = whole, largest, at_along, at_lateral

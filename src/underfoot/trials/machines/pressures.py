@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError
+from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag, Measurement, remark
 from ..recording.signals import runs, saturated
@@ -30,13 +31,17 @@ class PulseDefinition:
     margin: float = 0.05
     run: int = 3
 
-    def conventions(self) -> dict[str, str]:
-        """Return the choices in words."""
+    def conventions(self) -> dict[str, Message]:
+        """Return the choices, a line each."""
         return {
-            "threshold": f"{self.deviations:g} standard deviations over the baseline's mean",
-            "baseline": f"samples until {1e3 * self.margin:g} ms before contact",
-            "run": f"{self.run} samples in a row",
-            "duration": "between the first and the last moment above the threshold",
+            "threshold": Message(
+                "{count:g} standard deviations over the baseline's mean", count=self.deviations
+            ),
+            "baseline": Message(
+                "samples until {margin:g} ms before contact", margin=1e3 * self.margin
+            ),
+            "run": Message("{run} samples in a row", run=self.run),
+            "duration": Message("between the first and the last moment above the threshold"),
         }
 
 
@@ -94,22 +99,26 @@ def pressure_pulse(
     flags: tuple[Flag, ...] = ()
 
     def measured(
-        name: str, value: float | str, unit: str, sd: float = 0.0, why: str = ""
+        name: str, value: float | Message, unit: str, sd: float = 0.0, why: Message = NOTHING
     ) -> Measurement:
-        if isinstance(value, str):
+        if isinstance(value, Message):
             return Measurement.not_estimated(name, value, unit=unit, flags=flags, conventions=said)
         words = {**said, "uncertainty": why} if why else said
         n = len(quiet) if unit == "Pa" else 1
         return Measurement(name, value, unit, sd, n=n, flags=flags, conventions=words)
 
-    def without(reason: str) -> Pulse:
+    def without(reason: Message) -> Pulse:
         peak = measured("peak pressure", reason, "Pa")
         return Pulse(sensor, peak, measured("pressure duration", reason, "s"), math.nan, math.nan)
 
     if channel.unit != "Pa":
-        return without(f'the unit of the channel is "{channel.unit}", not a pressure')
+        return without(
+            Message('the unit of the channel is "{unit}", not a pressure', unit=channel.unit)
+        )
     if len(quiet) < 20:
-        return without(f"{len(quiet)} samples before contact are no baseline (500 needed)")
+        return without(
+            Message("{count} samples before contact are no baseline (500 needed)", count=len(quiet))
+        )
     if len(quiet) < BASELINE_SAMPLES:
         flags = (
             remark("baseline of {count} samples: 500 keep false alarms at 0.1 %", count=len(quiet)),
@@ -117,7 +126,7 @@ def pressure_pulse(
     mean, deviation = float(quiet.mean()), float(quiet.std(ddof=1))
     inside = (time >= contact) & (time <= (until if until is not None else time[-1]))
     if not (inside & np.isfinite(values)).any():
-        return without("no samples after contact")
+        return without(Message("no samples after contact"))
     if np.isnan(values[inside]).any():
         flags += (
             remark("{count} samples without a number", count=int(np.isnan(values[inside]).sum())),
@@ -131,7 +140,8 @@ def pressure_pulse(
     stretches = [(a, b) for a, b in runs(above) if b - a >= definition.run]
     known, top_time = float(over[top]), float(time[top])
     if not stretches:
-        none = measured("pressure duration", f"never above the threshold of {limit:.0f} Pa", "s")
+        never = Message("never above the threshold of {limit:.0f} Pa", limit=limit)
+        none = measured("pressure duration", never, "s")
         flags += (remark("within the noise: never above the threshold"),)
         peak = measured("peak pressure", known, "Pa", deviation)
         return Pulse(sensor, peak, none, mean, deviation, top_time)
@@ -139,11 +149,10 @@ def pressure_pulse(
     if last == np.flatnonzero(inside)[-1]:
         flags += (remark("still above the threshold when the search ends"),)
     begin, end = float(time[first]), float(time[last])
-    step, why = 1.0 / channel.rate / math.sqrt(6.0), "standard deviation of the baseline"
-    peak = measured("peak pressure", known, "Pa", deviation, why)
-    duration = measured(
-        "pressure duration", float(time[last] - time[first]), "s", step, "time between samples"
-    )
+    step, why = 1.0 / channel.rate / math.sqrt(6.0), Message("time between samples")
+    noise = Message("standard deviation of the baseline")
+    peak = measured("peak pressure", known, "Pa", deviation, noise)
+    duration = measured("pressure duration", float(time[last] - time[first]), "s", step, why)
     return Pulse(sensor, peak, duration, mean, deviation, top_time, begin, end)
 
 
@@ -172,7 +181,7 @@ def passages(
     walking: np.ndarray,
     contact: float,
     until: float,
-    conventions: Mapping[str, str] | None = None,
+    conventions: Mapping[str, Message] | None = None,
 ) -> list[Passage]:
     """Return for each sensor when, how fast and how far to the side the heel passed it.
 
@@ -187,7 +196,7 @@ def passages(
     across = np.cross(up, walking)
     rows = sensor_rows(sensors, walking)
     choices = dict(conventions or {})
-    signed = {**choices, "sign": "positive: heel to the walker's left"}
+    signed = {**choices, "sign": Message("positive: heel to the walker's left")}
     names = ("instantaneous slipping speed", "m/s"), ("medio-lateral distance", "m")
     inside = np.flatnonzero((motion.time >= contact) & (motion.time <= until))
     passed = []
@@ -236,17 +245,19 @@ def heel_track(
     return path - middle, bool(within.all(axis=1).any())
 
 
-def _crossing(ahead: np.ndarray) -> tuple[str, float]:
+def _crossing(ahead: np.ndarray) -> tuple[Message, float]:
     """Why the heel does not pass, or at which fraction of the frames it does."""
     if not len(ahead) or not np.isfinite(ahead).all():
-        return "the heel marker is missing", 0.0
+        return Message("the heel marker is missing"), 0.0
     if ahead[0] >= 0:
-        return f"the heel landed {1e3 * ahead[0]:.0f} mm beyond the sensor", 0.0
+        over = 1e3 * ahead[0]
+        return Message("the heel landed {way:.0f} mm beyond the sensor", way=over), 0.0
     beyond = np.flatnonzero(ahead >= 0)
     if not len(beyond):
-        return f"the heel stops {-1e3 * float(ahead.max()):.0f} mm before the sensor", 0.0
+        short = -1e3 * float(ahead.max())
+        return Message("the heel stops {way:.0f} mm before the sensor", way=short), 0.0
     i = int(beyond[0])
-    return "", i - 1 + float(-ahead[i - 1] / (ahead[i] - ahead[i - 1]))
+    return NOTHING, i - 1 + float(-ahead[i - 1] / (ahead[i] - ahead[i - 1]))
 
 
 def _between(values: np.ndarray, index: int, share: float) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from underfoot.core import DataError, InputError
+from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag, Measurement, caution
 from ..recording.trial import Trial
@@ -132,13 +133,16 @@ def relaxation_reading(
                 share=100 * abs(still) / fall,
             ),
         )
-    choices = {"sign": "compression positive", "zero": "force before contact subtracted"}
-    meant = {**choices, "final force": "mean over the last tenth of the hold"}
+    choices = {
+        "sign": Message("compression positive"),
+        "zero": Message("force before contact subtracted"),
+    }
+    meant = {**choices, "final force": Message("mean over the last tenth of the hold")}
     settled = noise / float(np.sqrt(len(tail)))
     return RelaxationReading(
         Measurement("force at 2 %", low_force, "N", noise, conventions=choices),
         Measurement("peak force", float(f[peak]), "N", noise, conventions=choices),
-        Measurement("final force", final, "N", settled, "", len(tail), flags, meant),
+        Measurement("final force", final, "N", settled, NOTHING, len(tail), flags, meant),
         *(t[begin:end] - t[begin], d[begin:end], f[begin:end]),
         *(hold - begin, level, float(t[hold] - t[begin]), float(t[end - 1] - t[hold])),
         *(thickness, tuple(notes)),

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.remark import NOTHING, Message
 
 from ..recording.axes import Axes, axes_of
-from ..recording.measurement import Choice, Measurement, caution
+from ..recording.measurement import RATIOS, TOO_FEW, Measurement, caution
 from ..recording.protocols import Protocol
-from ..recording.signals import LowPass, low_passed, runs
+from ..recording.signals import FILTERS, LowPass, low_passed, runs
 from ..recording.tester_calibration import TesterCalibration
 from ..recording.trial import Channel, Plate, Trial
 from ..walking.gait import SHEARS
@@ -40,33 +41,41 @@ def mean_friction(
     """
     normal, shear = np.asarray(normal, dtype=float), np.asarray(shear, dtype=float)
     choices = {
-        "window": Choice("{:g} ms from the first sample at or above {:g} N", 1e3 * window, target),
-        "average": "mean of the ratios of the samples",
+        "window": Message(
+            "{window:g} ms from the first sample at or above {target:g} N",
+            window=1e3 * window,
+            target=target,
+        ),
+        "average": RATIOS,
     }
     if normal.shape != shear.shape or not target > 0 or not window > 0:
         raise InputError("normal and shear must match; target and window be positive", where=name)
 
-    def without(reason: str) -> Measurement:
+    def without(reason: Message) -> Measurement:
         return Measurement.not_estimated(name, reason, conventions=choices)
 
     reached = np.flatnonzero(normal >= target)
     if not len(reached):
         top = float(np.nanmax(normal, initial=0.0))
-        return without(f"the normal force reaches {top:.0f} N, not {target:g} N")
+        return without(
+            Message(
+                "the normal force reaches {top:.0f} N, not {target:g} N", top=top, target=target
+            )
+        )
     start = int(reached[0])
     count = max(1, round(window * rate))
     if start + count > len(normal):
-        return without("the recording ends inside the window")
+        return without(Message("the recording ends inside the window"))
     part, across = normal[start : start + count], shear[start : start + count]
     if not (np.isfinite(part).all() and np.isfinite(across).all()):
-        return without("samples without a number inside the window")
+        return without(Message("samples without a number inside the window"))
     fallen = caution("the normal force falls to {force:.0f} N in the window", force=part.min())
     if part.min() < 0.2 * target:
         return without(fallen.message)
     ratio = across / part
     flags = (fallen,) if part.min() < 0.9 * target else ()
     error = _standard_error(ratio)
-    reason = "" if error is not None else "too few samples for a scatter"
+    reason = TOO_FEW if error is None else NOTHING
     value = float(ratio.mean())
     return Measurement(name, value, "1", error, reason, count, flags, choices)
 
@@ -87,20 +96,24 @@ def available_friction(
     ``up``: unit vector out of the floor, lab axes; by default the plate's normal, or z.
     """
     if not plate.usable:
-        return Measurement.not_estimated("acof", plate.problem or "the plate has no samples")
+        why = Message.plain(plate.problem) if plate.problem else Message("the plate has no samples")
+        return Measurement.not_estimated("acof", why)
     if up is None:
         up = axes_of(Trial("", plates=(plate,))).up
     force = plate.force
-    text = "no filter" if low_pass is None else str(low_pass)
+    choices = {
+        "shear": SHEARS["resultant"],
+        "filter": (low_pass or LowPass("none")).description,
+        "baseline": plate.baseline_text,
+    }
     if low_pass is not None:
         try:
             force = low_passed(force, plate.rate, low_pass)
         except DataError as error:
-            return Measurement.not_estimated("acof", error.what)
+            return Measurement.not_estimated("acof", Message.plain(error.what))
     normal = force @ up
     shear = np.linalg.norm(force - np.outer(normal, up), axis=1)
     cof = mean_friction(normal, shear, plate.rate, target=target, window=window)
-    choices = {"shear": SHEARS["resultant"], "filter": text, "baseline": plate.baseline_text}
     return replace(cof, conventions={**cof.conventions, **choices})
 
 
@@ -165,7 +178,7 @@ def slide_plate(trial: Trial, up: np.ndarray, record: TesterCalibration | None =
     return replace(plate, force=next(factors) * normal + next(factors) * (plate.force - normal))
 
 
-UNCALIBRATED = "no record: the tester's gain is not in the uncertainty"
+UNCALIBRATED = Message("no record: the tester's gain is not in the uncertainty")
 """Convention of a COF whose tester has no calibration record."""
 
 
@@ -222,16 +235,24 @@ def slide_friction(
         part = slice(first, first + max(1, round(length * plate.rate)) + 1)
         level = float(np.nanmedian(normal[part])) if len(normal[part]) else 0.0
         if level < _TOUCHING:
-            cof = Measurement.not_estimated("cof", "the shoe is not loaded in the window")
+            why = Message("the shoe is not loaded in the window")
+            cof = Measurement.not_estimated("cof", why)
         else:
             cof = mean_friction(
                 normal[part], shear[part], plate.rate, target=0.5 * level, window=length, name="cof"
             )
-        window = 1e3 * begin_after, 1e3 * (begin_after + length)
-        words = Choice("{:g} to {:g} ms after sliding starts", *window)
-        said = {"window": words, "sliding start": how, "shear": SHEARS["resultant"]}
-        said |= {"filter": "no filter", "baseline": plate.baseline_text}
-        cof = replace(cof, conventions={**cof.conventions, **said})
+        choices = {
+            "window": Message(
+                "{begin:g} to {end:g} ms after sliding starts",
+                begin=1e3 * begin_after,
+                end=1e3 * (begin_after + length),
+            ),
+            "sliding start": how,
+            "shear": SHEARS["resultant"],
+            "filter": FILTERS["none"],
+            "baseline": plate.baseline_text,
+        }
+        cof = replace(cof, conventions={**cof.conventions, **choices})
     else:
         raise unknown_name("window", kind, ("force", "sliding"), where="method.window_from")
     end = begin + length
@@ -252,7 +273,7 @@ def slide_friction(
 
 def _sliding(
     trial: Trial, plate: Plate, normal: np.ndarray, shear: np.ndarray
-) -> tuple[float | None, str, Channel | None]:
+) -> tuple[float | None, Message, Channel | None]:
     """Return the start of sliding (s), how it was found, and the sliding speed if known."""
     speed, how = _speed(trial)
     if speed is not None:
@@ -272,17 +293,18 @@ def _sliding(
     level = float(np.median(ratio[loaded])) if loaded.sum() >= 10 else 0.0
     stretches = runs(ratio > _ONSET * level) if level > 0 else []
     if not stretches:
-        return None, "", speed
+        return None, NOTHING, speed
     start = max(stretches, key=lambda run: run[1] - run[0])[0]
-    words = "shear (mean over 10 ms) stays above half of its later level"
-    return plate.start + start / plate.rate, words, speed
+    how = Message("shear (mean over 10 ms) stays above half of its later level")
+    return plate.start + start / plate.rate, how, speed
 
 
-def _speed(trial: Trial) -> tuple[Channel | None, str]:
+def _speed(trial: Trial) -> tuple[Channel | None, Message]:
+    share = 100 * _MOVING
     try:
         channel = trial.channel(*SPEED)
         if channel.unit == "m/s":
-            return channel, f"speed channel above {100 * _MOVING:g} % of its top"
+            return channel, Message("speed channel above {share:g} % of its top", share=share)
     except DataError:
         pass
     for name, marker in trial.markers.items():
@@ -290,6 +312,8 @@ def _speed(trial: Trial) -> tuple[Channel | None, str]:
             continue
         smooth = low_passed(marker.positions, marker.rate, LowPass(cutoff=20.0))
         velocity = np.linalg.norm(np.gradient(smooth, 1.0 / marker.rate, axis=0), axis=1)
-        words = f"marker {name} (20 Hz) above {100 * _MOVING:g} % of its top speed"
-        return Channel(velocity, "m/s", marker.rate, marker.start), words
-    return None, ""
+        how = Message(
+            "marker {name} (20 Hz) above {share:g} % of its top speed", name=name, share=share
+        )
+        return Channel(velocity, "m/s", marker.rate, marker.start), how
+    return None, NOTHING

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from underfoot.core.remark import joined
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -371,7 +373,7 @@ def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
         made = [(one.file, *_tile(key, one, curve)) for key, one, curve in curves]
         ends = [t.x[-1] for _, t, _ in made if keys[0] not in ("steps", "heel")]
         empty = [
-            (one.file, Tile(one.file, one.verdict, *_NO_CURVE, reason="; ".join(one.reasons)))
+            (one.file, Tile(one.file, one.verdict, *_NO_CURVE, reason=joined(one.reasons)))
             for one in files
             if not one.curves
         ]

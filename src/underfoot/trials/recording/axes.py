@@ -11,16 +11,16 @@ import numpy as np
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.deprecation import renamed
+from underfoot.core.remark import NOTHING, Message
 
 from .marker_names import heel_candidates, toe_candidates
-from .measurement import Choice
 from .plates import Contact, plate_normal
 from .signals import CONTACT_FORCE, frames_between
 from .trial import Marker, Trial, Vertical, once_a_record
 
 PLATE_FRAMES = {
-    "surface": "plates that measure normal and tangential to the walking surface",
-    "horizontal": "plates that measure in horizontal and vertical axes",
+    "surface": Message("plates that measure normal and tangential to the walking surface"),
+    "horizontal": Message("plates that measure in horizontal and vertical axes"),
 }
 _STEEPEST = math.radians(30.0)
 
@@ -62,17 +62,21 @@ class Ramp:
         return _turned(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
 
     @property
-    def name(self) -> str:
+    def name(self) -> Message:
         """What is walked on: "level" or "ramp of 5 deg"."""
-        return f"ramp of {abs(math.degrees(self.angle)):.4g} deg" if self.angle else "level"
+        if not self.angle:
+            return Message("level")
+        return Message("ramp of {angle:.4g} deg", angle=abs(math.degrees(self.angle)))
 
     @property
-    def description(self) -> str:
+    def description(self) -> Message:
         """The surface in words, as "ramp of 5 deg, walking up; plates that measure ..."."""
         if not self.angle:
             return self.name
-        way = "up" if self.angle > 0 else "down"
-        return f"{self.name}, walking {way}; {PLATE_FRAMES[self.plate_frame]}"
+        values = {"ramp": self.name, "plates": PLATE_FRAMES[self.plate_frame]}
+        if self.angle > 0:
+            return Message("{ramp}, walking up; {plates}", **values)
+        return Message("{ramp}, walking down; {plates}", **values)
 
     words = property(renamed("words", "description", gone="0.4"))
 
@@ -114,11 +118,11 @@ class DirectionSource(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Direction:
-    """Walking direction of a step: unit vector (3,) or None, its source, and words about it."""
+    """Walking direction of a step: unit vector (3,) or None, its source, and a line about it."""
 
     vector: np.ndarray | None = None
     source: DirectionSource = DirectionSource.NONE
-    explanation: str = ""
+    explanation: Message = NOTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,26 +268,30 @@ def walking_direction(
     """
     up = contact.up
     if walking:
-        return Direction(_flat(axis_vector(walking, "walking"), up), DirectionSource.GIVEN, "given")
+        way = _flat(axis_vector(walking, "walking"), up)
+        return Direction(way, DirectionSource.GIVEN, Message("given"))
     plate, start, stop = contact.plate, contact.start, contact.stop
     time = plate.start + np.array([start, (start + stop) / 2.0]) / plate.rate
     path = marker_velocity(trial, float(time[0]), float(time[1]), up)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        text = Choice("markers in this step", text=f"markers in this step ({speed:.2f} m/s)")
+        here = Message(" ({speed:.2f} m/s)", speed=speed)
+        text = Message("markers in this step{here}", here=here)
         return Direction(path / speed, DirectionSource.MARKERS, text)
     step, swing = contact.pressure_path, contact.shear_swing
     length, size = float(np.linalg.norm(step)), float(np.linalg.norm(swing))
     least = _ALONG * max(length, 0.05) * WALKING_SPEED
     if path is not None and (body is None or not step @ body > least):
-        return Direction(explanation=Choice("the markers move at {:.2f} m/s only", speed))
+        return Direction(
+            explanation=Message("the markers move at {speed:.2f} m/s only", speed=speed)
+        )
     if length > 0.05:
-        text = Choice("centre of pressure, {:.0f} mm heel to toe", 1e3 * length)
+        text = Message("centre of pressure, {way:.0f} mm heel to toe", way=1e3 * length)
         return Direction(step / length, DirectionSource.PRESSURE, text)
     if size > 10.0:
-        text = "shear force, braking before driving"
+        text = Message("shear force, braking before driving")
         return Direction(swing / size, DirectionSource.SHEAR, text)
-    return Direction(explanation="nothing tells it")
+    return Direction(explanation=Message("nothing tells it"))
 
 
 def found_vertical(

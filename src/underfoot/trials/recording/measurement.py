@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
-from string import Formatter
 from typing import Any, Self
 
 import numpy as np
@@ -11,61 +10,16 @@ import numpy as np
 from underfoot.core import InputError, display
 from underfoot.core.deprecation import renamed
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.remark import Message
-
-
-class Choice(str):
-    """A convention in words that knows what of it holds for other recordings too.
-
-    Parameters:
-        kind: The words with ``{:g}`` and the like in place of each number.
-        numbers: The numbers of this recording.
-        text: All that is told of this recording, where it is more than ``kind`` with its numbers.
-
-    >>> choice = Choice("bridged up to {:g} ms", 30)
-    >>> choice, choice.kind, choice.numbers
-    ('bridged up to 30 ms', 'bridged up to {:g} ms', (30,))
-    """
-
-    __slots__ = ("kind", "numbers")
-    kind: str
-    numbers: tuple[float, ...]
-
-    def __new__(cls, kind: str, *numbers: float, text: str = "") -> Self:
-        """Return the words."""
-        line = super().__new__(cls, text or kind.format(*numbers))
-        line.kind, line.numbers = kind, numbers
-        return line
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Return what makes an equal one, for copies, other processes and files."""
-        return self.stored, ([self.kind, self.numbers, str(self)],)
-
-    @classmethod
-    def stored(cls, parts: Sequence[Any]) -> Self:
-        """Return the choice of its kind, numbers and text."""
-        kind, numbers, text = parts
-        return cls(kind, *numbers, text=text)
-
-    @classmethod
-    def range_of(cls, choices: Sequence[str]) -> str:
-        """Return one text of choices of one kind: "3 ms" and "9 ms" give "3 to 9 ms"."""
-        first = choices[0]
-        if not isinstance(first, cls):
-            return first
-        columns = zip(*(one.numbers for one in choices if isinstance(one, cls)), strict=True)
-        text = ""
-        for literal, place, spec, _ in Formatter().parse(first.kind):
-            text += literal
-            if place is not None:
-                column = next(columns)
-                ends = dict.fromkeys(format(end, spec or "") for end in (min(column), max(column)))
-                text += " to ".join(ends)
-        return text
-
+from underfoot.core.remark import NOTHING, Message
 
 MEAN_OF_STEPS = "mean of the steps"
 """The item of a table that stands for all steps of a file."""
+
+
+RATIOS = Message("mean of the ratios of the samples")
+"""Convention of a COF that is averaged sample by sample."""
+TOO_FEW = Message("too few samples for a scatter")
+NO_SCATTER = Message("a single value has no scatter")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +77,7 @@ class Measurement(Presentable):
     samples, steps or trials behind the value, ``spread`` is the standard deviation between the
     ``n`` values of a mean. ``flags`` are what a reader must see beside the number; those that
     matter make it a caution. ``conventions`` are the choices that made the number (filter, gate,
-    definition ...), in words (``Choice`` where recordings may differ in numbers alone). A value
+    definition ...), each a message. A value
     that is not finite, a negative uncertainty, or neither value nor reason is a ValueError.
     """
 
@@ -131,10 +85,10 @@ class Measurement(Presentable):
     value: float | None
     unit: str = "1"
     uncertainty: float | None = None
-    reason: str = ""
+    reason: Message = NOTHING
     n: int = 1
     flags: tuple[Flag, ...] = ()
-    conventions: Mapping[str, str] = field(default_factory=dict)
+    conventions: Mapping[str, Message] = field(default_factory=dict)
     spread: float | None = None
 
     def __post_init__(self) -> None:
@@ -146,7 +100,7 @@ class Measurement(Presentable):
             raise ValueError(f"{self.name} is {self.value}; use None and a reason")
         if self.uncertainty is None:
             if not self.reason:
-                object.__setattr__(self, "reason", "uncertainty not estimated")
+                object.__setattr__(self, "reason", Message("uncertainty not estimated"))
         elif not self.uncertainty >= 0 or not math.isfinite(self.uncertainty):
             raise ValueError(f"{self.name}: uncertainty {self.uncertainty} is not allowed")
 
@@ -154,12 +108,12 @@ class Measurement(Presentable):
     def not_estimated(
         cls,
         name: str,
-        reason: str,
+        reason: Message,
         *,
         unit: str = "1",
         n: int = 0,
         flags: tuple[Flag, ...] = (),
-        conventions: Mapping[str, str] | None = None,
+        conventions: Mapping[str, Message] | None = None,
     ) -> Self:
         """Return a measurement without a value, saying why."""
         choices = dict(conventions or {})
@@ -202,8 +156,9 @@ class Measurement(Presentable):
 
     def table(self) -> Table:
         """Return value, uncertainty, flags and conventions, a row each."""
+        none = Message("not estimated: {reason}", reason=self.reason)
         rows: list[tuple[str, Any]] = [
-            ("value", self.value if self.value is not None else f"not estimated: {self.reason}"),
+            ("value", none if self.value is None else self.value),
             ("unit", self.unit),
             ("standard uncertainty", self.uncertainty),
             ("n", self.n),
@@ -256,9 +211,9 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
         float(values.mean()),
         first.unit,
         None if spread is None else spread / math.sqrt(len(values)),
-        "a single value has no scatter" if spread is None else "",
+        NO_SCATTER if spread is None else NOTHING,
         len(values),
         flags,
-        {**shared, "uncertainty": "standard error of the mean"},
+        {**shared, "uncertainty": Message("standard error of the mean")},
         spread,
     )

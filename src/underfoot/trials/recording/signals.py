@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.remark import Message
 
 SHEAR_WARNING = 2.0  # N; above it the required friction moves by more than about 0.01
 UNLOADED_LIMIT = 100.0  # N; a larger "offset" is a load that never left the plate
@@ -156,13 +157,17 @@ def _away_from_load(mask: np.ndarray, margin: int) -> np.ndarray:
 
 
 FILTERS = {
-    "butterworth-4-zero-phase": "Butterworth, 2nd order forward and backward (4th, zero phase)",
-    "butterworth-4-zero-phase-corrected": (
+    "butterworth-4-zero-phase": Message(
+        "Butterworth, 2nd order forward and backward (4th, zero phase)"
+    ),
+    "butterworth-4-zero-phase-corrected": Message(
         "Butterworth, 2nd order forward and backward, cutoff raised for the two passes (/0.802)"
     ),
-    "butterworth-8-zero-phase": "Butterworth, 4th order forward and backward (8th, zero phase)",
-    "butterworth-4-one-pass": "Butterworth, 4th order, one pass (shifts in time)",
-    "none": "no filter",
+    "butterworth-8-zero-phase": Message(
+        "Butterworth, 4th order forward and backward (8th, zero phase)"
+    ),
+    "butterworth-4-one-pass": Message("Butterworth, 4th order, one pass (shifts in time)"),
+    "none": Message("no filter"),
 }
 _TWO_PASSES = 0.802  # (sqrt(2) - 1)^(1/4): the cutoff of two 2nd-order passes over that of one
 
@@ -180,8 +185,15 @@ class LowPass:
         if not 0 < self.cutoff < np.inf:
             raise InputError(f"cutoff {self.cutoff} Hz", where="filter", allowed="above 0 Hz")
 
+    @property
+    def description(self) -> Message:
+        """What the filter is, with its cutoff."""
+        if self.kind == "none":
+            return FILTERS[self.kind]
+        return Message("{kind}, {cutoff:g} Hz", kind=FILTERS[self.kind], cutoff=self.cutoff)
+
     def __str__(self) -> str:
-        return FILTERS[self.kind] + ("" if self.kind == "none" else f", {self.cutoff:g} Hz")
+        return self.description
 
 
 FORCE_FILTER = LowPass()

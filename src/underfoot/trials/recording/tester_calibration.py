@@ -77,13 +77,24 @@ class TesterCalibration:
         """Return the calibration of a channel; the factor is 1 where the record has none."""
         return self.channels.get(name, ChannelCalibration(1.0, 0.0, np.inf))
 
-    def description(self) -> str:
-        """Return certificate, date and factors in words."""
-        factors = (
-            f"{name} x {c.factor:.4f} (u {100 * c.uncertainty:.2g} %)"
+    def description(self) -> Message:
+        """Return certificate, date and factors."""
+        factors = [
+            Message(
+                "{channel} x {factor:.4f} (u {u:.2g} %)",
+                channel=name,
+                factor=c.factor,
+                u=100 * c.uncertainty,
+            )
             for name, c in self.channels.items()
+        ]
+        return Message(
+            "{tester}, {certificate} of {date}: {factors}",
+            tester=self.name,
+            certificate=self.certificate,
+            date=self.date,
+            factors=factors,
         )
-        return f"{self.name}, {self.certificate} of {self.date}: {', '.join(factors)}"
 
     def flags(self, noted: object) -> tuple[Flag, ...]:
         """Return what the record says against a reading of the day ``noted`` with it.

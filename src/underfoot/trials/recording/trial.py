@@ -12,8 +12,9 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match, unknown_name
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
-from .measurement import Choice, Flag
+from .measurement import Flag
 
 _T = TypeVar("_T")
 _P = ParamSpec("_P")
@@ -154,15 +155,16 @@ class Plate:
         return not self.problem and len(self.force) > 0
 
     @property
-    def baseline_text(self) -> str:
+    def baseline_text(self) -> Message:
         """What was done about the baseline."""
         if self.baseline is None:
-            return "not subtracted"
-        size = ", ".join(f"{component:.1f}" for component in self.baseline)
-        return Choice(
-            "mean force of the unloaded plate subtracted",
-            text=f"mean of {self.baseline_samples} unloaded samples subtracted ({size} N)",
+            return Message("not subtracted")
+        here = Message(
+            " ({count} {count:sample|samples}: {size} N)",
+            count=self.baseline_samples,
+            size=[f"{component:.1f}" for component in self.baseline],
         )
+        return Message("mean force of the unloaded plate subtracted{here}", here=here)
 
 
 @dataclass(frozen=True, slots=True)

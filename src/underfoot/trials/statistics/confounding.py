@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from .linear import design, predictor
 
 
 @dataclass(frozen=True, slots=True)
 class Confounded:
-    """A factor that can't be told from ``others`` (of which "person" may be one).
+    """A factor that can't be told from ``others``, none of them where it is from the persons.
 
     ``same``: each level goes with one level of the other and back.
     """
@@ -20,13 +22,28 @@ class Confounded:
     same: bool
 
     def __str__(self) -> str:
-        if self.others == ("person",):
-            return f'"{self.factor}" can\'t be told from the persons: too few share a level'
-        named = " and ".join(f'"{name}"' for name in self.others)
-        return f'"{self.factor}" can\'t be told from {named}: ' + (
-            "each level of one goes with one level of the other"
-            if self.same
-            else "its levels go with theirs"
+        return self.message
+
+    @property
+    def message(self) -> Message:
+        """What can't be told, and why."""
+        others = [Message('"{name}"', name=name) for name in self.others]
+        if not others:
+            return Message(
+                '"{factor}" can\'t be told from the persons: too few share a level',
+                factor=self.factor,
+            )
+        if self.same:
+            return Message(
+                '"{factor}" can\'t be told from {others: and }: each level of one goes with one '
+                "level of the other",
+                factor=self.factor,
+                others=others,
+            )
+        return Message(
+            '"{factor}" can\'t be told from {others: and }: its levels go with theirs',
+            factor=self.factor,
+            others=others,
         )
 
 
@@ -72,7 +89,7 @@ def told_apart(
             and len(set(zip(who.tolist(), factors[one], strict=True))) == len(people)
         ]
         if name in between and free(between, first)[1] >= len(people):
-            left.append(Confounded(name, ("person",), False))
+            left.append(Confounded(name, (), False))
             continue
         kept.append(name)
     return {name: levels for name, levels in factors.items() if name in kept}, left

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from .samples import ordered_levels
 
@@ -162,7 +163,7 @@ def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
     return Design(np.column_stack(matrices), tuple(terms), slices, used)
 
 
-def empty_cells(predictors: Mapping[str, Predictor], term: str) -> list[str]:
+def empty_cells(predictors: Mapping[str, Predictor], term: str) -> list[Message]:
     """Return the combinations of levels of an interaction that hold no observation."""
     factors = [predictors[name] for name in parts(term) if predictors[name].is_factor]
     if len(factors) < 2:
@@ -170,7 +171,10 @@ def empty_cells(predictors: Mapping[str, Predictor], term: str) -> list[str]:
     seen = set(zip(*(f.values.tolist() for f in factors), strict=True))
     grid = np.indices([len(f.levels) for f in factors]).reshape(len(factors), -1).T
     return [
-        " and ".join(f"{f.name} {f.levels[i]}" for f, i in zip(factors, cell, strict=True))
+        Message(
+            "{levels: and }",
+            levels=[f"{f.name} {f.levels[i]}" for f, i in zip(factors, cell, strict=True)],
+        )
         for cell in grid.tolist()
         if tuple(cell) not in seen
     ]
@@ -203,7 +207,7 @@ class FittedModel(ABC):
     design: Design
     coefficients: np.ndarray
     covariance: np.ndarray
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
 
     @abstractmethod
     def df(self, contrast: np.ndarray) -> float:
@@ -283,7 +287,9 @@ def linear_model(
     rank = int(np.linalg.matrix_rank(built.matrix))
     gaps = any(empty_cells(built.predictors, term) for term in built.terms)
     if rank < built.matrix.shape[1] and not gaps:
-        warnings.append("predictors depend on each other: single coefficients have no meaning")
+        warnings.append(
+            Message("predictors depend on each other: single coefficients have no meaning")
+        )
     if len(y) - rank < 1:
         raise DataError(
             f"{len(y)} observations for {rank} parameters leave nothing to estimate the scatter",
@@ -295,13 +301,13 @@ def linear_model(
     model = LinearModel(name, built, fit.params, fit.cov_params(), tuple(warnings), y, *left)
     if not model.exact:
         return model
-    exact = "the model fits the data exactly: no scatter is left for a test"
+    exact = Message("the model fits the data exactly: no scatter is left for a test")
     return replace(model, warnings=(*warnings, exact))
 
 
 def model_data(
     response: ArrayLike, predictors: Columns, terms: Sequence[str] | None, name: str
-) -> tuple[np.ndarray, Design, list[str]]:
+) -> tuple[np.ndarray, Design, list[Message]]:
     """Return complete responses, the design and warnings of empty cells (``linear_model``)."""
     y = np.asarray(response, dtype=float)
     if not predictors:
@@ -311,19 +317,24 @@ def model_data(
         if length != len(y):
             raise DataError(f"{length} values for {len(y)} responses", where=key)
     complete = np.isfinite(y)
-    warnings: list[str] = []
+    warnings: list[Message] = []
     if not complete.all():
-        warnings.append(f"{int((~complete).sum())} rows without a response were left out")
+        lost = int((~complete).sum())
+        warnings.append(Message("{lost} rows without a response were left out", lost=lost))
     ready = {key: predictor(key, column, rows=complete) for key, column in predictors.items()}
     terms = crossed(*ready) if terms is None else tuple(terms)
     built = design(ready, terms)
     for term in terms:
         cells = empty_cells(ready, term)
         if cells:
-            some = "; ".join(cells[:4]) + (" ..." if len(cells) > 4 else "")
             warnings.append(
-                f"{term}: empty cells ({some}); type III tests of lower terms depend on the "
-                "coding and least-squares means can't all be estimated"
+                Message(
+                    "{term}: empty cells ({cells:; }{more}); type III tests of lower terms depend "
+                    "on the coding and least-squares means can't all be estimated",
+                    term=term,
+                    cells=cells[:4],
+                    more=" ..." if len(cells) > 4 else "",
+                )
             )
     y = y[complete]
     if np.ptp(y) == 0:
@@ -361,7 +372,7 @@ class AnovaTable:
     model: LinearModel
     ss_type: int
     rows: tuple[AnovaRow, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
 
     @property
     def title(self) -> str:
@@ -412,8 +423,12 @@ def analysis_of_variance(
             slopes = [n for n in parts(term) if not built.predictors[n].is_factor]
             if len(parts(term)) > 1 and slopes:
                 warnings.append(
-                    f"{term}: type III tests of the terms inside it are about {slopes[0]} = 0; "
-                    "centre the covariate to test at its mean"
+                    Message(
+                        "{term}: type III tests of the terms inside it are about {slope} = 0; "
+                        "centre the covariate to test at its mean",
+                        term=term,
+                        slope=slopes[0],
+                    )
                 )
     rows = []
     for number, term in enumerate(built.terms):

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import ConvergenceError, DataError, InputError, unknown_name
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import NOTHING, Message
 
 _PURPOSE = "A logistic regression"
 
@@ -192,7 +193,7 @@ class LogisticFit(_Fit):
     n: int
     events: int
     separation: Separation
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
 
     @property
     def deviance(self) -> float:
@@ -236,14 +237,23 @@ def logistic_regression(
     separated = separation(matrix, y)
     warnings = []
     if separated.separated:
-        bad = ", ".join(n for n, inf in zip(names, separated.infinite, strict=True) if inf)
-        message = f"{separated.kind} separation: no finite maximum-likelihood estimate of {bad}"
+        message = Message(
+            "{kind} separation: no finite maximum-likelihood estimate of {names}",
+            kind=separated.kind,
+            names=[n for n, inf in zip(names, separated.infinite, strict=True) if inf],
+        )
         if not firth:
             raise DataError(message, where="logistic regression", remedy="Use method firth")
         warnings.append(message)
     rarer = int(min(y.sum(), len(y) - y.sum()))
     if rarer < 5 * len(predictors):
-        warnings.append(f"{rarer} of the rarer outcome for {len(predictors)} predictors: overfits")
+        warnings.append(
+            Message(
+                "{rarer} of the rarer outcome for {count} predictors: overfits",
+                rarer=rarer,
+                count=len(predictors),
+            )
+        )
     centred, scale, back = _scaled(matrix)
     start = np.zeros(len(names))
     mean = float(y.mean())
@@ -269,7 +279,7 @@ def logistic_regression(
             work, at, unit = centred @ axes, axes.T @ scaled, 1 / abs(reach[0, 0])
         *ends, p, open_ends = _profile(work, y, at, j, firth, best, confidence, errors[j] * unit)
         if open_ends:
-            warnings.append(f"{name}: {open_ends}")
+            warnings.append(Message("{name}: {open_ends}", name=name, open_ends=open_ends))
         low, high = (None if end is None else float(end / unit) for end in ends)
         coefficients.append(Coefficient(name, float(beta[j]), float(errors[j]), low, high, p))
     likelihoods = log_likelihood(eta, y), objective(matrix, eta, y, True) if firth else None
@@ -342,19 +352,19 @@ def _profile(
 
     ends: list[float | None] = []
     lost = []
-    for direction, side in ((-1.0, "lower"), (1.0, "upper")):
+    for direction, side in ((-1.0, Message("lower end")), (1.0, Message("upper end"))):
         try:
             ends.append(end(direction))
         except ConvergenceError:
             ends.append(None)
-            lost.append(f"{side} end")
+            lost.append(side)
     last[0] = best_beta.copy()
     try:
         p = float(chi2.sf(max(2.0 * drop(0.0), 0.0), 1))
     except ConvergenceError:
         p = 2.0 * float(norm.sf(abs(best_beta[j]) / error))
-        lost.append("likelihood-ratio p (Wald's in its place)")
-    text = f"the profile did not settle at its {', '.join(lost)}" if lost else ""
+        lost.append(Message("likelihood-ratio p (Wald's in its place)"))
+    text = Message("the profile did not settle at its {lost}", lost=lost) if lost else NOTHING
     return ends[0], ends[1], p, text
 
 

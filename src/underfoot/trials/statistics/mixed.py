@@ -11,25 +11,31 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from .linear import AnovaRow, FittedModel, crossed, model_data, parts
 from .samples import ROUNDING
 from .variance_components import VarianceComponents, variance_components
 
 
-def independence_warning(persons: Sequence[object]) -> tuple[str, ...]:
+def independence_warning(persons: Sequence[object]) -> tuple[Message, ...]:
     """Return a warning when rows repeat persons, for tests that take rows as independent."""
     names = {str(person) for person in persons}
     if len(names) == len(persons):
         return ()
     if len(names) == 1:
-        return (
-            f"{len(persons)} trials of one person: this test tells of that person, not of others",
+        text = Message(
+            "{count} trials of one person: this test tells of that person, not of others",
+            count=len(persons),
         )
-    return (
-        f"{len(persons)} trials of {len(names)} persons: this test takes them as independent, "
-        "and its p is too small",
+        return (text,)
+    text = Message(
+        "{count} trials of {persons} persons: this test takes them as independent, and its p is "
+        "too small",
+        count=len(persons),
+        persons=len(names),
     )
+    return (text,)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.core.remark import NOTHING, Message
 
 from .. import statistics
-from ..recording.measurement import Flag, Measurement, remark
+from ..recording.measurement import NO_SCATTER, Flag, Measurement, remark
 
 _SAID = {
-    "hysteresis": "friction with the blocking oil, all adhesion taken as blocked (Eq. 23)",
-    "uncertainty": "standard errors of the means added in squares",
+    "hysteresis": Message("friction with the blocking oil, all adhesion taken as blocked (Eq. 23)"),
+    "uncertainty": Message("standard errors of the means added in squares"),
 }
 
 
@@ -150,5 +151,5 @@ def _difference(name: str, first: Measurement, second: Measurement) -> Measureme
 def _force(
     name: str, value: float, error: float | None, n: int, flags: tuple[Flag, ...] = ()
 ) -> Measurement:
-    reason = "" if error is not None else "a single value has no scatter"
+    reason = NO_SCATTER if error is None else NOTHING
     return Measurement(name, value, "N", error, reason, n, flags, _SAID)

@@ -7,6 +7,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.presentation import p_text
+from underfoot.core.remark import Message
 
 from .. import statistics
 from ..walking.gait_context import PERCENT
@@ -155,7 +156,7 @@ def agreement_findings(
     )
     title = f"Bland-Altman: {name}, {raters[0]} against {raters[1]}"
     caution = (
-        ("the difference changes with the size: one bias does not describe it",)
+        (Message("the difference changes with the size: one bias does not describe it"),)
         if limits.slope_p < 0.05
         else ()
     )
@@ -338,7 +339,7 @@ def prediction_finding(
         "interval with persons as units (Obuchowski). Brier: mean squared error of the predicted "
         "risk, interval by bootstrap of persons. Calibration: slope 1, intercept 0 is right."
     )
-    worse = ("the prediction is no better than the share of slips alone",)
+    worse = (Message("the prediction is no better than the share of slips alone"),)
     caution = worse if told.brier >= told.constant else ()
     title = f"Prediction of slips from {quantity_name(name)}"
     heads = ("", *plain_columns("value", "95 % low", "95 % high", decimals=3))

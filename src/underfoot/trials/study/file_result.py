@@ -8,9 +8,9 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from underfoot.core.remark import Message, remarks, subjects
+from underfoot.core.remark import NOTHING, Message, subjects
 
-from ..recording.measurement import UNNAMED, Choice, Flag, Measurement
+from ..recording.measurement import UNNAMED, Flag, Measurement
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FAILED, TesterCalibration
 from ..recording.trial import Trial
@@ -33,17 +33,10 @@ class Number(Measurement):
     main: str = ""
     fact: str = ""
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON; conventions keep what other recordings share of them."""
-        data = Measurement.as_dict(self)
-        return {**data, "conventions": {k: _parts(v) for k, v in self.conventions.items()}}
-
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """Return the number written by ``as_dict``."""
-        flags = tuple(Flag(**flag) for flag in data["flags"])
-        conventions = {key: _whole(choice) for key, choice in data["conventions"].items()}
-        return cls(**{**data, "flags": flags, "conventions": conventions})
+        return cls(**{**data, "flags": tuple(Flag(**flag) for flag in data["flags"])})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,8 +44,8 @@ class StepResult(GaitContext):
     """One contact with a plate: its numbers (SI), verdict and the walk around it.
 
     ``number``, ``plate``, ``side``, ``contact``, ``toe_off``, ``by_hand``: as of its ``Stance``;
-    ``item``: its name in tables. ``rcof``: None where ``reason`` says why it is rejected;
-    ``kind_of_reason``: the reason without the numbers of this step. ``judged_for_slip``: True for
+    ``item``: its name in tables. ``rcof``: None where ``reason`` says why it is rejected.
+    ``judged_for_slip``: True for
     the contact of a trial whose slip was measured. What follows is of this contact alone:
     ``slipped``, None where it could not be judged, ``outcome`` in words, ``slip_direction``, and
     what ``SlipCourse`` tells.
@@ -69,8 +62,7 @@ class StepResult(GaitContext):
     rcof: float | None = None
     rcof_uncertainty: float | None = None
     verdict: str = "rejected"
-    reason: str = ""
-    kind_of_reason: str = ""
+    reason: Message = NOTHING
     cautions: tuple[str, ...] = ()
     by_hand: tuple[str, ...] = ()
     judged_for_slip: bool = False
@@ -81,10 +73,10 @@ class StepResult(GaitContext):
     outcome: str | None = None
     slip_direction: str = ""
     recovery_or_fall: str = ""
-    recovery_or_fall_reason: str = ""
+    recovery_or_fall_reason: Message = NOTHING
     toe_slip: float | None = None
     trailing_slip: float | None = None
-    misstep: str = ""
+    misstep: Message = NOTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +115,8 @@ class Sample:
 class FileResult:
     """Outcome of one file.
 
-    ``file`` and ``checksum``: name and SHA-256. ``verdict``: "accepted", "caution" (read the
+    ``file`` and ``checksum``: name and SHA-256. ``run``: place among the results of its recording,
+    from 1. ``verdict``: "accepted", "caution" (read the
     reasons before using the numbers) or "refused". ``reasons``: why, in words; ``kinds``: the same
     without the numbers and places of this file, each once. ``numbers``: all numbers of the file, a
     row each. ``curves``: series for figures, thinned. ``conditions``: what the laboratory noted
@@ -146,6 +139,7 @@ class FileResult:
     steps: tuple[StepResult, ...] = ()
     body: Mapping[str, float] = field(default_factory=dict)
     sample: Sample = Sample()
+    run: int = 1
     main: Mapping[str, float] = field(init=False, repr=False, compare=False)
     facts: Mapping[str, float] = field(init=False, repr=False, compare=False)
 
@@ -240,7 +234,7 @@ class Draft:
 
     def finished(self, protocol: Protocol) -> FileResult:
         """Check the rules and return the result with its verdict."""
-        kinds = list(subjects(remarks([*self.refusals, *self.cautions])))
+        kinds = list(subjects([*self.refusals, *self.cautions]))
         facts = _values(self.numbers, "fact")
         for rule in protocol.rules:
             broken = rule.broken_by(facts[rule.quantity]) if rule.quantity in facts else None
@@ -284,18 +278,6 @@ def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
     """Note what the calibration record says of the day a file was made; a failed check refuses."""
     for flag in () if record is None else record.flags(draft.conditions.get("date")):
         (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)
-
-
-def _parts(convention: str) -> str | list[Any]:
-    """Return what a file holds of a convention."""
-    if not isinstance(convention, Choice):
-        return convention
-    return [convention.kind, list(convention.numbers), str(convention)]
-
-
-def _whole(stored: Any) -> str:
-    """Return the convention that a file holds in parts."""
-    return Choice.stored(stored) if isinstance(stored, list) else stored
 
 
 def _rounded(values: np.ndarray) -> np.ndarray:

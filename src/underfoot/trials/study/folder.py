@@ -254,7 +254,7 @@ def _analysed(
                     error=str(error),
                 )
             )
-        results.append(draft.finished(protocol))
+        results.append(replace(draft.finished(protocol), run=number))
     return results
 
 

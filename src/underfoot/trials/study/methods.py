@@ -3,7 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ..recording.measurement import MEAN_OF_STEPS, Choice
+from underfoot.core.remark import Message, kind_of, of_several
+
+from ..recording.measurement import MEAN_OF_STEPS
 from ..recording.protocols import KINDS, Protocol
 from ..recording.signals import CONTACT_FORCE
 from .file_result import CAUTION, REFUSED, FileResult
@@ -98,7 +100,7 @@ def _selection(files: Sequence[FileResult]) -> list[str]:
         return []
     counts = Counter(step.verdict for step in steps)
     reasons = Counter(
-        step.kind_of_reason for step in steps if step.verdict == "rejected" and step.reason
+        step.reason.subject for step in steps if step.verdict == "rejected" and step.reason
     )
     used = counts["accepted"] + counts["caution"]
     text = (
@@ -172,7 +174,9 @@ _PRIVATE = ("search ends", "sign", "uncertainty")
 
 def _conventions(files: Sequence[FileResult]) -> list[str]:
     """Return one sentence for each quantity; where files or plates differ, each way with counts."""
-    numbers: dict[str, list[tuple[str, Mapping[str, str]]]] = {}  # file and conventions, by name
+    numbers: dict[
+        str, list[tuple[str, Mapping[str, Message]]]
+    ] = {}  # file and conventions, by name
     for one in files:
         for m in one.measurements:
             known = m.value is not None and m.name in _TOLD and m.item != MEAN_OF_STEPS
@@ -195,15 +199,14 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     return sentences
 
 
-def _choices(key: str, made: Sequence[tuple[str, Mapping[str, str]]]) -> str:
+def _choices(key: str, made: Sequence[tuple[str, Mapping[str, Message]]]) -> str:
     """Return what all numbers share, with the range of each number, or every way with its files."""
-    alike: dict[str, list[tuple[str, str]]] = {}  # place and choice, by kind
+    alike: dict[object, list[tuple[str, Message]]] = {}  # place and choice, by kind
     for place, conventions in made:
-        choice = conventions.get(key, "not recorded")
-        kind = choice.kind if isinstance(choice, Choice) else choice
-        alike.setdefault(kind, []).append((place, choice))
+        choice = conventions.get(key, Message("not recorded"))
+        alike.setdefault(kind_of(choice), []).append((place, choice))
     ranges = {
-        kind: Choice.range_of([choice for _, choice in members]) for kind, members in alike.items()
+        kind: of_several([choice for _, choice in members]) for kind, members in alike.items()
     }
     if len(alike) == 1:
         return next(iter(ranges.values()))

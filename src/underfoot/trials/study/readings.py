@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.remark import Message
+from underfoot.core.remark import NOTHING, Message, joined
 
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
@@ -37,6 +37,10 @@ NOTED = {
 _RUN = ("run", "type of run", "kind of run", "lauf")
 _ZERO = re.compile(r"zero|null", re.IGNORECASE)
 _CONDITIONING = re.compile(r"condition|warm|einlauf|vorlauf", re.IGNORECASE)
+NO_CHECKS = Message("none in the table")
+"""Convention of a sample without readings on check surfaces."""
+NO_ZERO = Message("not measured")
+"""Convention of a sample without zero runs."""
 _CHECK = re.compile(r"check|verif|pr(ü|ue)f", re.IGNORECASE)
 _NTH = re.compile(
     r"((swing|reading|test|run|value|messung|schwung|wert|lauf|versuch|ablesung|r|s)[ _.]?)?"
@@ -197,7 +201,7 @@ def reading_results(
         refer_to(record, draft)
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
-        check_surfaces = "; ".join(c.description for c in used) or "none in the table"
+        check_surfaces = joined(c.description for c in used) if used else NO_CHECKS
         kinds = [runs[i] for i in members]
         _one_sample(draft, values[members], kinds, quantity, protocol, check_surfaces)
         if boards is not None:
@@ -324,7 +328,7 @@ def _one_sample(
     runs: Sequence[str],
     quantity: str,
     protocol: Protocol,
-    checked: str,
+    checked: Message,
 ) -> None:
     zero = np.array([bool(_ZERO.search(text)) for text in runs])
     first = np.array([bool(_CONDITIONING.search(text)) for text in runs])
@@ -412,26 +416,36 @@ def _one_sample(
                 "a mean of {value:g}: no floor reads that; sign, zero or decimals?", value=value
             )
         )
-    away = ", ".join(f"{v:g}" for v in counted[: len(counted) - len(readings)])
+    away = [f"{v:g}" for v in counted[: len(counted) - len(readings)]]
     conventions = {
-        "readings": f"mean of {len(readings)} of {len(counted)}; median {middle:.4g}",
-        "left out": f"{int(first.sum())} conditioning, {int(zero.sum())} zero runs"
-        + (f"; before those that count: {away}" if away else ""),
-        "zero": f"mean of the zero runs, {offset:.4g}, taken off" if zero.any() else "not measured",
+        "readings": Message(
+            "mean of {used} of {count}; median {middle:.4g}",
+            used=len(readings),
+            count=len(counted),
+            middle=middle,
+        ),
+        "left out": Message(
+            "{first} conditioning, {zero} zero runs{before}",
+            first=int(first.sum()),
+            zero=int(zero.sum()),
+            before=Message("; before those that count: {away}", away=away) if away else NOTHING,
+        ),
+        "zero": Message("mean of the zero runs, {offset:.4g}, taken off", offset=offset)
+        if zero.any()
+        else NO_ZERO,
     }
     if quantity == "ptv":
         conventions["check surfaces"] = checked
     part = protocol.number("calibration_uncertainty", "1", 0.0) * abs(value)
-    scatter = (
-        None,
-        "a single reading has no scatter"
-        if len(readings) < 2
-        else "equal readings scatter by less than their resolution",
-    )
+    error, why = None, Message("equal readings scatter by less than their resolution")
+    if len(readings) < 2:
+        why = Message("a single reading has no scatter")
     if spread is not None:
-        scatter = (math.hypot(spread / math.sqrt(len(readings)), part), "")
+        error, why = math.hypot(spread / math.sqrt(len(readings)), part), NOTHING
         if part:
-            conventions["uncertainty"] = f"scatter of the mean and {part:.2g} of the calibration"
+            conventions["uncertainty"] = Message(
+                "scatter of the mean and {part:.2g} of the calibration", part=part
+            )
     name = protocol.text("classes")
     if name:
         state = " ".join(str(draft.conditions.get(key, "")) for key in NOTED["condition"])
@@ -457,7 +471,7 @@ def _one_sample(
                 )
     unit = "deg" if quantity == "angle" else "1"
     about = (len(readings), tuple(flags), conventions, spread)
-    draft.add("sample", Measurement(quantity, value, unit, *scatter, *about), main=quantity)
+    draft.add("sample", Measurement(quantity, value, unit, error, why, *about), main=quantity)
     draft.sample = replace(draft.sample, readings=tuple((readings - offset).tolist()))
 
 

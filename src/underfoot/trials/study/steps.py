@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
-from underfoot.core.remark import Message, Remark, remarks, subjects
+from underfoot.core.remark import NOTHING, Message, Remark
 from underfoot.core.units import plain_number
 
 from ..machines.compression import compression
@@ -161,12 +161,14 @@ def _moduli(
 ) -> Iterator[Measurement]:
     """Yield stiffness and modulus at short and long time (Eq. 13 to 16), and Young's moduli."""
     if not isinstance(area, float):
-        reason = 'the area of the block is not known: add a column "area (mm^2)" to conditions.csv'
+        reason = Message(
+            'the area of the block is not known: add a column "area (mm^2)" to conditions.csv'
+        )
         for each in ("short-time modulus", "long-time modulus"):
             yield Measurement.not_estimated(each, reason, unit="Pa")
         return
     test = compression(reading, thickness, area, name)
-    meant = {"modulus": "of the pair, apparent (Eq. 13 to 16)"}
+    meant = {"modulus": Message("of the pair, apparent (Eq. 13 to 16)")}
     forces = reading.force_2_percent, reading.peak_force, reading.final_force
     low, peak, final = ((one.value or 0.0, one.uncertainty or 0.0) for one in forces)
     for time, (high, noise) in (("short", peak), ("long", final)):
@@ -183,7 +185,11 @@ def _moduli(
             young,
             "Pa",
             young * math.hypot(spread, test.deviation),
-            conventions={"shape": f"apparent over {test.factor:.3g}, bonded square block"},
+            conventions={
+                "shape": Message(
+                    "apparent over {factor:.3g}, bonded square block", factor=test.factor
+                )
+            },
         )
 
 
@@ -326,10 +332,10 @@ def _human_slip(walk: _Walk) -> None:
     usable = [s for s in on_plate if "exclude" not in s.by_hand]
     for stance in on_plate:
         if stance not in usable[:1]:
-            reason = stance.reason or "a later contact with the slippery plate"
+            reason = stance.reason or Message("a later contact with the slippery plate")
             draft.steps.append(_step(walk, stance, reason=reason))
     if not usable:
-        draft.refusals.append(Message.plain(on_plate[0].reason))
+        draft.refusals.append(on_plate[0].reason)
         return
     stance = usable[0]
     side = str(draft.conditions.get("side", "")).casefold()
@@ -370,7 +376,7 @@ def _slip_numbers(walk: _Walk, stance: Stance, slip: Slip, limits: OutcomeLimits
         if flag.matters
     ]
     if slip.slipped is None:
-        draft.refusals.append(Message.plain(slip.peak_speed.reason))
+        draft.refusals.append(slip.peak_speed.reason)
     else:
         draft.note(slip.slipped, "1", main="slip")
     step = replace(
@@ -480,10 +486,14 @@ def _ratio_curve(walk: _Walk, stance: Stance, kind: str) -> None:
 
 
 def _step(
-    walk: _Walk, stance: Stance, friction: RequiredFriction | None = None, *, reason: str = ""
+    walk: _Walk,
+    stance: Stance,
+    friction: RequiredFriction | None = None,
+    *,
+    reason: Message = NOTHING,
 ) -> StepResult:
     rcof = None if friction is None else friction.measurement
-    why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else "")
+    why = reason or stance.reason or (rcof.reason if rcof and rcof.value is None else NOTHING)
     shared = ("number", "plate", "side", "contact", "toe_off", "by_hand")
     return StepResult(
         **{key: getattr(stance, key) for key in shared},
@@ -494,7 +504,6 @@ def _step(
         rcof_uncertainty=None if rcof is None else rcof.uncertainty,
         verdict="rejected" if friction is None else friction.verdict,
         reason=why,
-        kind_of_reason="; ".join(subjects(remarks([why]))),
         cautions=() if rcof is None else rcof.cautions(),
         **asdict(gait_context(walk.way, stance, walk.stances)),
     )

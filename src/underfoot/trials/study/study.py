@@ -116,7 +116,11 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         tests = comparison_findings(name, [value for _, value in kept], factors)
         lost = len(values) - len(kept)
         if lost and tests:
-            text = f"{lost} of {len(values)} series left out: not identified, or no good fit"
+            text = Message(
+                "{lost} of {count} series left out: not identified, or no good fit",
+                lost=lost,
+                count=len(values),
+            )
             tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
         findings += tests
     curves: dict[str, Any] = {"fits": fits}

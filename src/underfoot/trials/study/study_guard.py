@@ -20,6 +20,7 @@ from .circumstances import gone_with, run_numbers
 from .conditions import MASS, NUMBERS, ORDERS, PERSON, person_condition, plain_spelling
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
+from .readings import NO_CHECKS, NO_ZERO
 from .tables import Table, grouped
 
 _BODY = {
@@ -785,8 +786,8 @@ def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[
     if protocol.text("quantity") == "ptv":
         lacking = [
             name
-            for name, key, without in (("zero runs", "zero", "not measured"),
-                                       ("check surfaces", "check surfaces", "none in the table"))
+            for name, key, without in (("zero runs", "zero", NO_ZERO),
+                                       ("check surfaces", "check surfaces", NO_CHECKS))
             if any(c.get(key) == without for c in said)
         ]  # fmt: skip
         if lacking:

@@ -71,7 +71,11 @@ def comparison_findings(
     repeated = reliability_findings(response, values, factors, persons)
     if not factors and (left or confounded):
         title = f"Comparisons of {quantity_name(response)}"
-        reasons = [*left, *(f"{each}: nothing is left to compare" for each in confounded)]
+        nothing = [
+            Message("{confounded}: nothing is left to compare", confounded=each.message)
+            for each in confounded
+        ]
+        reasons = [*left, *nothing]
         lost = finding(f"anova_{response}", title, ("not done",), [(one,) for one in reasons])
         return [lost, *repeated]
     if not factors:
@@ -105,7 +109,10 @@ def _with_left_out(
     first: Finding, left: Sequence[Remark], confounded: Sequence[statistics.Confounded]
 ) -> Finding:
     """Return the first finding of a response with the factors that it says nothing of."""
-    doubtful = tuple(f"{each}; it is left out of this analysis" for each in confounded)
+    doubtful = tuple(
+        Message("{confounded}; it is left out of this analysis", confounded=each.message)
+        for each in confounded
+    )
     table = replace(first.table, notes=(*first.table.notes, *left))
     return replace(first, table=table, cautions=(*doubtful, *first.cautions))
 
@@ -404,13 +411,13 @@ def _logistic(
         x = [f.main[name] for f in having]
         title = f"Logistic regression of slip on {quantity_name(name)}"
         rows: list[tuple[Cell, ...]] = []
-        cautions: list[str] = []
+        cautions: list[Message] = []
         best: statistics.LogisticFit | statistics.ClusteredFit | None = None
         for method in ("maximum_likelihood", "firth"):
             try:
                 fit = statistics.logistic_regression(y, {name: x}, method=method)
             except UnderfootError as error:
-                cautions.append(f"{method.replace('_', ' ')}: {error.what}")
+                cautions.append(Remark.of(method.replace("_", " "), error.what))
                 continue
             best = best or fit
             cautions += fit.warnings
@@ -420,7 +427,7 @@ def _logistic(
         persons = persons_of(having, subject)
         warning = statistics.independence_warning(persons)
         if warning:
-            cautions += [*warning, "read the last line, errors by person"]
+            cautions += [*warning, Message("read the last line, errors by person")]
             try:
                 best = gee = statistics.clustered_logistic(y, {name: x}, persons)
                 c = gee[name]
@@ -428,7 +435,7 @@ def _logistic(
                 by_person = "estimating equations, errors by person"
                 rows.append((by_person, intercept, c.estimate, c.low, c.high, c.p))
             except UnderfootError as error:
-                cautions.append(f"estimating equations: {error.what}")
+                cautions.append(Remark.of("estimating equations", error.what))
         heads = ("method", "intercept", "slope", "95 % low", "95 % high", P_VALUE)
         note = (
             "Intervals of the first lines are profile likelihoods, p from likelihood ratios; those "
@@ -495,5 +502,5 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
         ]
     heads = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
     note = "Sensor passages of trials with a slip; ML is the distance without its sign."
-    caution = "Nine sensors of one slip are not independent: p values would be too small."
+    caution = Message("Nine sensors of one slip are not independent: p values would be too small.")
     return [finding("subsets", title, heads, made, note, (caution,))]

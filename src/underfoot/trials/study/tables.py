@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.core.remark import joined
+from underfoot.core.remark import Message, joined
 
 from .. import statistics
 from ..recording.measurement import MEAN_OF_STEPS
@@ -130,7 +130,7 @@ class Finding:
     name: str
     title: str
     table: Table
-    cautions: tuple[str, ...] = ()
+    cautions: tuple[Message, ...] = ()
     response: str = ""
     factor: str = ""
     marks: Mapping[str, str] = field(default_factory=dict)
@@ -141,7 +141,7 @@ class Finding:
 
     @classmethod
     def of_anova(
-        cls, anova: statistics.AnovaTable, cautions: tuple[str, ...] = (), *, outcome: str = ""
+        cls, anova: statistics.AnovaTable, cautions: tuple[Message, ...] = (), *, outcome: str = ""
     ) -> Self:
         """Return an analysis of variance as a finding."""
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
@@ -157,7 +157,7 @@ def finding(
     heads: Iterable[Column | str],
     rows: Iterable[Iterable[Cell]],
     note: str = "",
-    cautions: Sequence[str] = (),
+    cautions: Sequence[Message] = (),
 ) -> Finding:
     """Return a finding from the rows of its table."""
     table = Table.of(name, title, heads, rows, *filter(None, [note]))

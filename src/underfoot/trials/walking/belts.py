@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core.deprecation import renamed
+from underfoot.core.remark import Message
 
 from ..recording.axes import Direction, DirectionSource, walking_direction
-from ..recording.measurement import Choice
 from ..recording.plates import Contact
 from ..recording.signals import frames_between
 from ..recording.trial import Marker, Plate, Trial
@@ -42,9 +42,10 @@ class Belt:
         """Return the speed of the surface at a time (m/s)."""
         return float(np.linalg.norm(self.velocity(time)))
 
-    def speed_text(self, time: float) -> str:
+    def speed_text(self, time: float) -> Message:
         """Return the speed in words: "1.25 m/s (u 0.01 m/s, foot markers)"."""
-        return f"{self.speed(time):.2f} m/s (u {self.uncertainty:.2f} m/s, {self.source})"
+        values = {"speed": self.speed(time), "u": self.uncertainty, "source": self.source}
+        return Message("{speed:.2f} m/s (u {u:.2f} m/s, {source})", **values)
 
     words = renamed("words", "speed_text", gone="0.4")
 
@@ -65,9 +66,9 @@ class Belt:
     def direction(self, time: float) -> Direction:
         """Return the way of somebody who walks against the belt."""
         speed = self.speed(time)
-        way = "against the treadmill belt"
-        words = Choice(way, text=f"{way} ({speed:.2f} m/s, {self.source})")
-        return Direction(-self.velocity(time) / speed, DirectionSource.TREADMILL, words)
+        here = Message(" ({speed:.2f} m/s, {source})", speed=speed, source=self.source)
+        text = Message("against the treadmill belt{here}", here=here)
+        return Direction(-self.velocity(time) / speed, DirectionSource.TREADMILL, text)
 
 
 def belts_of(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.remark import Message, Remark
+from underfoot.core.remark import NOTHING, Message, Remark
 
 from ..recording.axes import Direction
 from ..recording.measurement import Flag
@@ -33,7 +33,7 @@ class Stance:
     contact: float
     toe_off: float
     peak: float
-    reason: str = ""
+    reason: Message = NOTHING
     side: str = "unknown"
     heel: str = ""
     direction: Direction = _UNKNOWN
@@ -235,7 +235,7 @@ def stances(walk: Walkway, *, threshold: float = CONTACT_FORCE) -> list[Stance]:
 
 def _reason(
     walk: Walkway, stance: Stance, others: list[Stance], usual_peak: float, feet: "_Feet"
-) -> str:
+) -> Message:
     plate, weight = feet.plate, walk.weight
     part = plate.force[stance.start : stance.stop]
     vertical = part @ walk.up
@@ -285,9 +285,7 @@ def _reason(
     outside = feet.outside(stance)
     if outside > _OUTSIDE:
         return Remark(
-            "a partial hit",
-            "the heel stands {way:.0f} mm outside the plate",
-            way=1e3 * outside,
+            "a partial hit", "the heel stands {way:.0f} mm outside the plate", way=1e3 * outside
         )
     if stance.walking is None:
         return Remark.of("no walking direction", stance.direction.explanation)
@@ -296,38 +294,46 @@ def _reason(
     braking = -float(np.minimum(along[: len(along) // 2], 0.0).sum()) / plate.rate
     if braking < 0.01 * stance.peak * stance.duration:
         return Remark("not a heel-first step", "no braking in its first half")
-    return ""
+    return NOTHING
 
 
 @of_walkway
-def no_contact_reason(walk: Walkway) -> str:
+def no_contact_reason(walk: Walkway) -> Message:
     """Return why a trial has no contact with a force plate: which of four causes it is."""
     trial = walk.trial
     usable = [plate for plate in trial.plates if plate.usable]
     if usable:
         peak = max(float(np.nanmax(plate.force @ walk.up, initial=0.0)) for plate in usable)
-        rates = ", ".join(sorted({f"{plate.rate:g} Hz" for plate in usable}))
-        return (
-            f"nobody steps on a force plate: the largest vertical force is {peak:.3g} N and a step "
-            f"needs {5 * CONTACT_FORCE:g} N for 30 ms (at {rates}; is the unit right?)"
+        return Message(
+            "nobody steps on a force plate: the largest vertical force is {peak:.3g} N and a step "
+            "needs {least:g} N for 30 ms (at {rates}; is the unit right?)",
+            peak=peak,
+            least=5 * CONTACT_FORCE,
+            rates=sorted({f"{plate.rate:g} Hz" for plate in usable}),
         )
-    problems = [f"{plate.name}: {plate.problem}" for plate in trial.plates if plate.problem]
+    problems = [Remark.of(plate.name, plate.problem) for plate in trial.plates if plate.problem]
     if problems:
-        return "no force plate can be used: " + "; ".join(problems)
-    names = ", ".join(list(trial.channels)[:8])
+        return Message("no force plate can be used: {problems:; }", problems=problems)
+    names = list(trial.channels)[:8]
     if any("cof" in name.casefold() or "friction" in name.casefold() for name in trial.channels):
-        return f"a log of friction ({names}) without force plates: choose a protocol for testers"
+        return Message(
+            "a log of friction ({names}) without force plates: choose a protocol for testers",
+            names=names,
+        )
     if names:
-        return f"no columns are recognised as force plates ({names}): name them in a profile"
-    return "the file holds no force plate"
+        return Message(
+            "no columns are recognised as force plates ({names}): name them in a profile",
+            names=names,
+        )
+    return Message("the file holds no force plate")
 
 
-def _two_feet(stance: Stance, feet: "_Feet") -> str:
+def _two_feet(stance: Stance, feet: "_Feet") -> Message:
     if {"left", "right"} <= set(feet.on_plate(stance)):
         return Message("both heels are on the plate")
     plate, way, up = feet.plate, stance.walking, feet.up
     if plate.centre_of_pressure is None or way is None:
-        return ""
+        return NOTHING
     part = slice(stance.start, stance.stop)
     time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
     carried = np.outer(time - stance.contact, feet.surface(stance))
@@ -335,7 +341,7 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
     inside = place[plate.force[part] @ up > 0.2 * stance.peak]
     inside = inside[np.isfinite(inside).all(axis=1)]
     if len(inside) < 10:
-        return ""
+        return NOTHING
     along = float(np.ptp(inside @ way))
     sideways = float(np.ptp(inside @ np.cross(up, way)))
     # A foot set down at an angle to the path lets the centre of pressure move across.
@@ -347,7 +353,7 @@ def _two_feet(stance: Stance, feet: "_Feet") -> str:
             along=1e3 * along,
             sideways=1e3 * sideways,
         )
-    return ""
+    return NOTHING
 
 
 class _Edges:

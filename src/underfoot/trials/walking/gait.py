@@ -9,7 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.remark import Message
+from underfoot.core.remark import NOTHING, Message
 
 from ..recording.axes import Ramp
 from ..recording.measurement import Flag, Measurement, remark
@@ -26,14 +26,16 @@ from .step_features import judged_features
 from .walkway import Walkway, of_walkway
 
 PEAKS = {
-    "largest-local-maximum": "largest local maximum",
-    "first-local-maximum": "first local maximum",
-    "after-10-percent": 'largest local maximum after 10 % of stance (the classical "peak 3")',
-    "plain-maximum": "largest value, local maximum or not",
+    "largest-local-maximum": Message("largest local maximum"),
+    "first-local-maximum": Message("first local maximum"),
+    "after-10-percent": Message(
+        'largest local maximum after 10 % of stance (the classical "peak 3")'
+    ),
+    "plain-maximum": Message("largest value, local maximum or not"),
 }
 SHEARS = {
-    "resultant": "resultant of both shear components",
-    "anterior-posterior": "shear along the walking direction only",
+    "resultant": Message("resultant of both shear components"),
+    "anterior-posterior": Message("shear along the walking direction only"),
 }
 _TILT = math.radians(1.0)  # plates are levelled better than that; it shifts the ratio by 0.017
 
@@ -72,18 +74,19 @@ class RcofDefinition:
         kinds = set(FILTERS) - {"none", self.filter.kind} if self.filter.kind != "none" else ()
         return [replace(self.filter, kind=kind) for kind in kinds]
 
-    def conventions(self) -> dict[str, str]:
-        """Return the choices in words."""
-        share = self.gate_body_weight
-        gate = f"{self.gate:g} N" if share is None else f"{100 * share:g} % of body weight"
-        direction = "while the reaction on the foot points backward (foot pushes forward)"
+    def conventions(self) -> dict[str, Message]:
+        """Return the choices, a line each."""
+        gate = Message("{force:g} N", force=self.gate)
+        if self.gate_body_weight is not None:
+            gate = Message("{share:g} % of body weight", share=100 * self.gate_body_weight)
+        backward = Message("while the reaction on the foot points backward (foot pushes forward)")
         return {
-            "filter": str(self.filter),
-            "gate": f"normal force above {gate}",
+            "filter": self.filter.description,
+            "gate": Message("normal force above {gate}", gate=gate),
             "shear": SHEARS[self.shear],
             "peak": PEAKS[self.peak],
-            "direction": direction if self.braking else "any",
-            "searched": f"first {100 * self.part:g} % of the stance",
+            "direction": backward if self.braking else Message("any"),
+            "searched": Message("first {share:g} % of the stance", share=100 * self.part),
         }
 
 
@@ -186,25 +189,27 @@ def required_friction(
     }
     slip: Slip | None = None
 
-    def without(reason: str) -> RequiredFriction:
+    def without(reason: Message) -> RequiredFriction:
         missing, empty = Measurement.not_estimated("rcof", reason, conventions=choices), np.empty(0)
         return RequiredFriction(missing, stance, empty, empty, empty, slip=slip)
 
     if not stance.accepted or stance.walking is None:
-        return without(stance.reason or "no walking direction")
+        return without(stance.reason or Message("no walking direction"))
     if checked and stance.heel:
         up, forward = step.surface  # a heel slides along it
         slip = heel_slip(step.heel, stance.contact, up=up, walking=forward, leaves=stance.toe_off)
         if slip.slides:
-            peak, way = slip.peak_speed.value or 0.0, 1e3 * (slip.distance.value or 0.0)
-            return without(
-                f"the heel slides at {peak:.2f} m/s over {way:.0f} mm: the ratio is available "
-                "friction (ACOF), not required"
+            text = Message(
+                "the heel slides at {peak:.2f} m/s over {way:.0f} mm: the ratio is available "
+                "friction (ACOF), not required",
+                peak=slip.peak_speed.value or 0.0,
+                way=1e3 * (slip.distance.value or 0.0),
             )
+            return without(text)
     gate = definition.gate
     if definition.gate_body_weight is not None:
         if weight is None:
-            return without("the gate is a share of body weight and the mass is not known")
+            return without(Message("the gate is a share of body weight and the mass is not known"))
         gate = definition.gate_body_weight * weight.newtons
     speed = step.speed if checked else None
     features = judged_features(step) if checked else {}
@@ -214,15 +219,16 @@ def required_friction(
     try:
         curves = _curves(step.filtered_force[definition.filter], step.surface, definition.shear)
     except DataError as error:
-        return without(error.what)
+        return without(Message.plain(error.what))
     normal, ratio, along = curves
     time = plate.start + np.arange(stance.start, stance.stop) / plate.rate
     passed = np.flatnonzero(normal > gate)
     if not len(passed):
-        return without(f"the normal force never passes {gate:.0f} N")
+        return without(Message("the normal force never passes {gate:.0f} N", gate=gate))
     at = _peak(definition, ratio, _allowed(definition, normal, along, gate))
     if at is None:
-        return without(f"no {PEAKS[definition.peak]} while the gate is passed")
+        text = Message("no {peak} while the gate is passed", peak=PEAKS[definition.peak])
+        return without(text)
     value = float(ratio[at])
     flags = plate.flags + stance.flags + _tilt_flags(step.slope, axes.ramp)
     after = 1e3 * (at - passed[0]) / plate.rate
@@ -232,7 +238,7 @@ def required_friction(
                 "the peak lies {time:.0f} ms after the gate: the gate may have made it", time=after
             ),
         )
-    uncertainty, parts = None, "not estimated"
+    uncertainty, parts = None, Message("not estimated")
     if checked:
         levels = unloaded_levels(step)
         flags += step_flags(step, definition.filter, features, levels)
@@ -249,7 +255,8 @@ def required_friction(
                 filtering.append(float(curve[top]))
         baseline = baseline_error(levels, step.surface[0], float(normal[at]), value)
         uncertainty, parts = _uncertainty(value, baseline, filtering, plate.accuracy)
-    unasked, choices = "" if checked else "not asked for", {**choices, "uncertainty": parts}
+    unasked = NOTHING if checked else Message("not asked for")
+    choices["uncertainty"] = parts
     once = tuple(dict.fromkeys(flags))
     measurement = Measurement(
         "rcof", value, "1", uncertainty, unasked, flags=once, conventions=choices
@@ -315,8 +322,8 @@ def _curves(
 
 def _uncertainty(
     value: float, baseline: float, readings: Sequence[float], accuracy: PlateAccuracy
-) -> tuple[float, str]:
-    """Return the standard uncertainty of one step's RCOF ``value``, and its parts in words.
+) -> tuple[float, Message]:
+    """Return the standard uncertainty of one step's RCOF ``value``, and a line of its parts.
 
     Baseline: the largest effect of the unloaded level before or after the step. Filter: the range
     of the ``readings`` by the four filters that "4th order Butterworth" can mean, as a rectangle.
@@ -324,12 +331,17 @@ def _uncertainty(
     """
     plate = math.hypot(math.sqrt(2.0) * accuracy.gain * value, accuracy.crosstalk) / math.sqrt(3.0)
     filtering = (max(readings) - min(readings)) / math.sqrt(12.0)
-    words = (
-        f"baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate "
-        f"{plate:.4f} (gain {100 * accuracy.gain:g} %, crosstalk {100 * accuracy.crosstalk:g} "
-        f"%, {accuracy.source})"
+    parts = Message(
+        "baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate {plate:.4f} "
+        "(gain {gain:g} %, crosstalk {crosstalk:g} %, {source})",
+        baseline=baseline,
+        filtering=filtering,
+        plate=plate,
+        gain=100 * accuracy.gain,
+        crosstalk=100 * accuracy.crosstalk,
+        source=accuracy.source,
     )
-    return math.hypot(baseline, filtering, plate), words
+    return math.hypot(baseline, filtering, plate), parts
 
 
 def _allowed(

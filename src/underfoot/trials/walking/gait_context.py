@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from underfoot.core.remark import Message
+from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, frames_between, low_passed
@@ -173,15 +173,15 @@ class SlipCourse:
 
     ``body`` is "recovery", "fall" or empty, with the reason in ``body_reason``; ``toe_slip`` the
     way of the toe between 40 and 90 % of a stance whose heel did not slide, ``trailing_slip``
-    that of the other foot while it stood, between contact and the slip's end; ``misstep`` says in
-    words how the foot came down wrongly.
+    that of the other foot while it stood, between contact and the slip's end; ``misstep`` says
+    how the foot came down wrongly.
     """
 
     body: str = ""
-    body_reason: str = ""
+    body_reason: Message = NOTHING
     toe_slip: float | None = None
     trailing_slip: float | None = None
-    misstep: str = ""
+    misstep: Message = NOTHING
     flags: tuple[Flag, ...] = ()
 
 
@@ -220,20 +220,20 @@ def _toe_flags(way: float | None, limits: OutcomeLimits) -> tuple[Flag, ...]:
     return (Flag("toe slip", text, True, way, limits.microslip, "m"),)
 
 
-def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
+def _body(walk: Walkway, slip: Slip) -> tuple[str, Message]:
     """Recovery or fall by the height of the pelvis's markers."""
     if not slip.slides:
-        return "", "no slide to recover from"
+        return "", Message("no slide to recover from")
     markers = [
         marker
         for name, marker in walk.trial.markers.items()
         if (name in walk.pelvis or _PELVIS.search(name)) and marker.times is None
     ]
     if not markers:
-        return "", "no marker of the pelvis"
+        return "", Message("no marker of the pelvis")
     markers = [m for m in markers if len(m.positions) == len(markers[0].positions)]
     if all(m.missing.all() for m in markers):
-        return "", "no marker of the pelvis is seen"
+        return "", Message("no marker of the pelvis is seen")
     time = markers[0].time
     near = frames_between(time, slip.contact - 0.6, slip.contact + _AFTER)
     time = time[near]
@@ -244,14 +244,18 @@ def _body(walk: Walkway, slip: Slip) -> tuple[str, str]:
     before = height[(time > slip.contact - 0.6) & (time < slip.contact)]
     after = height[(time >= slip.contact) & (time < slip.contact + _AFTER)]
     if not (np.isfinite(before).any() and np.isfinite(after).any()):
-        return "", "the pelvis is not seen before and after contact"
+        return "", Message("the pelvis is not seen before and after contact")
     usual, lowest = float(np.nanmedian(before)), float(np.nanmin(after))
-    share = f"the pelvis goes down to {100 * lowest / usual:.0f} % of its height"
+    down = Message(
+        "the pelvis goes down to {share:.0f} % of its height", share=100 * lowest / usual
+    )
     if lowest < FALL * usual:
-        return "fall", f"{share}; a fall below {100 * FALL:.0f} % (assumed)"
+        return "fall", Message(
+            "{down}; a fall below {limit:.0f} % (assumed)", down=down, limit=100 * FALL
+        )
     if float(after[np.isfinite(after)][-1]) < _RISEN * usual:
-        return "", f"{share} and is not up again when the record ends"
-    return "recovery", share
+        return "", Message("{down} and is not up again when the record ends", down=down)
+    return "recovery", down
 
 
 def _toe_way(step: Step) -> float | None:
@@ -314,8 +318,8 @@ def _bridged_between(
     return time[inside], bridged(path, gap)[0][inside]
 
 
-def _misstep(step: Step) -> str:
+def _misstep(step: Step) -> Message:
     angle = _foot_angle(step)
     if angle is not None and angle[1][0] < _TOE_FIRST:
-        return f"the toe comes down first ({np.degrees(angle[1][0]):.0f} deg)"
-    return ""
+        return Message("the toe comes down first ({angle:.0f} deg)", angle=np.degrees(angle[1][0]))
+    return NOTHING

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from underfoot.core.remark import Message, Remark
+from underfoot.core.remark import NOTHING, Message, Remark
 
 from ..recording.measurement import Flag, remark
 
@@ -132,7 +132,7 @@ def impossible(
     known: tuple[Reference, ...] | None = None,
     *,
     speed: float | None = None,
-) -> str:
+) -> Message:
     """Return why a step at a ``speed`` (m/s) can't be one of walking, or nothing."""
     for one in references() if known is None else known:
         value = features.get(one.feature)
@@ -144,7 +144,7 @@ def impossible(
                 value=one.shown(value),
                 usual=one.shown(one.mean),
             )
-    return ""
+    return NOTHING
 
 
 _SHEAR_GAIN = ("slope of the force line", "both impulses")

@@ -8,19 +8,22 @@ from functools import lru_cache
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.remark import Message
+from underfoot.core.remark import NOTHING, Message
 
-from ..recording.measurement import Choice, Flag, Measurement, caution
+from ..recording.measurement import Flag, Measurement, caution
 from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
 from ..recording.trial import Marker, once_a_record
 from .events import Stance
 from .step import Step
 from .walkway import Walkway, of_walkway
 
-PLANES = {"horizontal": "speed in the plane of the floor", "3d": "speed in three dimensions"}
+PLANES = {
+    "horizontal": Message("speed in the plane of the floor"),
+    "3d": Message("speed in three dimensions"),
+}
 DERIVATIVES = {
-    "differences": "central differences of the filtered path",
-    "savitzky-golay": "Savitzky-Golay derivative, 3rd order, window of the same cutoff",
+    "differences": Message("central differences of the filtered path"),
+    "savitzky-golay": Message("Savitzky-Golay derivative, 3rd order, window of the same cutoff"),
 }
 SLIP_SPEED = 0.2  # m/s, the grant report's (G.6.1)
 _JUMP = 0.01  # m off the path of the frames around it; no marker does that for a frame or two
@@ -58,18 +61,22 @@ class SlipDefinition:
             words = "threshold, gap, prominence and heel lift can't be negative"
             raise InputError(words, where="slip")
 
-    def conventions(self) -> dict[str, str]:
-        """Return the choices in words."""
-        plain = self.derivative == "differences"
+    def conventions(self) -> dict[str, Message]:
+        """Return the choices, a line each."""
+        cutoff = Message("cutoff {cutoff:g} Hz", cutoff=self.filter.cutoff)
         return {
             "speed": PLANES[self.plane],
-            "marker filter": str(self.filter) if plain else f"cutoff {self.filter.cutoff:g} Hz",
+            "marker filter": (
+                self.filter.description if self.derivative == "differences" else cutoff
+            ),
             "derivative": DERIVATIVES[self.derivative],
-            "slip start": "first local minimum of the heel's speed after contact",
-            "gaps": f"bridged up to {1e3 * self.longest_gap:g} ms",
-            "prominence": f"minima stand out by {self.prominence:g} m/s",
-            "heel lift": f"search ends when the heel is {1e3 * self.heel_lift:g} mm up",
-            "threshold": f"slip above {self.threshold:g} m/s",
+            "slip start": Message("first local minimum of the heel's speed after contact"),
+            "gaps": Message("bridged up to {gap:g} ms", gap=1e3 * self.longest_gap),
+            "prominence": Message("minima stand out by {least:g} m/s", least=self.prominence),
+            "heel lift": Message(
+                "search ends when the heel is {lift:g} mm up", lift=1e3 * self.heel_lift
+            ),
+            "threshold": Message("slip above {limit:g} m/s", limit=self.threshold),
         }
 
 
@@ -328,7 +335,7 @@ def slip(
     definition = definition or SlipDefinition()
     choices = definition.conventions()
 
-    def without(reason: str, motion: HeelMotion | None = None) -> Slip:
+    def without(reason: Message, motion: HeelMotion | None = None) -> Slip:
         start, speed, distance, margin = (
             Measurement.not_estimated(name, reason, unit=unit, flags=flags, conventions=choices)
             for name, unit in _MEASURED.items()
@@ -336,26 +343,32 @@ def slip(
         return Slip(contact, start, math.nan, speed, distance, margin, None, motion)
 
     if marker is None:
-        return without("there is no heel marker")
+        return without(Message("there is no heel marker"))
     motion = heel_motion(marker, up, definition)
     first = int(np.searchsorted(motion.time, contact))
     if first >= len(motion.time) - 2 or contact < motion.time[0]:
-        return without("the contact lies outside the marker's record", motion)
+        return without(Message("the contact lies outside the marker's record"), motion)
     last, ended = _window_end(motion, first, up, leaves, definition.heel_lift)
     lost = ~np.isfinite(motion.speed[first : last + 1])
     if lost.any():
         when = 1e3 * (motion.time[first + int(np.argmax(lost))] - contact)
         if lost[: max(3, round(0.1 * marker.rate))].any():
-            why = f" ({marker.note})" if marker.note else ""
-            return without(f"the heel marker is missing {when:.0f} ms after contact{why}", motion)
+            why = Message(" ({note})", note=marker.note) if marker.note else NOTHING
+            missing = Message(
+                "the heel marker is missing {time:.0f} ms after contact{why}", time=when, why=why
+            )
+            return without(missing, motion)
         last = first + int(np.argmax(lost)) - 1
-        ended = f"the marker is lost {when:.0f} ms after contact"
+        ended = Message("the marker is lost {time:.0f} ms after contact", time=when)
     if last - first < 4:
-        return without("fewer than five frames of the heel after contact", motion)
+        return without(Message("fewer than five frames of the heel after contact"), motion)
     reach = round(0.5 * marker.rate / definition.filter.cutoff)
     minima = _minima(motion.speed, first, last, reach, definition.prominence)
     if not len(minima):
-        return without(f"the heel's speed has no local minimum after contact until {ended}", motion)
+        none = Message(
+            "the heel's speed has no local minimum after contact until {ended}", ended=ended
+        )
+        return without(none, motion)
     if minima[0] < first:
         early = 1e3 * (contact - motion.time[minima[0]])
         flags += (
@@ -365,7 +378,9 @@ def slip(
             ),
         )
     begin = int(minima[0])
-    stop, by = (int(minima[1]), "second local minimum") if len(minima) > 1 else (last, ended)
+    stop, by = last, ended
+    if len(minima) > 1:
+        stop, by = int(minima[1]), Message("second local minimum")
     top = begin + int(np.argmax(motion.speed[begin : stop + 1]))
     peak = float(motion.speed[top])
     choices["search ends"] = by
@@ -410,9 +425,12 @@ def slip(
         )
         flags += (Flag("speed against distance", text, True, peak, definition.threshold, "m/s"),)
     start, start_uncertainty, shift = _slip_start(motion, begin, definition.filter.cutoff)
-    less = choices["slip start"] + ", less {:.1f} ms that the filter shifts it"
-    choices["slip start"] = Choice(less, 1e3 * shift)
-    choices["uncertainty"] = (
+    choices["slip start"] = Message(
+        "{start}, less {shift:.1f} ms that the filter shifts it",
+        start=choices["slip start"],
+        shift=1e3 * shift,
+    )
+    choices["uncertainty"] = Message(
         "marker noise through the filter; for the start, the filter's shift too"
     )
 
@@ -505,16 +523,19 @@ def slip_of(
 
 def _window_end(
     motion: HeelMotion, first: int, up: np.ndarray, leaves: float | None, heel_lift: float
-) -> tuple[int, str]:
-    last, ended = len(motion.time) - 1, "the record ends"
+) -> tuple[int, Message]:
+    last, ended = len(motion.time) - 1, Message("the record ends")
     if leaves is not None and leaves < motion.time[-1]:
-        last, ended = int(np.searchsorted(motion.time, leaves)), "the foot leaves the plate"
+        last, ended = (
+            int(np.searchsorted(motion.time, leaves)),
+            Message("the foot leaves the plate"),
+        )
     height = motion.position[first : last + 1] @ up
     known = height[np.isfinite(height)]
     if len(known):
         lifted = height - np.minimum.accumulate(np.nan_to_num(height, nan=np.inf)) > heel_lift
         if lifted.any():
-            last, ended = first + int(np.argmax(lifted)), "the heel lifts"
+            last, ended = first + int(np.argmax(lifted)), Message("the heel lifts")
     return last, ended
 
 

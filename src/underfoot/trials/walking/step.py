@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.axes import marker_velocity
 from ..recording.plates import plate_up
 from ..recording.signals import LowPass, low_passed_part
@@ -64,13 +66,13 @@ class Step:
         return self.walk.axes.ramp.surface(self.walk.up, self.stance.walking)
 
     @property
-    def surface_text(self) -> dict[str, str]:
+    def surface_text(self) -> dict[str, Message]:
         """The surface (level, a ramp, a belt) and a belt's speed, in words."""
         belt, ground = self.belt, self.walk.axes.ramp.description
         if belt is None:
             return {"surface": ground}
         text = belt.speed_text(self.stance.contact)
-        return {"surface": f"treadmill belt, {ground}", "belt": text}
+        return {"surface": Message("treadmill belt, {ground}", ground=ground), "belt": text}
 
     @cached_property
     def slope(self) -> float | None:
