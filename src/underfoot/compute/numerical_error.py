@@ -47,6 +47,14 @@ don't tell. For 95 % the worst of sixteen motions needs 0.0008 of the film (``py
 history_steps``), the worst of fifteen others 0.0025."""
 GRID_OF_CONTACT = 1.1
 """Factor by which cells alone raise the friction of the contact at most."""
+NAMES = {
+    "cof": Message("cof"),
+    "fluid_load": Message("fluid load"),
+    "fluid_load_sensor": Message("fluid load sensor"),
+    "peak_fluid_pressure": Message("peak fluid pressure"),
+    "peak_fluid_pressure_sensor": Message("peak fluid pressure sensor"),
+}
+"""What a number with a numerical error is called."""
 CHECKED = 2 * RESOLVED
 """Cells along the sliding of a grid check, at least."""
 
@@ -92,9 +100,8 @@ class NumericalErrors:
         """Return the errors in one sentence."""
 
         def parts(errors: Mapping[str, float]) -> list[Message]:
-            names = {name: name.replace("_", " ") for name in errors}
             return [
-                Message("{name} ± {error}", name=names[name], error=_error(error, values[name]))
+                Message("{name} ± {error}", name=NAMES[name], error=_error(error, values[name]))
                 for name, error in errors.items()
             ]
 

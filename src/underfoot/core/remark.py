@@ -175,7 +175,9 @@ def kind_of(line: Any) -> Any:
 
 def of_several(lines: Sequence[Message]) -> Message:
     """Return one line for several of one kind: "3 ms" and "9 ms" give "3 to 9 ms"."""
-    first = lines[0]
+    first = Message.plain(lines[0])
+    if first is not lines[0]:
+        return first
     values = {
         name: "" if name == HERE else _span([line.values[name] for line in lines], spec)
         for name, spec in _specs(first.code).items()
