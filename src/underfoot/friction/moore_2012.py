@@ -106,7 +106,9 @@ class StribeckLaw(UncertainInputs):
                 where="friction.tau_hydro",
                 remedy="Choose friction.model = boundary, or give tau_hydro and cof_asymptote",
             )
-        notes = [f"Friction was measured on {friction.pair}."] if friction.pair else []
+        notes: list[Message] = []
+        if friction.pair:
+            notes.append(Message("Friction was measured on {pair}.", pair=friction.pair))
         if friction.cof_boundary.assumed:
             level = Message("COF_BL of {fluid} is assumed.", fluid=friction.fluid)
             notes.append(Message.plain(friction.cof_boundary.note or level))

@@ -463,7 +463,7 @@ class PairContactLaw(UncertainInputs):
     @property
     def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind."""
-        words: list[Message] = [*self.draws.notes]
+        words: list[Message] = [*map(Message.plain, self.draws.notes)]
         if LABORATORY not in self.draws.errors:
             words.append(
                 Remark(
