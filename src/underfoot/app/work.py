@@ -162,13 +162,14 @@ def compared(
     """Return the comparison of stored results, and its words and tables beside that of numbers."""
     # a result has the name of its folder: a variant that was renamed keeps what was computed
     results = [replace(Result.load(folder), name=Path(folder).name) for folder in folders]
-    found = compare(*results, separate=separate, progress=progress)
-    words = presented(found)
-    return found, {
+    comparison = compare(*results, separate=separate, progress=progress)
+    words = presented(comparison)
+    return comparison, {
         "headline": words["headline"],
         "cautions": words["cautions"],
-        "tables": words["tables"][1 + bool(found.ranking) :],  # numbers stand in a table of rows
-        "open": found.order is not None and found.order.verdict is Verdict.OPEN,
+        # numbers stand in a table of rows
+        "tables": words["tables"][1 + bool(comparison.ranking) :],
+        "open": comparison.order is not None and comparison.order.verdict is Verdict.OPEN,
     }
 
 

@@ -73,9 +73,11 @@ class Study:
 
     def recording(self, file: str) -> Recording:
         """Return the recording of a result, which is called like it or like one of its runs."""
-        for one in study_folder(self.folder, **self.options).recordings:
-            if file == one.name or file.startswith((f"{one.name} #", f"{one.name}: ")):
-                return one
+        for recording in study_folder(self.folder, **self.options).recordings:
+            if file == recording.name or file.startswith(
+                (f"{recording.name} #", f"{recording.name}: ")
+            ):
+                return recording
         raise InputError(f'"{file}" is not in the folder any more', where="trials")
 
     def result(self, recording: Recording, file: str, **how: Any) -> FileResult:
@@ -83,7 +85,7 @@ class Study:
         results = recording_results(
             self.folder, recording.name, self.protocol, **self.options, **how
         )
-        return next((one for one in results if one.file == file), results[0])
+        return next((result for result in results if result.file == file), results[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,12 +257,12 @@ def _cards(analysis: FolderAnalysis) -> list[dict[str, Any]]:
             plots.setdefault(file, tile_svg(own, sheet))
     return [
         {
-            **_summary(one),
-            "edits": len(one.edits),
-            "noted": ", ".join(v for v in one.conditions.values() if isinstance(v, str)),
-            "svg": plots.get(one.file, ""),
+            **_summary(result),
+            "edits": len(result.edits),
+            "noted": ", ".join(v for v in result.conditions.values() if isinstance(v, str)),
+            "svg": plots.get(result.file, ""),
         }
-        for one in analysis.files
+        for result in analysis.files
     ]
 
 

@@ -149,13 +149,13 @@ class Compound(Presentable):
 
     def tables(self) -> tuple[Table, ...]:
         """Return moduli, loss tangent by frequency, Prony terms and shift factors."""
-        found = [self.table()]
+        tables = [self.table()]
         if self.spectrum is not None:
-            found.append(self._losses())
-            found += [self._terms()] if len(self.spectrum) <= MOST_TERMS else []
+            tables.append(self._losses())
+            tables += [self._terms()] if len(self.spectrum) <= MOST_TERMS else []
         if self.shifts is not None:
-            found.append(self._shifts())
-        return tuple(found)
+            tables.append(self._shifts())
+        return tuple(tables)
 
     def _losses(self) -> Table:
         """Return storage modulus and loss tangent at whole decades, with the 95 % band of a fit."""
@@ -194,14 +194,14 @@ class Compound(Presentable):
 
     def _shifts(self) -> Table:
         assert self.shifts is not None
-        found = self.shifts
-        errors = zip(found.log10_shift_factors, found.log10_errors, strict=True)
+        table = self.shifts
+        errors = zip(table.log10_shift_factors, table.log10_errors, strict=True)
         rows = [
             (_celsius(kelvin), f"{shift:.2f} ± {error:.2f}")
-            for kelvin, (shift, error) in zip(found.temperatures.tolist(), errors, strict=True)
+            for kelvin, (shift, error) in zip(table.temperatures.tolist(), errors, strict=True)
         ]
-        at = _celsius(found.reference_temperature)
-        title = f"Shift factors to {at} ({found.law})"
+        at = _celsius(table.reference_temperature)
+        title = f"Shift factors to {at} ({table.law})"
         return Table(title, ("Temperature", "log10 of the shift factor"), rows)
 
     def data_tables(self) -> dict[str, Table]:
@@ -368,12 +368,12 @@ def compound_from_files(
     relaxation, relaxed = None, None
     readings = curves or [relaxation_of(test) for test in compressions]
     if readings:
-        relaxation, own, own_at = _relaxed(readings, temperature)
+        relaxation, table, own_at = _relaxed(readings, temperature)
         relaxed = fit_relaxation(
             relaxation.time, relaxation.modulus, source="relaxation of " + _names(files)
         )
         if fit is None:
-            fit, shifts, at = relaxed, own, own_at
+            fit, shifts, at = relaxed, table, own_at
         else:
             notes.append(_beside(fit, relaxed))
     spectrum = prony if fit is None else fit.spectrum
@@ -528,7 +528,13 @@ def _relaxed(
         low = max(curve.time[0] for curve in curves)
         high = min(curve.time[-1] for curve in curves)
         time = np.geomspace(low, high, READINGS)
-        means = np.mean([np.interp(time, one.time, one.modulus) for one in curves], axis=0)
+        means = np.mean(
+            [
+                np.interp(time, relaxation_curve.time, relaxation_curve.modulus)
+                for relaxation_curve in curves
+            ],
+            axis=0,
+        )
         mean = RelaxationCurve(time, means, curves[0].temperature, f"mean of {len(curves)} tests")
         return mean, None, mean.temperature
     at = _reference([curve.temperature for curve in curves], temperature)

@@ -290,13 +290,14 @@ def calibrated_pair(
     names = "; ".join(f"{reading.case.name}: {reading.cof:g}" for reading in readings)
     source = f"{start.source}; calibrated to readings of one laboratory ({names})"
     levels = (0.025, 0.5, 0.975)
-    kept = replace(wide.rows(rows), source=source)
+    pair_draws = replace(wide.rows(rows), source=source)
     spreads = {
-        name: (float(np.std(errors[name])), float(np.std(kept.errors[name]))) for name in words
+        name: (float(np.std(errors[name])), float(np.std(pair_draws.errors[name])))
+        for name in words
     }
     return PairCalibration(
         tuple(readings),
-        kept,
+        pair_draws,
         np.quantile(predicted, levels, axis=1).T,
         np.quantile(predicted[:, rows], levels, axis=1).T,
         tuple((words[name], *each) for name, each in spreads.items() if each[0] > 0),

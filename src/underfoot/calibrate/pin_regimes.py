@@ -80,13 +80,13 @@ def pin_regimes(
     ratio = lambda_ratio(film.minimum, rough[0] or 0.0, rough[1] or 0.0)
     share = fluid_load_share(film.central, case.rough_contact.build(context), pressure)
     both = [compare_regimes(float(r), float(s)) for r, s in zip(ratio, share, strict=True)]
-    apart = next((one.why for one in both if not one.agree), "")
+    apart = next((comparison.why for comparison in both if not comparison.agree), "")
     return PinRegimes(
         speed=speed,
         lambda_ratio=ratio,
         fluid_share=share,
-        by_lambda=tuple(str(one.by_lambda) for one in both),
-        by_load_share=tuple(str(one.by_load_share) for one in both),
+        by_lambda=tuple(str(comparison.by_lambda) for comparison in both),
+        by_load_share=tuple(str(comparison.by_load_share) for comparison in both),
         why=apart,
     )
 

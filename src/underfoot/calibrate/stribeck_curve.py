@@ -121,25 +121,34 @@ def stribeck_curve(
         "speed": speed,
         "film_thickness": np.full(speed.shape, gap),
     }
-    found = law(**at)
+    parts = law(**at)
     rest = float(law(pressure, 1e-9, gap).adhesion)
-    left = found.adhesion / rest if rest > 0 else np.zeros(speed.shape)
+    left = parts.adhesion / rest if rest > 0 else np.zeros(speed.shape)
     spread = sampled_points(law, **at, fluid_inputs={"viscosity": fluid}, seed=case.numerics.seed)
-    own = next((one for one in measured_fluids(case.catalogue) if one.fluid == context.fluid), None)
-    measured = None if own is None else fluid_points(own, rq=0.0, speed=within)
+    friction = next(
+        (
+            measured_fluid
+            for measured_fluid in measured_fluids(case.catalogue)
+            if measured_fluid.fluid == context.fluid
+        ),
+        None,
+    )
+    measured = None if friction is None else fluid_points(friction, rq=0.0, speed=within)
     return StribeckCurve(
         label=label,
         law=law.name,
         viscosity=fluid.value,
         speed=speed,
-        parts={name: getattr(found, name) / pressure for name in PARTS},
+        parts={name: getattr(parts, name) / pressure for name in PARTS},
         interval=None if spread is None else (spread.low, spread.high),
         deviation=None if spread is None else spread.deviation,
         adhesion_left=left,
         regimes=pin_regimes(case, fluid.value, speed, pressure),
         points=None if measured is None else (measured.speed, measured.cof),
-        pair="" if own is None else own.pair,
-        notes=tuple(dict.fromkeys((*law.assumptions, *(str(one) for one in law.breaches(**at))))),
+        pair="" if friction is None else friction.pair,
+        notes=tuple(
+            dict.fromkeys((*law.assumptions, *(str(breach) for breach in law.breaches(**at))))
+        ),
     )
 
 

@@ -55,8 +55,8 @@ class Wear(Option):
         edges = ("edge_radius",) if is_bare(case) else ()
         if self.depth > 0:
             return edges
-        own = (name for name in type(self).model_fields if name not in Wear.model_fields)
-        return (*own, *edges)
+        generator = (name for name in type(self).model_fields if name not in Wear.model_fields)
+        return (*generator, *edges)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         yield from through_outsole(case, self.depth, f"{where}.depth")

@@ -110,9 +110,9 @@ def contact(
             raise InputError(f"{file} exists", where="--table", remedy=remedy)
 
         def made(progress: Progress) -> "ContactTable":
-            found = measured_table(surface, rubber, **given, progress=progress)
-            found.save(file)
-            return found
+            contact_table = measured_table(surface, rubber, **given, progress=progress)
+            contact_table.save(file)
+            return contact_table
 
         shared.answer(file.stem, made)
         if not shared.json:

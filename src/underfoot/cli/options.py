@@ -155,8 +155,8 @@ def sharing(
             shared = Shared(**{option.name: given.pop(option.name) for option in options})
             command(shared, **given)
 
-        _, *own = inspect.signature(command, eval_str=True).parameters.values()
-        vars(run)["__signature__"] = inspect.Signature([*own, *further])
+        _, *parameters = inspect.signature(command, eval_str=True).parameters.values()
+        vars(run)["__signature__"] = inspect.Signature([*parameters, *further])
         return run
 
     return decorate

@@ -211,7 +211,9 @@ def _deliver(
             text = studies_page(results, images, quick=any(r.quick for r in results))
             (staging / page).write_text(text, encoding="utf-8")
     if json:
-        content: Any = [one.to_dict() for result in results for one in result.judgements]
+        content: Any = [
+            judgement.to_dict() for result in results for judgement in result.judgements
+        ]
         _print_json(content if everything else results[0].to_dict())
     elif everything:
         _show_headline(results)

@@ -114,7 +114,7 @@ def stop(
     ``underfoot study run`` goes on from there.
     """
     chosen = _study(study, out)
-    working = sum(one["ended"] is None for one in chosen.store.sessions())
+    working = sum(session["ended"] is None for session in chosen.store.sessions())
     if not working:
         print(f"nobody works on the study in {chosen.store.folder}")
         return
@@ -171,10 +171,10 @@ def best(
 
     result = _study(study, out).result()
     designs = result.best(count)
-    chances = [result.higher_cof(one, other) for one, other in pairwise(designs)]
+    chances = [result.higher_cof(design, other) for design, other in pairwise(designs)]
     if json:
         known = {(one["design"], one["again"]): one for one in result.to_dict()["designs"]}
-        rows = [known[one.number, one.again] for one in designs]
+        rows = [known[design.number, design.again] for design in designs]
         for row, chance in zip(rows, [*chances, None], strict=False):
             row["higher_cof_than_next"] = chance
         print(json_text.dumps(rows, indent=2))

@@ -100,15 +100,15 @@ def analyse(
             progress=progress,
         )
         write_trials_report(analysis, out, details=details, processes=processes, progress=progress)
-    for one in analysis.files:
-        more = len(one.reasons) - _REASONS
-        reasons = [*one.reasons[:_REASONS], *([f"{more} more in the report"] if more > 0 else [])]
-        print(f"{one.verdict:<9} {one.file}" + (f": {'; '.join(reasons)}" if reasons else ""))
+    for file in analysis.files:
+        more = len(file.reasons) - _REASONS
+        reasons = [*file.reasons[:_REASONS], *([f"{more} more in the report"] if more > 0 else [])]
+        print(f"{file.verdict:<9} {file.file}" + (f": {'; '.join(reasons)}" if reasons else ""))
     for doubt in analysis.doubts:
         say(f"doubt: {doubt}")
     for note in (*analysis.notes, *analysis.study.notes):
         say(f"note: {note}")
-    verdicts = [one.verdict for one in analysis.files]
+    verdicts = [file.verdict for file in analysis.files]
     usable = len(verdicts) - verdicts.count(REFUSED)
     say(
         f"{usable} of {len(verdicts)} files usable, {verdicts.count(CAUTION)} with cautions; "

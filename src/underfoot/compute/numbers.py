@@ -231,12 +231,12 @@ def slip_probability(
         note=joined(
             Message(
                 "extrapolated: {quantity} = {value:.3f} is outside the tested {low:g} to {high:g}",
-                quantity=one.quantity,
-                value=one.low,
-                low=one.range.low,
-                high=one.range.high,
+                quantity=breach.quantity,
+                value=breach.low,
+                low=breach.range.low,
+                high=breach.range.high,
             )
-            for one in risk.breaches
+            for breach in risk.breaches
         ),
     )
     return probability, risk

@@ -93,20 +93,20 @@ class StatedEffects:
 
     def of(self, case: Case) -> StatedEffects:
         """Return the effects of what a changed case still states."""
-        still = {one.subject: one.path for one in stated_spreads(case)}
+        still = {spread.subject: spread.path for spread in stated_spreads(case)}
         return StatedEffects(
-            tuple(one for one in self.effects if one.subject in still),
+            tuple(effect for effect in self.effects if effect.subject in still),
             tuple(path for path in self.left_out if path in still.values()),
         )
 
     def draws(self, normal: Callable[[str], Array]) -> dict[str, dict[str, Array]]:
         """Return (n,) draws by path and name; ``normal`` as for one effect."""
-        return {one.path: one.draws(normal) for one in self.effects}
+        return {effect.path: effect.draws(normal) for effect in self.effects}
 
     def labels(self) -> dict[str, str]:
         """Return what was solved for, what changes nothing, and what is left out, in words."""
-        idle = [one.path for one in self.effects if not one.acts]
-        acting = [one.path for one in self.effects if one.acts]
+        idle = [effect.path for effect in self.effects if not effect.acts]
+        acting = [effect.path for effect in self.effects if effect.acts]
         told = {}
         if acting:
             told["stated_spreads"] = Message(
@@ -130,7 +130,7 @@ class StatedEffects:
         For the friction law, which would draw them once more. That of the viscosity stays: it is
         no input of the law.
         """
-        paths = [one.path for one in self.effects if one.path != VISCOSITY]
+        paths = [effect.path for effect in self.effects if effect.path != VISCOSITY]
         return case.replace({path: exactly(case, path) for path in paths}) if paths else None
 
 
@@ -214,18 +214,21 @@ def solved_effects(
         return StatedEffects()
     own = stepped(case)
     solved: dict[str, list[Numbers | None]] = {}
-    cases = {one.path: [_changed(case, change) for change in one.changes] for one in spreads}
+    cases = {
+        stated_spread.path: [_changed(case, change) for change in stated_spread.changes]
+        for stated_spread in spreads
+    }
     for path, ends in cases.items():
-        numbers = [None if own is None or one is None else stepped(one) for one in ends]
-        if not any(each is None and one for each, one in zip(numbers, ends, strict=True)):
+        numbers = [None if own is None or end is None else stepped(end) for end in ends]
+        if not any(each is None and end for each, end in zip(numbers, ends, strict=True)):
             solved[path] = [own, *numbers]
     rest = {path: ends for path, ends in cases.items() if path not in solved}
-    asked = [one for ends in rest.values() for one in ends if one is not None]
+    asked = [end for ends in rest.values() for end in ends if end is not None]
     if asked:
         begun, *answers = marched([case, *asked])
         later = iter(answers)
         for path, ends in rest.items():
-            solved[path] = [begun, *(None if one is None else next(later) for one in ends)]
+            solved[path] = [begun, *(None if end is None else next(later) for end in ends)]
     effects, left_out = [], []
     for spread in spreads:
         before, *after = solved.get(spread.path, [None])

@@ -28,8 +28,8 @@ FEWEST = 3
 
 def any_lost(rows: Iterable[str]) -> bool:
     """Return whether rows of plain numbers hold one that ``is_lost``."""
-    small = (found for row in rows if _TINY_END.search(row) for found in _TINY.finditer(row))
-    return any(float(found[0]) == 0.0 for found in small)
+    small = (match for row in rows if _TINY_END.search(row) for match in _TINY.finditer(row))
+    return any(float(match[0]) == 0.0 for match in small)
 
 
 def _closed(cell: str) -> str:
@@ -51,10 +51,10 @@ class NumberForm:
         '1075.5'
         """
         cell = cell.strip()
-        found = _NUMBER.fullmatch(_closed(plain_signs(cell)))
-        if found is None:
+        match = _NUMBER.fullmatch(_closed(plain_signs(cell)))
+        if match is None:
             return cell
-        sign, body, exponent = found.group(1), found.group(2), found.group(3) or ""
+        sign, body, exponent = match.group(1), match.group(2), match.group(3) or ""
         whole, _, rest = body.partition(self.decimal)
         mark = _OTHER[self.decimal]
         if mark in whole and self.thousands and _GROUPED[mark].fullmatch(whole):
@@ -135,10 +135,10 @@ def number_forms(columns: Sequence[Sequence[str]], where: str) -> list[NumberFor
         DataError: A sign that marks decimals and thousands in one column; numbers that nothing
             decides.
     """
-    found = [_Evidence.of(cells) for cells in columns]
-    decimals = set[str]().union(*(one.decimals for one in found))
-    groups = set[str]().union(*(one.groups for one in found))
-    return [_form(one, decimals, groups, where) for one in found]
+    evidences = [_Evidence.of(cells) for cells in columns]
+    decimals = set[str]().union(*(evidence.decimals for evidence in evidences))
+    groups = set[str]().union(*(evidence.groups for evidence in evidences))
+    return [_form(evidence, decimals, groups, where) for evidence in evidences]
 
 
 def _form(seen: _Evidence, decimals: set[str], groups: set[str], where: str) -> NumberForm:

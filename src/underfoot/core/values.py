@@ -63,6 +63,9 @@ class SourcedValue:
         numbers = {name: getattr(self, name) for name in ("value", "uncertainty", "numerical")}
         return replace(
             self,
-            **{name: None if one is None else factor * one for name, one in numbers.items()},
+            **{
+                name: None if number is None else factor * number
+                for name, number in numbers.items()
+            },
             interval=None if ends is None else (factor * ends[0], factor * ends[1]),
         )

@@ -45,7 +45,7 @@ class Machine:
 
 def this_machine(folder: Path) -> Machine:
     """Return what is free for a study in a folder, which may not be there yet."""
-    place = next(one for one in (folder, *folder.absolute().parents) if one.is_dir())
+    place = next(path for path in (folder, *folder.absolute().parents) if path.is_dir())
     memory = status_bytes("/proc/meminfo", "MemAvailable:")
     return Machine(available_processors(), memory, shutil.disk_usage(place).free)
 

@@ -82,7 +82,7 @@ class Round:
         if block is not None:
             return block, self._jobs(block), []
         names = set(os.listdir(self.folder))
-        self._done = {int(one.removesuffix(DONE)) for one in names if one.endswith(DONE)}
+        self._done = {int(name.removesuffix(DONE)) for name in names if name.endswith(DONE)}
         left = [k for k in range(len(self._edges) - 1) if k not in self._done]
         self._free = [k for k in left if str(k) not in names]
         block = self._free_block(in_order)

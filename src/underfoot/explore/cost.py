@@ -96,11 +96,11 @@ def study_cost(plan: StudyPlan, store: Store, jobs: Jobs | None = None) -> Study
     # the start has no place among the inputs
     some = [job for job in some if len(job.point) == len(plan.dimensions)]
     known = [(job, records[job.key]) for job in some if job.quick == plan.method.quick]
-    failures = Counter(one.reason for _, one in known if one.ending is not Ending.COMPUTED)
+    failures = Counter(record.reason for _, record in known if record.ending is not Ending.COMPUTED)
     used = _steady([pair for pair in known if pair[1].cpu_seconds > 0])
     if len(used) < FEWEST:
         return None
-    cpu = np.array([one.cpu_seconds for _, one in used])
+    cpu = np.array([record.cpu_seconds for _, record in used])
     own = _features(plan, [job.point for job, _ in used], [job.condition for job, _ in used])
     points, generator = first_points(plan), np.random.default_rng(plan.method.seed)
     chosen = generator.choice(len(points), min(len(points), MOST), replace=False)
@@ -109,8 +109,8 @@ def study_cost(plan: StudyPlan, store: Store, jobs: Jobs | None = None) -> Study
     mean, error = mean_cost(own, cpu, _features(plan, rows, states))
     error = math.hypot(error, SCATTER)
     wide = float(np.exp(error * stdtrit(len(used) - 1, 0.975)))
-    clock = sum(one.seconds for _, one in used) / cpu.sum()
-    memory = max(one.memory for _, one in known) or None
+    clock = sum(record.seconds for _, record in used) / cpu.sum()
+    memory = max(record.memory for _, record in known) or None
     disk = _disk(plan, store, known, len(records))
     interval = mean / wide, mean * wide
     return StudyCost(len(used), mean, interval, mean * clock, memory, disk, dict(failures))
@@ -156,8 +156,8 @@ def _some(jobs: Jobs, records: Records) -> list[Job]:
 def _steady(pairs: Sequence[tuple[Job, Record]]) -> Sequence[tuple[Job, Record]]:
     """Return all but the first case of each process, where enough are left."""
     first: dict[str, float] = {}
-    for _, one in pairs:
-        first[one.worker] = min(one.ended, first.get(one.worker, one.ended))
+    for _, record in pairs:
+        first[record.worker] = min(record.ended, first.get(record.worker, record.ended))
     later = [pair for pair in pairs if pair[1].ended > first[pair[1].worker]]
     return later if len(later) >= max(FEWEST, len(pairs) // 2) else pairs
 
@@ -175,8 +175,10 @@ def _disk(
 ) -> float:
     """Return bytes of a case: its line and draws, its job, its row of the table, its maps."""
     sample = known[:: max(1, len(known) // 20)]
-    files = [one for kind in ("cases-*", "draws-*", "packed-*") for one in store.folder.glob(kind)]
-    finished = sum(one.stat().st_size for one in files) / records
+    files = [
+        path for kind in ("cases-*", "draws-*", "packed-*") for path in store.folder.glob(kind)
+    ]
+    finished = sum(file.stat().st_size for file in files) / records
     jobs = [job for job, _ in sample]
     table = StudyResult(plan, jobs, store.known).cases().to_csv(index=False)
     lines = sum(len(job.line()) for job in jobs) + len(table)
@@ -186,4 +188,4 @@ def _disk(
 
 
 def _size(folder: Path) -> int:
-    return sum(os.path.getsize(one) for one in folder.rglob("*") if one.is_file())
+    return sum(os.path.getsize(path) for path in folder.rglob("*") if path.is_file())

@@ -123,7 +123,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
     plan, method = result.plan, result.plan.method
     without: list[Array] = []
     if method.on == "runs":
-        points = np.array([one.point for one in result.designs])
+        points = np.array([design.point for design in result.designs])
         values = result.values(result.designs, [goal])[:, 0]
         basis = f"{len(values)} designs run in full"
         if lost := np.count_nonzero(~np.isfinite(values)):
@@ -141,7 +141,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
         parts = np.array([_indices(plan, points, one) for one in without])
         variance = (len(parts) - 1) * parts.var(axis=0)
         columns[1::2] = np.sqrt(columns[1::2] ** 2 + NORMAL**2 * variance[::2])
-    paths = tuple(one.path for one in plan.dimensions)
+    paths = tuple(dimension.path for dimension in plan.dimensions)
     return Effects(str(goal), goal.unit, method.analysis, paths, *columns, basis=basis)
 
 
@@ -162,7 +162,7 @@ def _indices(plan: StudyPlan, points: Array, values: Array) -> Array:
 
 def _salib(plan: StudyPlan, step: str) -> Callable[..., Any]:
     """Return SALib's function ``sample`` or ``analyze`` for the inputs and method of a plan."""
-    name, paths = plan.method.analysis, [one.path for one in plan.dimensions]
+    name, paths = plan.method.analysis, [dimension.path for dimension in plan.dimensions]
     problem = {"num_vars": len(paths), "names": paths, "bounds": [[0.0, 1.0]] * len(paths)}
     optional_module("SALib", "study", "A sensitivity")
     function = getattr(import_module(f"SALib.{step}.{name}"), step)

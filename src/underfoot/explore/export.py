@@ -28,10 +28,12 @@ def exported(
         for name in ("results.csv", "results.parquet"):
             if (study.store.folder / name).exists():
                 shutil.copyfile(study.store.folder / name, staging / name)
-        for one in result.best(count) if plan.goals else result.designs[:count]:
-            name = f"design_{one.number}"
-            job = next(job for job in result.jobs if job.design == one.number)
-            case = plan.base.replace({**job.changes, "name": f"{plan.name}, design {one.number}"})
+        for design in result.best(count) if plan.goals else result.designs[:count]:
+            name = f"design_{design.number}"
+            job = next(job for job in result.jobs if job.design == design.number)
+            case = plan.base.replace(
+                {**job.changes, "name": f"{plan.name}, design {design.number}"}
+            )
             case.save(staging / f"{name}.toml")
             if step:
                 try:

@@ -172,9 +172,10 @@ class StudyPlan:
         if not point:
             return {}
         changes = {
-            one.path: one.value(share) for one, share in zip(self.dimensions, point, strict=True)
+            dimension.path: dimension.value(share)
+            for dimension, share in zip(self.dimensions, point, strict=True)
         }
-        followers = {one.path: one.times * changes[one.of] for one in self.follow}
+        followers = {follow.path: follow.times * changes[follow.of] for follow in self.follow}
         return {**self.fixed, **changes, **followers}
 
     def jobs(

@@ -92,7 +92,7 @@ class Posterior(Presentable):
 
     def cautions(self) -> tuple[str, ...]:
         """Return where the surrogate is the weak part, and posteriors at the end of a prior."""
-        weak = [f"{one.name}: {one.reliability}" for one in self.models if one.q2 < 0.9]
+        weak = [f"{model.name}: {model.reliability}" for model in self.models if model.q2 < 0.9]
         edge = [
             f"The posterior of {path} lies at the end of its prior: widen that."
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
@@ -126,7 +126,7 @@ class Posterior(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return the error of the surrogates."""
-        return {"Surrogates": [f"{one.name}: {one.reliability}" for one in self.models]}
+        return {"Surrogates": [f"{model.name}: {model.reliability}" for model in self.models]}
 
     def write(self, path: Path) -> None:
         """Write the draws as CSV, one column a path (SI): ``uncertain.posterior`` of a study."""
@@ -178,8 +178,8 @@ def posterior(
         )
     result = study.run(on, workers, part(progress, 0.0, 0.9))
     goals = [
-        Goal(one.output, one.unit, within=state.parts)
-        for one, state in zip(plan.readings, plan.states, strict=True)
+        Goal(reading.output, reading.unit, within=state.parts)
+        for reading, state in zip(plan.readings, plan.states, strict=True)
     ]
     models = result.surrogates(goals)
     size = len(plan.uncertain)
@@ -206,8 +206,8 @@ def posterior(
 
     def in_si(points: Array) -> Array:
         columns = [
-            [one.value(float(share)) for share in column]
-            for one, column in zip(plan.uncertain, points.T, strict=True)
+            [distribution.value(float(share)) for share in column]
+            for distribution, column in zip(plan.uncertain, points.T, strict=True)
         ]
         return np.array(columns).T
 
@@ -215,13 +215,13 @@ def posterior(
         raise DataError("the sampler left the numbers that there are", where=plan.name)
     return Posterior(
         plan.name,
-        tuple(one.path for one in plan.uncertain),
+        tuple(distribution.path for distribution in plan.uncertain),
         in_si(kept[:, :size]),
         in_si(flat),
         DISCREPANCY * _half_normal(kept[:, -1]),
         [
-            (state.label, one.value, one.sd, one.unit)
-            for one, state in zip(plan.readings, plan.states, strict=True)
+            (state.label, reading.value, reading.sd, reading.unit)
+            for reading, state in zip(plan.readings, plan.states, strict=True)
         ],
         predicted(flat),
         predicted(kept[:, :size]),

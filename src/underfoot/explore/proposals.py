@@ -65,8 +65,8 @@ def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
     except DataError:  # too few usable runs for a surrogate: spread more of them
         return _jobs(plan, plan.sampled_points(count + left)[count:], count, batch)
     best = so_far.best(plan.method.again) if plan.goals and plan.method.again_on else []
-    done = {one.number for one in so_far.again}  # of an optimisation that got a larger budget
-    points = {one.number: one.point for one in best if one.number not in done}
+    done = {design.number for design in so_far.again}  # of an optimisation that got a larger budget
+    points = {design.number: design.point for design in best if design.number not in done}
     points |= {count: ()} if best else {}
     return [job for k, place in points.items() for job in plan.jobs(k, place, batch, again=True)]
 
@@ -121,12 +121,14 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
     optimum = np.array(_surrogate_front(plan, goals, bounds, len(so_far.designs))[:CANDIDATES])
     near = optimum + NEAR * generator.standard_normal(optimum.shape)
     candidates = np.vstack([optimum, np.clip(near, 0.0, 1.0), spread])
-    for one in so_far.designs:
-        candidates = candidates[_apart(plan, candidates, one.point)]
-    run = np.array([one.point for one in so_far.designs if one.usable])
+    for design in so_far.designs:
+        candidates = candidates[_apart(plan, candidates, design.point)]
+    run = np.array([design.point for design in so_far.designs if design.usable])
     places, known = np.vstack([run, candidates]), len(run)
     normal = generator.standard_normal((len(goals) + len(bounds), SAMPLES, len(places)))
-    drawn = [one.drawn(places, z) for one, z in zip([*goals, *bounds], normal, strict=True)]
+    drawn = [
+        surrogate.drawn(places, z) for surrogate, z in zip([*goals, *bounds], normal, strict=True)
+    ]
     values = np.stack(drawn[: len(goals)], axis=-1) * signs
     met = np.ones(values.shape[:2], dtype=bool)
     for requirement, each in zip(plan.require, drawn[len(goals) :], strict=True):
@@ -177,12 +179,12 @@ def _surrogate_front(
             super().__init__(n_var=size, n_obj=len(goals), n_ieq_constr=len(bounds), xl=0.0, xu=1.0)
 
         def _evaluate(self, x: Array, out: dict[str, Any], *_: Any, **__: Any) -> None:
-            means = [one.mean(x) for one in goals]
+            means = [goal.mean(x) for goal in goals]
             out["F"] = np.column_stack(means) * plan.signs
             if bounds:
                 margins = [
-                    one.margin(surrogate.mean(x))
-                    for one, surrogate in zip(plan.require, bounds, strict=True)
+                    requirement.margin(surrogate.mean(x))
+                    for requirement, surrogate in zip(plan.require, bounds, strict=True)
                 ]
                 out["G"] = -np.column_stack(margins)
 

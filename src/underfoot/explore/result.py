@@ -92,7 +92,9 @@ class Design:
     def ending(self) -> str:
         """How it ended: computed, or what kept the first of its cases from it."""
         endings = map(self.records.ending, self.records)
-        return str(next((one for one in endings if one != Ending.COMPUTED), Ending.COMPUTED))
+        return str(
+            next((ending for ending in endings if ending != Ending.COMPUTED), Ending.COMPUTED)
+        )
 
     @property
     def reason(self) -> str:
@@ -173,34 +175,40 @@ class StudyResult(Presentable):
     @cached_property
     def designs(self) -> list[Design]:
         """The first run of every design, by number."""
-        return [one for one in self.all_designs if not one.again]
+        return [design for design in self.all_designs if not design.again]
 
     @cached_property
     def start(self) -> Design | None:
         """The base case as it is, run beside the best designs; None before."""
-        return next((one for one in self.all_designs if not one.point and one.usable), None)
+        return next(
+            (design for design in self.all_designs if not design.point and design.usable), None
+        )
 
     @cached_property
     def again(self) -> list[Design]:
         """The second run of those that had one, and have numbers."""
-        return [one for one in self.all_designs if one.again and one.point and one.usable]
+        return [
+            design for design in self.all_designs if design.again and design.point and design.usable
+        ]
 
     @cached_property
     def shown(self) -> list[Design]:
         """The last run of every design; those run again alone where no surrogate joins both."""
-        if self.again and sum(one.usable for one in self.designs) < FEWEST * len(self.plan.vary):
+        if self.again and sum(design.usable for design in self.designs) < FEWEST * len(
+            self.plan.vary
+        ):
             return self.again
-        last = {one.number: one for one in self.again}
-        return [last.get(one.number, one) for one in self.designs]
+        last = {design.number: design for design in self.again}
+        return [last.get(design.number, design) for design in self.designs]
 
     def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI; nan where a design has no numbers."""
         rows = [
             [
-                goal.value(one.records, self.plan.states) if one.usable else math.nan
+                goal.value(design.records, self.plan.states) if design.usable else math.nan
                 for goal in goals
             ]
-            for one in designs
+            for design in designs
         ]
         return np.array(rows, dtype=float).reshape(len(designs), len(goals))
 
@@ -218,12 +226,12 @@ class StudyResult(Presentable):
 
     def _surrogate(self, goal: AnyGoal) -> Surrogate:
         if goal not in self._fitted:
-            known = [one for one in self.all_designs if one.point and one.usable]
-            runs = list({one.records.key: one for one in reversed(known)}.values())[::-1]
+            known = [design for design in self.all_designs if design.point and design.usable]
+            runs = list({design.records.key: design for design in reversed(known)}.values())[::-1]
             dimensions = self.plan.dimensions
-            points = np.array([one.point for one in runs]).reshape(len(runs), len(dimensions))
-            errors = np.array([goal.error(one.records, self.plan.states) for one in runs])
-            finer = np.array([one.again for one in runs], dtype=bool)
+            points = np.array([run.point for run in runs]).reshape(len(runs), len(dimensions))
+            errors = np.array([goal.error(run.records, self.plan.states) for run in runs])
+            finer = np.array([run.again for run in runs], dtype=bool)
             own = points, self.values(runs, [goal])[:, 0], errors, finer
             self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
         return self._fitted[goal]
@@ -241,9 +249,11 @@ class StudyResult(Presentable):
         """
         means = self.values(designs, goals)
         deviations = np.full_like(means, np.nan)
-        points = np.array([one.point for one in designs])
+        points = np.array([design.point for design in designs])
         for k, goal in enumerate(goals):
-            errors = [goal.error(one.records, self.plan.states) for one in designs if one.usable]
+            errors = [
+                goal.error(design.records, self.plan.states) for design in designs if design.usable
+            ]
             if not np.any(errors):  # not of nan
                 deviations[:, k] = 0.0
                 continue
@@ -268,7 +278,7 @@ class StudyResult(Presentable):
 
     def allowed(self, designs: Sequence[Design]) -> Mask:
         """Return which designs have numbers and meet every requirement."""
-        usable = np.array([one.usable for one in designs], dtype=bool)
+        usable = np.array([design.usable for design in designs], dtype=bool)
         return usable & (self.margins(designs) >= 0).all(axis=1)
 
     def front_of(self, designs: Sequence[Design]) -> list[Design]:
@@ -290,7 +300,7 @@ class StudyResult(Presentable):
         """
         runs = self.again or self.designs
         if len(self.plan.goals) == 1:
-            good = [one for one, ok in zip(runs, self.allowed(runs), strict=True) if ok]
+            good = [run for run, ok in zip(runs, self.allowed(runs), strict=True) if ok]
             values = self.believed(good, self.plan.goals)[0][:, 0] * self.plan.signs[0]
             return [good[k] for k in np.argsort(values, kind="stable")[:count]]
         front = self.front_of(runs)
@@ -308,8 +318,8 @@ class StudyResult(Presentable):
         """
         states = first.states if states is None else states
         both = [
-            [r for (state, _), r in one.records.items() if state in states]
-            for one in (first, second)
+            [r for (state, _), r in design.records.items() if state in states]
+            for design in (first, second)
         ]
         values = [float(np.mean([r.number("cof") for r in records])) for records in both]
         spreads = [[r.spreads.get("cof") for r in records] for records in both]
@@ -328,11 +338,13 @@ class StudyResult(Presentable):
         if self.start is None:
             return ""
         chances = {}
-        for one, ok in zip(self.again, self.allowed(self.again), strict=True):
-            each = [self.higher_cof(one, self.start, [state]) for state in one.states * bool(ok)]
+        for design, ok in zip(self.again, self.allowed(self.again), strict=True):
+            each = [
+                self.higher_cof(design, self.start, [state]) for state in design.states * bool(ok)
+            ]
             known = [chance for chance in each if chance is not None]
             if known and len(known) == len(each):
-                chances[one.number] = min(known)
+                chances[design.number] = min(known)
         if not chances:
             return "Whether a design has a higher COF than the start is not estimated."
         number = max(chances, key=chances.__getitem__)
@@ -352,7 +364,7 @@ class StudyResult(Presentable):
     @property
     def usable(self) -> bool:
         """Whether any design has numbers."""
-        return any(one.usable for one in self.designs)
+        return any(design.usable for design in self.designs)
 
     @property
     def keys(self) -> Sequence[str]:
@@ -404,7 +416,7 @@ class StudyResult(Presentable):
 
     def _unmet_text(self) -> str:
         """Return which requirements no design meets, and how near one comes."""
-        designs = [one for one in self.all_designs if one.point and one.usable]
+        designs = [design for design in self.all_designs if design.point and design.usable]
         texts = []
         for each, margins in zip(self.plan.require, self.margins(designs).T, strict=True):
             margins = np.nan_to_num(margins, nan=-np.inf)
@@ -433,8 +445,8 @@ class StudyResult(Presentable):
         reasons += filter(None, [self.lost_text])
         same = 0
         if self.jobs and not self.jobs[-1].point and not self.plan.again_is_the_same:
-            first = {one.records.key for one in self.designs}
-            same = sum(one.records.key in first for one in self.again)
+            first = {design.records.key for design in self.designs}
+            same = sum(design.records.key in first for design in self.again)
         if same:
             reasons.append(
                 f"{same} of the {len(self.again)} best designs were not run again: on the same "
@@ -452,7 +464,7 @@ class StudyResult(Presentable):
 
     def design_table(self, designs: Sequence[Design], title: str) -> Table:
         """Return inputs and outputs of some designs as people read them."""
-        paths = list(dict.fromkeys(path for one in designs for path in one.changes))
+        paths = list(dict.fromkeys(path for design in designs for path in design.changes))
         goals = list(self.plan.goals) or [Goal("cof", "1"), Goal("fluid_load", "N")]
         short = [
             ".".join(path.split(".")[-2:]) if _repeats(path, paths) else path.split(".")[-1]
@@ -460,10 +472,12 @@ class StudyResult(Presentable):
         ]
         rows = []
         units = [goal.unit for goal in goals]
-        for one, *values in zip(designs, *self.believed(designs, goals), strict=True):
-            inputs = [value_text(path, one.changes.get(path)) for path in paths]
-            texts = map(_goal_text, *values, units) if one.usable else [one.ending] * len(goals)
-            rows.append([str(one.number), *inputs, *texts])
+        for design, *values in zip(designs, *self.believed(designs, goals), strict=True):
+            inputs = [value_text(path, design.changes.get(path)) for path in paths]
+            texts = (
+                map(_goal_text, *values, units) if design.usable else [design.ending] * len(goals)
+            )
+            rows.append([str(design.number), *inputs, *texts])
         return Table(title, ("Design", *short, *(goal.phrase for goal in goals)), rows)
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
@@ -476,28 +490,28 @@ class StudyResult(Presentable):
 
         Goals as they were run, and what is believed of them with its standard deviation.
         """
-        runs = [one for one in self.all_designs if one.point]
+        runs = [design for design in self.all_designs if design.point]
         values, margins = self.goal_values(runs), self.margins(runs)
         believed, deviations = self.believed(runs, self.plan.goals)
-        front = {(one.number, one.again) for one in self.front}
+        front = {(design.number, design.again) for design in self.front}
         return {
             "endings": dict(self.endings),
             "goals": [str(goal) for goal in self.plan.goals],
             "requirements": [str(each) for each in self.plan.require],
             "designs": [
                 {
-                    "design": one.number,
-                    "grid": "quick" if one.quick else "standard",
-                    "ending": one.ending,
-                    "inputs": dict(one.changes),
-                    "again": one.again,
+                    "design": run.number,
+                    "grid": "quick" if run.quick else "standard",
+                    "ending": run.ending,
+                    "inputs": dict(run.changes),
+                    "again": run.again,
                     "goals": rows[0].tolist(),
                     "believed": rows[1].tolist(),
                     "believed_sd": rows[2].tolist(),
                     "margins": rows[3].tolist(),
-                    "front": (one.number, one.again) in front,
+                    "front": (run.number, run.again) in front,
                 }
-                for one, *rows in zip(runs, values, believed, deviations, margins, strict=True)
+                for run, *rows in zip(runs, values, believed, deviations, margins, strict=True)
             ],
         }
 
@@ -524,15 +538,19 @@ class StudyResult(Presentable):
         """Return every output of first runs over (design, condition, draw), with their inputs."""
         frame, plan = self.cases(), self.plan
         units = {name: r.units.get(name, "1") for r in self.records.values() for name in r.numbers}
-        place, numbers = list(PLACE[:3]), [one.number for one in self.designs]
+        place, numbers = list(PLACE[:3]), [design.number for design in self.designs]
         first = frame["design"].isin(numbers) & ~frame[place].duplicated()
         own = frame[first].set_index(place)
         table = own[[*units, "ending"]].astype(dict.fromkeys(units, float)).to_xarray()
         for name, unit in units.items():
             table[name].attrs["units"] = unit
-        paths = dict.fromkeys(path for one in self.designs for path in one.changes)
+        paths = dict.fromkeys(path for design in self.designs for path in design.changes)
         inputs = {
-            path: ("design", [one.changes[path] for one in self.designs], {"units": unit_at(path)})
+            path: (
+                "design",
+                [design.changes[path] for design in self.designs],
+                {"units": unit_at(path)},
+            )
             for path in paths
         }
         labels = [plan.states[k].label for k in table["condition"].values]

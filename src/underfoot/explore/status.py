@@ -38,7 +38,7 @@ class StudyStatus(StudyResult):
 
     @cached_property
     def _alive(self) -> list[Any]:
-        return [one for one in self.sessions if one["ended"] is None]
+        return [session for session in self.sessions if session["ended"] is None]
 
     @property
     def working(self) -> int:
@@ -58,14 +58,14 @@ class StudyStatus(StudyResult):
     @cached_property
     def worker_seconds(self) -> float:
         """Time that workers had, all processes together, to now."""
-        ends = [(one, one["ended"] or self.now) for one in self.sessions]
+        ends = [(session, session["ended"] or self.now) for session in self.sessions]
         return sum(one["workers"] * max(end - one["began"], 0.0) for one, end in ends)
 
     @property
     def clock_went_back(self) -> bool:
         """Whether a process began, or ended a case, later than it is now: no rate is known."""
         ended = np.nan_to_num(self.scan.case["ended"])
-        latest = max((one["began"] for one in self.sessions), default=0.0)
+        latest = max((session["began"] for session in self.sessions), default=0.0)
         return max(latest, float(ended.max(initial=0.0))) > self.now + AHEAD
 
     @property

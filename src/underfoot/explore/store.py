@@ -497,7 +497,9 @@ class Store:
 
     def _tidy(self) -> None:
         """Remove what processes left that ended or were killed, and keep their times."""
-        ended = {one["name"]: one for one in self.sessions() if one["ended"] is not None}
+        ended = {
+            session["name"]: session for session in self.sessions() if session["ended"] is not None
+        }
         lines = [sealed(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()]
         if lines:
             write_file(self.folder / "sessions.jsonl", b"".join(lines))

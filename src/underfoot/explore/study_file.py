@@ -217,7 +217,10 @@ def _common_draws(
     size = max(len(uncertain), 1)
     shares = qmc.LatinHypercube(size, rng=method.seed).random(method.draws)
     rows = [
-        {one.path: one.value(float(share)) for one, share in zip(uncertain, row, strict=False)}
+        {
+            distribution.path: distribution.value(float(share))
+            for distribution, share in zip(uncertain, row, strict=False)
+        }
         for row in shares
     ]
     if joint is not None:
@@ -347,13 +350,15 @@ class _Reader:
             self.attempt(f"vary.{path}", read_input, path, given, known)
             for path, given in self.table("vary").items()
         ]
-        follow = tuple(one for one in axes if isinstance(one, Follow))
-        vary = tuple(one for one in axes if isinstance(one, Range | Choice))
+        follow = tuple(axis for axis in axes if isinstance(axis, Follow))
+        vary = tuple(axis for axis in axes if isinstance(axis, Range | Choice))
         for one in follow:
             self.check_known(f"vary.{one.path}", "path", one.of, [each.path for each in vary])
         # a list of one is no input of a surrogate, where there are others
-        lists = [one for one in vary if isinstance(one, Choice) and len(one.options) == 1]
-        fixed = {one.path: one.options[0] for one in lists if len(lists) < len(vary)}
+        lists = [
+            choice for choice in vary if isinstance(choice, Choice) and len(choice.options) == 1
+        ]
+        fixed = {choice.path: choice.options[0] for choice in lists if len(lists) < len(vary)}
         return tuple(one for one in vary if one.path not in fixed), follow, fixed
 
     def uncertain(

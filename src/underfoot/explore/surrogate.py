@@ -361,7 +361,7 @@ class Surrogate:
         return {
             "output": self.name,
             "unit": self.unit,
-            "inputs": [one.path for one in self.dimensions],
+            "inputs": [dimension.path for dimension in self.dimensions],
             "points": self.runs.points.tolist(),
             "values": self.runs.values.tolist(),
             "errors": [None if math.isnan(one) else one for one in self.runs.errors.tolist()],
@@ -418,7 +418,7 @@ def fitted(
     runs = Runs(points, values, errors, finer)[good]
     features = _features(dimensions, runs.points, runs.finer)
     made = {form: Model(form, features, runs) for form in FORMS}
-    left_out = {form: _left_out(one, runs) for form, one in made.items()}
+    left_out = {form: _left_out(model, runs) for form, model in made.items()}
     squares = {form: float(np.mean(one[0] ** 2)) for form, one in left_out.items()}
     form = min(FORMS, key=squares.__getitem__)
     error, deviation, without = left_out[form]
@@ -459,16 +459,16 @@ def _features(dimensions: Sequence[Dimension], points: Array, finer: AnyArray) -
 def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
     """Return what the process sees: a range as its share, a name as one column a value."""
     columns = []
-    for one, share in zip(dimensions, np.asarray(points, dtype=float).T, strict=True):
-        if not isinstance(one, Choice):
+    for dimension, share in zip(dimensions, np.asarray(points, dtype=float).T, strict=True):
+        if not isinstance(dimension, Choice):
             columns.append(share)
             continue
-        at = np.minimum((share * len(one.options)).astype(int), len(one.options) - 1)
-        if isinstance(one.options[0], float):
-            values = np.array(one.options)
+        at = np.minimum((share * len(dimension.options)).astype(int), len(dimension.options) - 1)
+        if isinstance(dimension.options[0], float):
+            values = np.array(dimension.options)
             columns.append((values[at] - values.min()) / (np.ptp(values) or 1.0))
         else:
-            columns += [np.where(at == k, 1.0, 0.0) for k in range(len(one.options))]
+            columns += [np.where(at == k, 1.0, 0.0) for k in range(len(dimension.options))]
     return np.column_stack(columns)
 
 

@@ -206,12 +206,12 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
             passing=passing,
             reason=reason,
         )
-        kept = replace(start, notes=(*start.notes, note))
-        return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing, contradicted=True)
+        draws = replace(start, notes=(*start.notes, note))
+        return Classed(PairContactLaw(law.pair, law.viscosity, draws), passing, contradicted=True)
     generator = np.random.default_rng(seed)
     rows = even_rows(weight, COUNT, generator.random())
-    kept = wide.rows(generator.permutation(rows))
-    kept = replace(kept, source=f"{start.source}; soles of class {known.name}")
+    draws = wide.rows(generator.permutation(rows))
+    draws = replace(draws, source=f"{start.source}; soles of class {known.name}")
     basis = f"of a sole of class {known.name}"
     basis += (
         ", calibrated to readings"
@@ -228,8 +228,8 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
         failing=Message(" is not reached") if known.fails else "",
         passing=passing,
     )
-    kept = replace(kept, basis=basis, notes=(*start.notes, note))
-    return Classed(PairContactLaw(law.pair, law.viscosity, kept), passing)
+    draws = replace(draws, basis=basis, notes=(*start.notes, note))
+    return Classed(PairContactLaw(law.pair, law.viscosity, draws), passing)
 
 
 def _ln_cof(

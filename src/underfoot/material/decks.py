@@ -79,7 +79,9 @@ def _numbers(line: str, where: str) -> list[float]:
     """Return the numbers of a card: with commas, or in fields of ten columns."""
     fields = line.split(",") if "," in line else [line[n : n + 10] for n in range(0, len(line), 10)]
     try:
-        return [float(re.sub(r"(?<=\d)[dD]", "e", one)) if one.strip() else 0.0 for one in fields]
+        return [
+            float(re.sub(r"(?<=\d)[dD]", "e", field)) if field.strip() else 0.0 for field in fields
+        ]
     except ValueError:
         raise DataError(
             f'"{text.excerpt(line.strip())}" is no card of numbers', where=where,
@@ -171,13 +173,13 @@ def _elastic(options: Sequence[str], card: Sequence[float], where: str) -> float
     """Return the shear modulus of *ELASTIC or *HYPERELASTIC."""
     if options[0] == "*ELASTIC" and len(card) >= 2:
         return card[0] / (2.0 * (1.0 + card[1]))
-    kinds = {one.replace(" ", "").replace("-", "") for one in options[1:]}
+    kinds = {option.replace(" ", "").replace("-", "") for option in options[1:]}
     if kinds & {"NEOHOOKE", "NEOHOOKEAN", "YEOH", "REDUCEDPOLYNOMIAL"} and card:
         return 2.0 * card[0]
     if kinds & {"MOONEYRIVLIN", "POLYNOMIAL"} and len(card) >= 2:
         return 2.0 * (card[0] + card[1])
     if "OGDEN" in kinds and len(card) >= 2:
-        count = next((int(one[2:]) for one in kinds if re.fullmatch(r"N=\d+", one)), 1)
+        count = next((int(kind[2:]) for kind in kinds if re.fullmatch(r"N=\d+", kind)), 1)
         return sum(card[0 : 2 * count : 2])
     raise DataError(
         "an elastic part that is not read", where=where,

@@ -89,11 +89,11 @@ def read_rubber(
     ):
         fitting = [table for table in tables if has(table)]
         if fitting:
-            found = made(fitting)
+            test = made(fitting)
             notes = ("moduli of a rheometer: taken as those of shear",)
             headed = any(one.headed_shear is not None for one in fitting)
             said = notes if fitting[0].rheometer and not headed else ()
-            return RubberTest(found.sweeps, found.curves, found.series, fitting[0].shear, said)
+            return RubberTest(test.sweeps, test.curves, test.series, fitting[0].shear, said)
     return None
 
 

@@ -135,8 +135,8 @@ class Table:
 
     def named(self, *quantities: str) -> Column | None:
         """Return the first column of one of the quantities."""
-        found = (c for q in quantities for c in self.columns if c.quantity == q)
-        return next(found, None)
+        generator = (c for q in quantities for c in self.columns if c.quantity == q)
+        return next(generator, None)
 
     def needed(self, *quantities: str) -> Column:
         """Return the first column of one of the quantities; a DataError without one."""
@@ -329,11 +329,11 @@ def without_logarithm(heading: str) -> tuple[str, float | None]:
     >>> without_logarithm("log10(omega) [rad/s]")
     ('omega [rad/s]', 10.0)
     """
-    found = _LOGARITHM.fullmatch(heading.strip())
-    inner = "" if found is None else found["rest"] or f"{found['inner']} {found['unit'] or ''}"
-    if found is None or quantity_of(heading_of(inner)[0]) is None:
+    match = _LOGARITHM.fullmatch(heading.strip())
+    inner = "" if match is None else match["rest"] or f"{match['inner']} {match['unit'] or ''}"
+    if match is None or quantity_of(heading_of(inner)[0]) is None:
         return heading, None
-    return inner.strip(), float(np.e) if found["kind"].casefold() == "ln" else 10.0
+    return inner.strip(), float(np.e) if match["kind"].casefold() == "ln" else 10.0
 
 
 def heading_of(cell: str) -> tuple[str, str]:
@@ -446,7 +446,7 @@ def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> lis
         raise DataError("the file holds no table", where=where, allowed="headings and rows")
     separator = _separator([line for _, line in lines[:2000]])
     inside = units_in_cells([text.cells_of(line, separator) for _, line in lines[:2000]], _is_unit)
-    found: list[_Draft] = []
+    drafts: list[_Draft] = []
     above: list[tuple[int, str, list[str]]] = []
     draft: _Draft | None = None
     for number, line in lines:
@@ -456,17 +456,19 @@ def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> lis
             above.append((number, line, cells))
             continue
         if draft is None:
-            draft = _begun(above, cells, inside, where, not found) or (found[-1] if found else None)
+            draft = _begun(above, cells, inside, where, not drafts) or (
+                drafts[-1] if drafts else None
+            )
             if draft is None:  # a number in the lines above a table
                 above.append((number, line, cells))
                 continue
-            if draft not in found:
-                found.append(draft)
+            if draft not in drafts:
+                drafts.append(draft)
             above = []
         draft.add(number, cells, separator, where)
-    if not found:
+    if not drafts:
         raise _tableless(above, where)
-    return [draft.table(where, n, units or {}) for n, draft in enumerate(found)]
+    return [draft.table(where, n, units or {}) for n, draft in enumerate(drafts)]
 
 
 def _tableless(above: Sequence[tuple[int, str, list[str]]], where: str) -> DataError:
@@ -622,7 +624,7 @@ def _temperature(
                 forms = [form for form in _FORMS if _is_number(value, (form,))]
                 return _factor(forms[0].number(value), "degC", "K", where)
     for line, _ in reversed(texts):
-        if found := _HELD.match(line):
-            number = float(found.group(1).replace(",", "."))
-            return _factor(number, found.group(2).replace(" ", ""), "K", where)
+        if match := _HELD.match(line):
+            number = float(match.group(1).replace(",", "."))
+            return _factor(number, match.group(2).replace(" ", ""), "K", where)
     return None

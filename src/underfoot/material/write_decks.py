@@ -107,7 +107,7 @@ def _abaqus(terms: Terms, once: float, rest: float, bulk: float, density: float,
 
 def _dyna(terms: Terms, once: float, rest: float, bulk: float, density: float, name: str):
     def card(*values: float) -> str:
-        return ",".join(f"{one:.9g}" for one in values)
+        return ",".join(f"{value:.9g}" for value in values)
 
     rows = [card(rest, 0.0)] if rest > 0.0 else []
     rows += [card(g, 1.0 / tau) for g, tau in terms]

@@ -104,9 +104,9 @@ class FloorCalibration(Presentable):
         return (
             *map(str, self.draws.outside),
             *(
-                f"{one} stays in the case, and is not in the file: friction.model = "
+                f"{reading} stays in the case, and is not in the file: friction.model = "
                 '"pair_read" counts it there.'
-                for one in self.beside
+                for reading in self.beside
             ),
             *(
                 f"friction.draws_file holds a reading of {one.title} on this floor already: this "
@@ -148,19 +148,21 @@ def floor_calibration(
     joint, roughness = floor_draws(pair, draws, seed), f"roughness of floor {FLOOR}"
     share = floor_name(pair)
     before = interval(joint.between(roughness, pair.floor_rq))
-    outside = [told for one in readings for told in learn_floor(joint, FLOOR, pair.floor_rq, one)]
+    outside = [
+        told for reading in readings for told in learn_floor(joint, FLOOR, pair.floor_rq, reading)
+    ]
     rows = np.arange(KEPT)  # in random order already
     known = {**joint.errors(), share: joint.share(roughness)}
     if pair.compound_and_floor not in known:  # no reading of this pair determined it
         error = joint.pair_error(pair, pair.compound_and_floor, FLOOR)
         known[pair.compound_and_floor] = joint.constants.sd_pair * error
-    machines = {one.machine.name for one in readings}
+    machines = {reading.machine.name for reading in readings}
     known |= joint.values_of(
         f"floor {FLOOR} beyond",
         *(f"{what} of {name}" for name in machines for what in ("factor", "reader", "walker")),
         *(f"{name} on {FLOOR}" for name in machines),
     )
-    kept = replace(
+    pair_draws = replace(
         joint.constants.rows(rows),
         errors={name: values[rows] for name, values in known.items()},
         source=f"{draws.source}; floor read: {'; '.join(map(str, readings))}",
@@ -169,7 +171,7 @@ def floor_calibration(
         outside=(*draws.outside, *outside),
     )
     after = interval(joint.between(roughness, pair.floor_rq))
-    return FloorCalibration(readings, kept, before, after, joint.fewest)
+    return FloorCalibration(readings, pair_draws, before, after, joint.fewest)
 
 
 def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> JointDraws:
@@ -238,7 +240,7 @@ def calibrated_floor(
     beside: tuple[FloorReading, ...] = ()
     if isinstance(case.friction, PairReadOption):
         beside, law = case.friction.floor_readings(), case.friction.unread(resolved(case))
-    if any(one.machine == device for one in beside):
+    if any(floor_reading.machine == device for floor_reading in beside):
         raise InputError(
             f"the case holds what {device.title} read of this floor",
             where="--machine",
@@ -300,18 +302,18 @@ class PairReadOption(PairOption):
 
     def floor_readings(self, where: str = "friction") -> tuple[FloorReading, ...]:
         """Return the readings that are given, each checked by its machine."""
-        found: list[FloorReading] = []
+        readings: list[FloorReading] = []
         for field, named in FIELDS.items():
             given = getattr(self, field)
             if given is not None:
                 device = machine(named)
                 value = float(np.degrees(given)) if device.scale.unit == "deg" else float(given)
                 value = device.checked(value, f"{where}.{field}")
-                found.append(FloorReading(device, device.fluid_of_standard(), value))
+                readings.append(FloorReading(device, device.fluid_of_standard(), value))
         for field, named in CLASSES.items():
             if (given := getattr(self, field)) is not None:
-                found += class_bounds(machine(named), given, f"{where}.{field}")
-        return tuple(found)
+                readings += class_bounds(machine(named), given, f"{where}.{field}")
+        return tuple(readings)
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         """Yield what the machines cannot have read, and that nothing was."""
@@ -344,7 +346,7 @@ def _narrowed(
     if draws_file:
         with meant_file(draws_file, sha256, "friction.draws_file") as path:
             draws = read_pair_draws(path)
-    if twice := [one.machine.title for one in readings if was_read(draws, one.machine)]:
+    if twice := [reading.machine.title for reading in readings if was_read(draws, reading.machine)]:
         raise InputError(
             f"holds what {twice[0]} read of this floor, and so does the case",
             where="friction.draws_file",

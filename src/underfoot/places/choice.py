@@ -170,9 +170,9 @@ class Choice(Presentable):
     def _unlike(self) -> tuple[ShoeAnswer, ...]:
         """The shoes, of those that are the same the first."""
         return tuple(
-            one
-            for number, one in enumerate(self.shoes)
-            if not any(same_shoe(one.shoe, other.shoe) for other in self.shoes[:number])
+            shoe
+            for number, shoe in enumerate(self.shoes)
+            if not any(same_shoe(shoe.shoe, other.shoe) for other in self.shoes[:number])
         )
 
     def headline(self) -> tuple[Message, ...]:
@@ -254,10 +254,10 @@ class Choice(Presentable):
             *(Remark.of(floor, str(told)) for floor, told in self.outside),
         ]
         twins = [
-            Message("{first} and {second}", first=one.shoe.name, second=two.shoe.name)
-            for number, one in enumerate(self.shoes)
+            Message("{first} and {second}", first=shoe.shoe.name, second=two.shoe.name)
+            for number, shoe in enumerate(self.shoes)
             for two in self.shoes[number + 1 :]
-            if same_shoe(one.shoe, two.shoe)
+            if same_shoe(shoe.shoe, two.shoe)
         ]
         if twins:
             lines.append(
@@ -299,11 +299,12 @@ class Choice(Presentable):
     def tables(self) -> tuple[Table, ...]:
         """Return shoes, changes, measurements, where slips happen, friction."""
         levers = [
-            (one.name, _share(one.left), drawn_probability_text(one.fewer)) for one in self.levers
+            (lever.name, _share(lever.left), drawn_probability_text(lever.fewer))
+            for lever in self.levers
         ]
         measures = [
-            (one.name, _of_bins(one.changes), probability_text(one.saves))
-            for one in self.measurements
+            (measurement.name, _of_bins(measurement.changes), probability_text(measurement.saves))
+            for measurement in self.measurements
         ]
         where = [(name, percent(share)) for name, share in self.sources]
         cofs = [
@@ -360,12 +361,16 @@ class Choice(Presentable):
                 for each in self.shoes
             ],
             "changes": [
-                {"name": one.name, "left": list(one.left), "fewer": one.fewer}
-                for one in self.levers
+                {"name": lever.name, "left": list(lever.left), "fewer": lever.fewer}
+                for lever in self.levers
             ],
             "measurements": [
-                {"name": one.name, "changes": one.changes, "saves": one.saves}
-                for one in self.measurements
+                {
+                    "name": measurement.name,
+                    "changes": measurement.changes,
+                    "saves": measurement.saves,
+                }
+                for measurement in self.measurements
             ],
         }
 
@@ -722,8 +727,8 @@ def _learn(
     outside = [
         (floor.name, told)
         for floor in sorted(place.floors, key=lambda each: each.name)
-        for one in floor.readings
-        for told in learn_floor(joint, floor.name, floor_rq[floor.name], one)
+        for reading in floor.readings
+        for told in learn_floor(joint, floor.name, floor_rq[floor.name], reading)
     ]
     learned = []
     for shoe in sorted(place.shoes, key=lambda each: each.name):
@@ -732,15 +737,15 @@ def _learn(
         learned.append(shoe)
         case = cases[shoe.name]
         law = _law(case)
-        for one in shoe.readings:
-            cof = tested_cof(joint, case, law, shoe, slip_tests()[one.test])
-            joint.learn(joint.log_likelihood(cof, one.reading), f"shoe {shoe.name}")
+        for reading in shoe.readings:
+            cof = tested_cof(joint, case, law, shoe, slip_tests()[reading.test])
+            joint.learn(joint.log_likelihood(cof, reading.reading), f"shoe {shoe.name}")
         known = shoe.known_class
         if known is not None:
             passed = np.zeros(joint.count)
-            for one in known.readings:
-                cof = tested_cof(joint, case, law, shoe, one.test)
-                passed += joint.log_likelihood(cof, Reading(one.cof, one.kind, one.sd))
+            for reading in known.readings:
+                cof = tested_cof(joint, case, law, shoe, reading.test)
+                passed += joint.log_likelihood(cof, Reading(reading.cof, reading.kind, reading.sd))
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
     return tuple(outside)

@@ -56,8 +56,8 @@ class Evidence:
     @property
     def ends(self) -> tuple[float, float]:
         """Lowest and highest reading that the source allows, in the machine's unit."""
-        lower = [one.value for one in self.bounds if one.kind != "upper"]
-        upper = [one.value for one in self.bounds if one.kind != "lower"]
+        lower = [bound.value for bound in self.bounds if bound.kind != "upper"]
+        upper = [bound.value for bound in self.bounds if bound.kind != "lower"]
         return max(lower, default=0.0), min(upper, default=np.inf)
 
     @property
@@ -348,7 +348,7 @@ class MachineScores(Presentable):
             each = row.evidence
             low, median, high = (f"{x:.{_digits(each.machine)}f}" for x in row.predicted)
             ends = " to ".join(f"{1e6 * end:.3g}" for end in each.rq)
-            read = ", ".join(one.value_text for one in each.bounds)
+            read = ", ".join(bound.value_text for bound in each.bounds)
             verdict = "inside" if row.inside else "OUTSIDE"
             basis = "printed" if each.printed else "finish"
             rows.append((each.floor, each.machine.title, ends, basis,

@@ -114,8 +114,8 @@ class Comparison(Presentable):
         apart = f"{lead:.3f}" if lead >= LEAST_SHOWN else f"less than {LEAST_SHOWN:.3f}"
         sure = f"probability {_chance(chance, 'not estimated')}"
         if self.order is None:
-            exact = [one for one in (first, second) if one.interval is None]
-            names = " and ".join(self.label(one.letter) for one in exact)
+            exact = [rank for rank in (first, second) if rank.interval is None]
+            names = " and ".join(self.label(rank.letter) for rank in exact)
             what = f"COF of {better} is {apart} above that of {other}"
             return (f"{what}. How sure that is can't be told: no spread is known of {names}.",)
         verdict = self.order.verdict
@@ -182,7 +182,10 @@ class Comparison(Presentable):
         steps = Table(
             "What would tell the two highest apart",
             ("Step", "Probability of the order then"),
-            [(one.step, drawn_probability_text(one.told)) for one in self.separations],
+            [
+                (separation.step, drawn_probability_text(separation.told))
+                for separation in self.separations
+            ],
         )
         parts = (*((ranking,) if self.ranking else ()), self.table(), inputs)
         return (*parts, *((steps,) if self.separations else ()))
@@ -205,8 +208,8 @@ class Comparison(Presentable):
                     "values": [None if v is None else v.to_dict() for v in quantity.values],
                     "different_from_first": quantity.different,
                     "orders": {
-                        letter: {"verdict": str(one.verdict), **asdict(one)}
-                        for letter, one in quantity.orders.items()
+                        letter: {"verdict": str(order.verdict), **asdict(order)}
+                        for letter, order in quantity.orders.items()
                     },
                 }
                 for quantity in self.quantities
@@ -215,7 +218,7 @@ class Comparison(Presentable):
                 {"path": path, "values": list(values)} for path, *values in self.differences
             ],
             "order": self.order and {"verdict": str(self.order.verdict), **asdict(self.order)},
-            "separations": [asdict(one) for one in self.separations],
+            "separations": [asdict(separation) for separation in self.separations],
             "results": [result.to_dict() for result in self.results],
         }
 
@@ -309,11 +312,11 @@ def _separations(
     results: Sequence[Result], cases: Sequence[Case], separate: bool, progress: Progress
 ) -> tuple[Separation, ...]:
     """Return what would tell two results apart, the surest first."""
-    found = of_conditions(*cases, progress=progress) if separate else []
+    separations = of_conditions(*cases, progress=progress) if separate else []
     drawn = _shared_draws(*results)
     if drawn is not None:
-        found.append(of_reading(*drawn))
-    return tuple(sorted(found, key=lambda one: -one.told))
+        separations.append(of_reading(*drawn))
+    return tuple(sorted(separations, key=lambda one: -one.told))
 
 
 def check_paths(paths: Sequence[Path]) -> None:
@@ -391,9 +394,9 @@ def order_of(first: Result, second: Result) -> Order | None:
 
 def _shared_draws(first: Result, second: Result) -> tuple[Array, Array] | None:
     """Return the draws of COF of two results of the law of the pair; None without."""
-    if any(one.provenance.closures.get("friction") != "pair" for one in (first, second)):
+    if any(result.provenance.closures.get("friction") != "pair" for result in (first, second)):
         return None
-    both = [one.data.get("cof_draws") for one in (first, second)]
+    both = [result.data.get("cof_draws") for result in (first, second)]
     if both[0] is None or both[1] is None or both[0].size != both[1].size:
         return None
     return np.asarray(both[0].values), np.asarray(both[1].values)

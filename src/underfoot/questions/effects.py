@@ -197,7 +197,7 @@ def change_effects(
             variants[number] = variant
     if not variants:
         return tuple(effects.values())
-    mean, own = _levels(present)
+    mean, level = _levels(present)
     march, start, lugs = None, None, treaded(case)
     left_out = _Spread()
     if quick:
@@ -239,14 +239,14 @@ def change_effects(
     if again and (first := found.pop(0)).usable:
         start = _Level(first.number("cof"), first.number("fluid_load"))
     elif start is not None and not lugs:  # the ratio of the angles is that of the coarse grid
-        start = _Level(*(s * m / o if o else s for s, m, o in zip(start, mean, own, strict=True)))
+        start = _Level(*(s * m / o if o else s for s, m, o in zip(start, mean, level, strict=True)))
     for (number, each), outcome in zip(runs.items(), found, strict=True):
         if not outcome.usable:
             effects[number] = ChangeEffect(changes[number], {}, str(outcome.status))
             continue
         there = _Friction.of(outcome.scalars, outcome.maps)
         if start is not None:
-            there = there.moved(start, mean if number in alike or not lugs else own)
+            there = there.moved(start, mean if number in alike or not lugs else level)
         effects[number] = there.effect(changes[number], each, present)
     return tuple(effects[number] for number in range(len(changes)))
 
@@ -256,8 +256,8 @@ def _levels(present: Result) -> tuple[_Level, _Level]:
     mean = _Level(present.value("cof"), present.value("fluid_load"))
     if "position_cof" not in present.data:
         return mean, mean
-    own = (present.data[f"position_{name}"].attrs["as_described"] for name in _Level._fields)
-    return mean, _Level(*own)
+    generator = (present.data[f"position_{name}"].attrs["as_described"] for name in _Level._fields)
+    return mean, _Level(*generator)
 
 
 def _march(case: Case, progress: Progress) -> Continuation | None:

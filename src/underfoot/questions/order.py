@@ -67,7 +67,7 @@ def order_of_values(first: SourcedValue, second: SourcedValue) -> Order | None:
     Each is drawn as wide as its interval is on either side of it, in its logarithm where it is
     positive; without an interval as a normal value.
     """
-    both = [_strata(one) for one in (first, second)]
+    both = [_strata(value) for value in (first, second)]
     if both[0] is None or both[1] is None:
         return None
     a, b = both[0][:, None], both[1]
@@ -88,7 +88,7 @@ def certainty_after_reading(first: Array, second: Array, repeats: float) -> floa
     bins = np.array_split(np.argsort(read), 40)
     higher = np.tile((apart > 0) + 0.5 * (apart == 0), 8)
     chances = [float(np.mean(higher[rows])) for rows in bins if rows.size]
-    return float(np.mean([max(one, 1 - one) for one in chances]))
+    return float(np.mean([max(chance, 1 - chance) for chance in chances]))
 
 
 def _alike(first: Array, second: Array) -> NDArray[np.bool_]:

@@ -118,9 +118,10 @@ class RiskAssessment(Presentable):
         """
         own, target = self.outcome.number("slip_probability"), self.target
         return [
-            one
-            for one in self.models
-            if abs(one.probability - own) > APART or (one.probability > target) != (own > target)
+            model
+            for model in self.models
+            if abs(model.probability - own) > APART
+            or (model.probability > target) != (own > target)
         ]
 
     def headline(self) -> tuple[Message, ...]:
@@ -163,11 +164,11 @@ class RiskAssessment(Presentable):
             Message(
                 "Another model has {probability} for the same friction and people ({name}): "
                 "{assumption:small}",
-                probability=probability_text(one.probability),
-                name=one.name,
-                assumption=one.assumption,
+                probability=probability_text(risk.probability),
+                name=risk.name,
+                assumption=risk.assumption,
             )
-            for one in self.apart
+            for risk in self.apart
         ]
         return (
             *cautions(
@@ -218,11 +219,11 @@ class RiskAssessment(Presentable):
 
     def tables(self) -> tuple[Table, ...]:
         rows = []
-        for one in self.models:
-            needed = "not reachable" if one.needed_acof is None else f"{one.needed_acof:.3f}"
-            ends = None if one.low is None or one.high is None else (one.low, one.high)
-            chance = _chance(SourcedValue(one.probability, interval=ends))
-            rows.append((one.name, chance, needed))
+        for model in self.models:
+            needed = "not reachable" if model.needed_acof is None else f"{model.needed_acof:.3f}"
+            ends = None if model.low is None or model.high is None else (model.low, model.high)
+            chance = _chance(SourcedValue(model.probability, interval=ends))
+            rows.append((model.name, chance, needed))
         heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
         models = Table("Slip probability of the same friction by every model", heads, rows)
         return (self.table(), models) if self.usable else ()
@@ -260,14 +261,14 @@ class RiskAssessment(Presentable):
             "missing_friction": self.missing_friction,
             "models": [
                 {
-                    "name": one.name,
-                    "source": one.source,
-                    "assumption": one.assumption,
-                    "probability": one.probability,
-                    "interval_95": [one.low, one.high],
-                    "needed_acof": one.needed_acof,
+                    "name": model.name,
+                    "source": model.source,
+                    "assumption": model.assumption,
+                    "probability": model.probability,
+                    "interval_95": [model.low, model.high],
+                    "needed_acof": model.needed_acof,
                 }
-                for one in self.models
+                for model in self.models
             ],
             "changes": [
                 {

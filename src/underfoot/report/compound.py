@@ -69,12 +69,12 @@ def _relaxation(shown: Compound) -> Figure:
 def _shifts(shown: Compound) -> Figure:
     """Shift factors over temperature with the law through them."""
     figure = new_figure(6.4, 4.0)
-    axes, found = figure.subplots(), shown.shifts
-    assert found is not None
-    celsius = found.temperatures - 273.15
-    axes.errorbar(celsius, found.log10_shift_factors, found.log10_errors, fmt="k.", label="shifts")
-    fine = np.linspace(found.temperatures[0], found.temperatures[-1], 200)
-    law = found.law
+    axes, table = figure.subplots(), shown.shifts
+    assert table is not None
+    celsius = table.temperatures - 273.15
+    axes.errorbar(celsius, table.log10_shift_factors, table.log10_errors, fmt="k.", label="shifts")
+    fine = np.linspace(table.temperatures[0], table.temperatures[-1], 200)
+    law = table.law
     axes.plot(fine - 273.15, law.log10_shift_factor(fine), "C0", label=str(law))
     axes.set(xlabel="Temperature, °C", ylabel="log10 of the shift factor")
     axes.legend(fontsize=8)

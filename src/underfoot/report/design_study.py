@@ -79,14 +79,16 @@ def design_sole(study: Study, result: StudyResult, number: int) -> Fields:
         CaseError: The design can't be built.
     """
     job = next(job for job in result.jobs if job.design == number)
-    kept = study.store.maps(job.key)
-    return sole_fields(study.plan.base.replace(job.changes)) if kept is None else kept
+    fields = study.store.maps(job.key)
+    return sole_fields(study.plan.base.replace(job.changes)) if fields is None else fields
 
 
 def _soles(study: Study, result: StudyResult, progress: Progress) -> Mapping[int, Fields]:
     """Return the soles of the best designs that can be built."""
     soles = {}
-    chosen = dict.fromkeys(one.number for one in (result.front or result.designs)[:MOST_SOLES])
+    chosen = dict.fromkeys(
+        design.number for design in (result.front or result.designs)[:MOST_SOLES]
+    )
     for count, number in enumerate(chosen, start=1):
         progress("Soles", count / len(chosen))
         with suppress(UnderfootError):
@@ -101,7 +103,7 @@ def write_study_report(
     study.store.write_views(result.cases())
     ready = shown(result, _soles(study, result, progress))
     if ready.models:
-        models = [one.to_dict() for one in ready.models]
+        models = [model.to_dict() for model in ready.models]
         with study.store.view("surrogate.json") as part:
             part.write_text(json.dumps(models) + "\n", encoding="utf-8")
     path = study.store.folder / "report.html"
@@ -117,7 +119,7 @@ def _study_figures(result: StudyResult) -> FigureMakers:
     makers: FigureMakers = {}
     if isinstance(result, ShownStudy):
         makers |= {
-            f"effects_{k}": partial(effects_figure, one) for k, one in enumerate(result.indices)
+            f"effects_{k}": partial(effects_figure, index) for k, index in enumerate(result.indices)
         }
         if result.models and result.usable:
             makers["slices"] = partial(slices_figure, result.models, _centre(result))
@@ -145,13 +147,13 @@ def _study_sections(
             )
         )
     if isinstance(result, ShownStudy):
-        for k, one in enumerate(result.indices):
-            picture = Picture(one.heading(), embedded(pictures[f"effects_{k}"]), True)
-            parts.append(Section(one.heading(), " ".join(one.headline()), pictures=[picture]))
-            parts.append(Section(f"{one.output}: indices", table=one.table(), folded=True))
+        for k, index in enumerate(result.indices):
+            picture = Picture(index.heading(), embedded(pictures[f"effects_{k}"]), True)
+            parts.append(Section(index.heading(), " ".join(index.headline()), pictures=[picture]))
+            parts.append(Section(f"{index.output}: indices", table=index.table(), folded=True))
         if result.models:
             picture = Picture("Slices through the surrogates", embedded(pictures["slices"]), True)
-            words = [f"{one.name}: {one.reliability}" for one in result.models]
+            words = [f"{model.name}: {model.reliability}" for model in result.models]
             intro = (
                 "Through the marked design; the band is one standard deviation of the surrogate."
             )
@@ -168,8 +170,8 @@ def _study_sections(
 def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
     """Return the plots of all designs, with the soles that a click shows."""
     plan = result.plan
-    paths = [one.path for one in plan.dimensions]
-    allowed, front = result.allowed(designs), {one.number for one in result.front}
+    paths = [dimension.path for dimension in plan.dimensions]
+    allowed, front = result.allowed(designs), {design.number for design in result.front}
     columns: list[dict[str, Any]] = []
     rows: list[list[Any]] = [[] for _ in designs]
 
@@ -190,7 +192,7 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
             row.append((value / factor if np.isfinite(value) else None) if number else value)
 
     for path in paths:
-        values = [one.changes.get(path) for one in designs]
+        values = [design.changes.get(path) for design in designs]
         add(path.split(".", 1)[-1].replace("_", " "), unit_at(path), values, False)
     for goal, values in zip(
         plan.shown_goals, result.believed(designs, plan.shown_goals)[0].T.tolist(), strict=True
@@ -198,13 +200,13 @@ def explorer(result: StudyResult, designs: Sequence[Design]) -> str:
         add(goal.phrase, goal.unit, values, goal in plan.goals)
     listed = [
         {
-            "number": one.number,
+            "number": design.number,
             "values": row,
             "allowed": bool(ok),
-            "front": one.number in front,
-            "reason": one.reason,
+            "front": design.number in front,
+            "reason": design.reason,
         }
-        for one, row, ok in zip(designs, rows, allowed, strict=True)
+        for design, row, ok in zip(designs, rows, allowed, strict=True)
     ]
     data = json.dumps({"columns": columns, "designs": listed}, allow_nan=False)
     soles = {}
@@ -246,20 +248,20 @@ def slices_figure(models: Sequence[Surrogate], centre: np.ndarray) -> Figure:
     shares = np.linspace(0.0, 1.0, SLICE)
     for row, model in zip(grid, models, strict=True):
         scale, shown_unit = display_unit(float(np.abs(model.runs.values).max()), model.unit)
-        for axes, one, k in zip(row, dimensions, range(len(dimensions)), strict=True):
+        for axes, dimension, k in zip(row, dimensions, range(len(dimensions)), strict=True):
             points = np.tile(centre, (SLICE, 1))
             points[:, k] = shares
             mean, deviation = model.predicted(points)
-            values = [one.value(float(share)) for share in shares]
+            values = [dimension.value(float(share)) for share in shares]
             numeric = all(isinstance(value, float) for value in values)
-            unit = unit_at(one.path)
+            unit = unit_at(dimension.path)
             factor, name = display_unit(float(values[-1]), unit) if numeric else (1.0, "1")
             places: Any = np.array(values) / factor if numeric else list(map(str, values))
             low, middle, high = (mean + k * deviation for k in (-1, 0, 1))
             axes.plot(places, middle / scale, color="#0b6fa4")
             axes.fill_between(places, low / scale, high / scale, color="#0b6fa4", alpha=0.2)
             axes.axvline(places[int(centre[k] * (SLICE - 1))], color="0.7", linewidth=0.8)
-            short = one.path.split(".")[-1].replace("_", " ")
+            short = dimension.path.split(".")[-1].replace("_", " ")
             axes.set_xlabel(short + (f" ({name})" if name != "1" else ""), fontsize=8)
             axes.tick_params(labelsize=7)
         named = model.name + (f" ({shown_unit})" if shown_unit != "1" else "")
@@ -294,7 +296,7 @@ def _axis(goal: Any) -> str:
 
 def _centre(result: StudyResult) -> np.ndarray:
     """Return the place of the best design, or of the first that has numbers."""
-    usable = [one for one in result.designs if one.usable]
+    usable = [design for design in result.designs if design.usable]
     return np.array((result.best(1) or usable)[0].point)
 
 

@@ -170,12 +170,12 @@ def _shares(
     without = np.bincount(owners, weights, len(points)) <= 0
     for kind in (False, True):
         i, j = np.nonzero(inside & (kinds == kind))
-        own = np.flatnonzero(land == kind)
-        if not i.size or not own.size:
+        d = np.flatnonzero(land == kind)
+        if not i.size or not d.size:
             continue
         places = np.stack([sole.x[i], sole.y[j]], axis=1)
         rest = np.flatnonzero(~taken[i, j])
-        near = own[KDTree(points[own, :2]).query(places[rest])[1]]
+        near = d[KDTree(points[d, :2]).query(places[rest])[1]]
         alone = np.flatnonzero(without & (land == kind))
         beside = KDTree(places).query(points[alone, :2])[1]
         cells = np.concatenate([cells, i[rest] * ny + j[rest], i[beside] * ny + j[beside]])

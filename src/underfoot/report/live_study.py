@@ -153,7 +153,7 @@ class LiveStudy(StudyStatus):
         return {self._keys_of_runs[k][0]: k for k in self.shown_runs}
 
     def _places(self, designs: Sequence[Design]) -> list[int]:
-        return [self._place_of_run[one.records.key] for one in designs]
+        return [self._place_of_run[design.records.key] for design in designs]
 
     def values(self, designs: Sequence[Design], goals: Sequence[AnyGoal]) -> Array:
         """Return (designs, goals) in SI of those that are asked for; nan where one has none."""
@@ -325,7 +325,7 @@ def with_live_page(study: Study, progress: Progress, workers: int | None) -> Ite
     try:
         yield told
     finally:
-        at_work = any(one["ended"] is None for one in study.store.sessions())
+        at_work = any(session["ended"] is None for session in study.store.sessions())
         if (study.store.folder / PAGE).exists() and not at_work:  # who ends last says so
             writer.write()
 

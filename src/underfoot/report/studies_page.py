@@ -39,7 +39,7 @@ def write_study(result: StudyResult, folder: Path) -> list[str]:
     (folder / "study.json").write_text(content, encoding="utf-8")
     for table in result.computed.tables:
         _write_csv(folder / f"{table.name}.csv", table.columns, table.rows)
-    rows = [one.to_dict() for one in result.judgements]
+    rows = [judgement.to_dict() for judgement in result.judgements]
     _write_csv(folder / "verdicts.csv", list(rows[0]), [list(row.values()) for row in rows])
     _write_csv(folder / "errata.csv", ("where", "printed", "used", "why"), result.study.errata)
     columns = ("panel", "series", "x", "y", "low", "high")

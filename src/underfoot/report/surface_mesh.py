@@ -253,8 +253,8 @@ class _Edges:
             return None
         number = part[0]
         length, steps = float(self._length[number]), np.diff(along)
-        own = np.flatnonzero(self._part == number)
-        corners, at = self._at[own], self._along[own]
+        d = np.flatnonzero(self._part == number)
+        corners, at = self._at[d], self._along[d]
         if self._closed[number]:
             steps = (steps + length / 2) % length - length / 2
             corners = np.concatenate([corners[:-1]] * 3 + [corners[:1]])

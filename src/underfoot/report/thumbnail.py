@@ -25,11 +25,11 @@ def thumbnail(case: Case) -> str:
         InputError, DataError: The sole of the case can't be made: its file is not there.
     """
     shape = case.shoe.outsole or sole_shape(case)
-    kept, key = Cache("thumbnails"), content_hash(shape, case.shoe.wear)
-    if (stored := kept.load(key)) is not None:
+    cache, key = Cache("thumbnails"), content_hash(shape, case.shoe.wear)
+    if (stored := cache.load(key)) is not None:
         return str(stored["svg"])
     svg = _drawn(case)
-    kept.store(key, {"svg": svg})
+    cache.store(key, {"svg": svg})
     return svg
 
 

@@ -341,8 +341,10 @@ def contacts_on_card(
     there = to_card(height)
     size = batch_size(math.prod(there.shape), free_memory(there))
     for n in range(0, len(loads), size):
-        for one in contacts_of(there, spacing, modulus, loads[n : n + size], *given, **settings):
-            yield replace(one, pressure=on_host(one.pressure), gap=on_host(one.gap))
+        for contact in contacts_of(
+            there, spacing, modulus, loads[n : n + size], *given, **settings
+        ):
+            yield replace(contact, pressure=on_host(contact.pressure), gap=on_host(contact.gap))
 
 
 def _physical(

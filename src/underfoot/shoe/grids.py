@@ -160,15 +160,15 @@ def _solved(
     """Return the x of the sole whose place on the floor is ``target``, between two x."""
     from scipy.optimize.elementwise import find_root
 
-    found = find_root(
+    rich_result = find_root(
         lambda x, place, across: along(x, across) - place,
         (np.full_like(target, low), np.full_like(target, high)),
         args=(target, y),
         tolerances={"xatol": _EXACT, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0},
     )
-    if not found.success.all():
+    if not rich_result.success.all():
         raise ConvergenceError("a place on the floor was not found on the sole", where="shoe")
-    return found.x
+    return rich_result.x
 
 
 def cut_heel(

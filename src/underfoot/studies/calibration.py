@@ -194,7 +194,8 @@ def slip_tester_grid(
     )
     shape = (2, len(facets), len(roughness))
     loads, peaks = (
-        np.array([one.number(name) for one in found]).reshape(shape) for name in (LOAD, PEAK)
+        np.array([outcome.number(name) for outcome in found]).reshape(shape)
+        for name in (LOAD, PEAK)
     )
     return loads, peaks
 
@@ -229,12 +230,12 @@ def _published(name: str) -> tuple[float, float]:
 def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
     """Return the mean peak slipping speed (m/s) if the contact had one COF."""
     changed = replace(sole, cofs=np.full(sole.cofs.size, cof))
-    peaks = [judged(changed.motion(one.walker)).peak_speed.value for one in study.subjects]
+    peaks = [judged(changed.motion(subject.walker)).peak_speed.value for subject in study.subjects]
     return float(np.mean([0.0 if v is None else v for v in peaks]))
 
 
 def _other_conclusions() -> tuple[str, ...]:
-    fitted = [one for one in measured_fluids(Catalogue.load()) if one.tau_hydro is not None]
+    fitted = [fluid for fluid in measured_fluids(Catalogue.load()) if fluid.tau_hydro is not None]
     decay = viscous_decay(fitted)
     value, spread = 1e3 * (decay.value or 0.0), 1.96e3 * (decay.uncertainty or 0.0)
     slopes, halves = precision_of_published()

@@ -217,9 +217,14 @@ def _compared(
     options: Options,
 ) -> tuple[list[tuple[Contrast, Side, Side]], list[tuple[Condition, Stand, Side]]]:
     sources = [s for s in corpus() if not options.quick or s.name in QUICK_SOURCES]
-    sides = [one for source in sources if source.verified for one in contrasts(source)]
-    shoes = [one for source in sources if source.verified for one in whole_shoe_stands(source)]
-    stands = [stand for one in sides for stand in (one.over, one.under)]
+    sides = [contrast for source in sources if source.verified for contrast in contrasts(source)]
+    shoes = [
+        whole_shoe_stand
+        for source in sources
+        if source.verified
+        for whole_shoe_stand in whole_shoe_stands(source)
+    ]
+    stands = [stand for contrast in sides for stand in (contrast.over, contrast.under)]
     stands += [stand for _, stand in shoes]
     cases = {case.hash: case for stand in stands for case in stand.cases}
     values: dict[str, Mapping[str, Any]] = {}
@@ -244,7 +249,7 @@ def _compared(
         return Side(float(cof) * stand.contact_time, draws * stand.contact_time)
 
     return (
-        [(one, side(one.over), side(one.under)) for one in sides],
+        [(contrast, side(contrast.over), side(contrast.under)) for contrast in sides],
         [(condition, stand, side(stand)) for condition, stand in shoes],
     )
 
@@ -344,8 +349,13 @@ def _basis(
 ) -> Table:
     stands = [(c.source, c.id, stand.taken, side.reason) for c, stand, side in shoes]
     stands += [
-        (one.source, one.effect, one.over.taken + one.under.taken, over.reason or under.reason)
-        for one, over, under in sides
+        (
+            contrast.source,
+            contrast.effect,
+            contrast.over.taken + contrast.under.taken,
+            over.reason or under.reason,
+        )
+        for contrast, over, under in sides
     ]
     rows = [
         (source, name, ", ".join(dict.fromkeys(taken)), reason)
@@ -399,9 +409,9 @@ def _where_known(left_out: list[LaboratoryScore]) -> tuple[float, float]:
     """
     known = [
         (width, inside)
-        for one in left_out
+        for score in left_out
         for c, width, inside in zip(
-            one.conditions, one.score.width, one.score.inside_95, strict=True
+            score.conditions, score.score.width, score.score.inside_95, strict=True
         )
         if not c.members and c.fluid != "dry"
         if not (c.numbers["sole_rq"].is_open or c.numbers["floor_rq"].is_open)
@@ -443,12 +453,12 @@ def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> 
 def _after(left_out: list[LaboratoryScore]) -> tuple[Table, dict[str, Quantity]]:
     """Return what one reading of a source says of the rest of it; each source counts once."""
     found: dict[str, list[tuple[float, ...]]] = {}
-    for one in left_out:
-        before = np.median(one.draws, axis=0)
-        measured = middle(one.conditions)
-        for i, j, median, low, high in one.after:
+    for score in left_out:
+        before = np.median(score.draws, axis=0)
+        measured = middle(score.conditions)
+        for i, j, median, low, high in score.after:
             row = (measured[int(j)], before[int(j)], measured[int(i)], median, low, high)
-            found.setdefault(one.conditions[int(j)].source, []).append(row)
+            found.setdefault(score.conditions[int(j)].source, []).append(row)
     rows, every, weight = [], [], []
     for source, values in found.items():
         y, before, known, median, low, high = np.array(values).T
@@ -493,8 +503,8 @@ def _constants(posterior: PairPosterior) -> Table:
 def _figure(left_out: list[LaboratoryScore]) -> Figure:
     values = [
         (c.reading.low, *np.exp(np.quantile(draws, (0.025, 0.5, 0.975))))
-        for one in left_out
-        for c, draws in zip(one.conditions, one.draws.T, strict=True)
+        for score in left_out
+        for c, draws in zip(score.conditions, score.draws.T, strict=True)
         if not c.reading.is_censored
     ]
     measured, low, median, high = np.array(values).T

@@ -150,7 +150,7 @@ def verdict(ratio: float, chance: float) -> str:
 
 def contrasts(source: Source) -> list[Contrast]:
     """Return every effect of a source, once for each fluid and step of an order."""
-    return [one for effect in source.effects for one in _of(effect, source)]
+    return [contrast for effect in source.effects for contrast in _of(effect, source)]
 
 
 def whole_shoe_stands(source: Source) -> list[tuple[Condition, Stand]]:
@@ -172,7 +172,7 @@ def stand(table: Mapping[str, Any]) -> Stand:
     taken: dict[str, None] = {}
     try:
         members = [_Contents({**table, **one}, taken) for one in table.get("members") or [{}]]
-        cases = tuple(case for one in members for case in one.cases())
+        cases = tuple(case for member in members for case in member.cases())
         if table.get("device") == "drop pad" and cases[0].contaminant:
             taken |= dict.fromkeys(("tread.lug_width", "pool", "drop", "pull time"))
             times = [_contact_time(case) for case in cases]

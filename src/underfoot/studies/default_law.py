@@ -70,8 +70,8 @@ def draws_without_report(seed: int = 0) -> PairDraws:
     stored = store.load(key)
     if stored is None:
         count = packaged_pair_draws().count
-        found = fitted(law, others, steps=STEPS, seed=seed).draws(count, seed)
-        stored = {name: np.asarray(values) for name, values in found.columns().items()}
+        draws = fitted(law, others, steps=STEPS, seed=seed).draws(count, seed)
+        stored = {name: np.asarray(values) for name, values in draws.columns().items()}
         store.store(key, stored)
     constants = {name: stored[name] for name in stored if not name.startswith("sd_")}
     return PairDraws(

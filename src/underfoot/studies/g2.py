@@ -181,23 +181,29 @@ def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Q
     """Return mean COF over the speeds, the order of the fluids and the decay speed of water."""
     quantities = {
         f"{'mean' if name in LABELS else 'rough'}.default.{name}": Quantity.of(
-            one.median, draws=one.mean
+            prediction.median, draws=prediction.mean
         )
-        for name, one in default.items()
+        for name, prediction in default.items()
     }
     printed = sorted(LABELS, key=lambda name: -default[name].points.cof.mean())
     order = [default[name] for name in printed]
     quantities["order.default"] = Quantity.of(
-        [one.median for one in order],
+        [prediction.median for prediction in order],
         names=[LABELS[name] for name in printed],
-        chance=chance_of_order([one.mean for one in order]),
+        chance=chance_of_order([prediction.mean for prediction in order]),
     )
     thin, thick = (
         [default[name] for name in LABELS if (1e3 * default[name].points.viscosity > 10) is side]
         for side in (False, True)
     )
-    least = np.min([one.mean for one in thin], axis=0), min(one.median for one in thin)
-    most = np.max([one.mean for one in thick], axis=0), max(one.median for one in thick)
+    least = (
+        np.min([prediction.mean for prediction in thin], axis=0),
+        min(prediction.median for prediction in thin),
+    )
+    most = (
+        np.max([prediction.mean for prediction in thick], axis=0),
+        max(prediction.median for prediction in thick),
+    )
     quantities["thin_and_thick.default"] = Quantity.of(
         [least[1], most[1]],
         names=("thin fluids", "thick fluids"),
@@ -231,9 +237,12 @@ def _default_table(default: Mapping[str, DefaultPrediction]) -> Table:
 
 
 def _default_conclusions(default: Mapping[str, DefaultPrediction]) -> tuple[str, ...]:
-    ratios = np.log([one.points.cof.mean() / one.median for one in default.values()])
+    ratios = np.log(
+        [prediction.points.cof.mean() / prediction.median for prediction in default.values()]
+    )
     widths = [
-        np.subtract(*np.log(np.quantile(one.mean, [0.975, 0.025]))) for one in default.values()
+        np.subtract(*np.log(np.quantile(prediction.mean, [0.975, 0.025])))
+        for prediction in default.values()
     ]
     return (
         "The law of the pair, which no reading of the report's laboratory has entered: mean COF of "
@@ -260,14 +269,14 @@ def _means(comparison: MechanismComparison) -> dict[str, Quantity]:
 
 def _decay(fluids: Mapping[str, BoundaryFriction]) -> dict[str, Quantity]:
     """Return tau (m/s) of each fitted fluid from viscosity x tau of the others."""
-    fitted = [one for one in fluids.values() if one.tau_hydro is not None]
+    fitted = [fluid for fluid in fluids.values() if fluid.tau_hydro is not None]
     found = {}
-    for one in fitted:
-        rest = viscous_decay([other for other in fitted if other is not one])
-        found[f"tau.{one.fluid}"] = Quantity.of(
-            (rest.value or 0.0) / one.viscosity,
+    for friction in fitted:
+        rest = viscous_decay([other for other in fitted if other is not friction])
+        found[f"tau.{friction.fluid}"] = Quantity.of(
+            (rest.value or 0.0) / friction.viscosity,
             "m/s",
-            deviation=(rest.uncertainty or 0.0) / one.viscosity,
+            deviation=(rest.uncertainty or 0.0) / friction.viscosity,
             scale="log",
         )
     return found
@@ -286,8 +295,8 @@ def intervals(
     assert given.cof_asymptote is not None
     inputs: dict[str, SourcedValue] = {"cof_bl": given.cof_boundary}
     inputs |= {"tau": given.tau_hydro, "asymptote": given.cof_asymptote}
-    for name, one in comparison.points.items():
-        if one.cof_boundary is not None and name != CALIBRATION_FLUID:
+    for name, point in comparison.points.items():
+        if point.cof_boundary is not None and name != CALIBRATION_FLUID:
             inputs[name] = comparison.fluids[name].cof_boundary
 
     def all_fluids(values: Mapping[str, float]) -> np.ndarray:
@@ -295,11 +304,11 @@ def intervals(
         drawn = replace(base, cof=np.asarray(cof), cof_boundary=None, label="")
         fit = calibrated_mechanism(test.mechanism, (drawn,), comparison.pin).values
         found = []
-        for name, one in comparison.points.items():
+        for name, point in comparison.points.items():
             own = values.get(name)
-            one = replace(one, cof_boundary=own)
+            point = replace(point, cof_boundary=own)
             found.append(
-                predicted(test.mechanism, fit, one, comparison.pin, own_boundary=own is not None)
+                predicted(test.mechanism, fit, point, comparison.pin, own_boundary=own is not None)
             )
         return np.array(found)
 
@@ -310,8 +319,8 @@ def intervals(
 
 def _coverage(points_of: Mapping[str, CofPoints], spread: Propagated) -> float:
     inside = [
-        np.mean((one.cof >= spread.low[i]) & (one.cof <= spread.high[i]))
-        for i, (name, one) in enumerate(points_of.items())
+        np.mean((cof_points.cof >= spread.low[i]) & (cof_points.cof <= spread.high[i]))
+        for i, (name, cof_points) in enumerate(points_of.items())
         if name != CALIBRATION_FLUID
     ]
     return float(np.mean(inside))
@@ -406,16 +415,16 @@ def _curve_table(comparison: MechanismComparison, spread: Propagated) -> Table:
     rows = [
         {
             "fluid": LABELS[name],
-            "viscosity mPa s": 1e3 * one.viscosity,
-            "speed m/s": one.speed[k],
-            "published": one.cof[k],
-            "as": one.curve,
+            "viscosity mPa s": 1e3 * cof_points.viscosity,
+            "speed m/s": cof_points.speed[k],
+            "published": cof_points.cof[k],
+            "as": cof_points.curve,
             "predicted": spread.value[i, k],
             "low": spread.low[i, k],
             "high": spread.high[i, k],
         }
-        for i, (name, one) in enumerate(comparison.points.items())
-        for k in range(one.speed.size)
+        for i, (name, cof_points) in enumerate(comparison.points.items())
+        for k in range(cof_points.speed.size)
     ]
     title = "COF of each fluid: published (fit of Eq. 17 or mean) and predicted, 95 %"
     return Table.of("curves", title, rows)
@@ -463,13 +472,13 @@ def _master_figure(
 ) -> Figure:
     above = [line(1e3 * master[0], master[1], "one curve, all fluids", colour="0.1")]
     below = [Layer("level", y=0.0, colour="0.1")]
-    for i, (name, one) in enumerate(points_of.items()):
-        place = one.viscosity * one.speed
+    for i, (name, cof_points) in enumerate(points_of.items()):
+        place = cof_points.viscosity * cof_points.speed
         style = {"colour": COLOURS[i], "marker": MARKERS[i]}
-        label = LABELS[name] + (" (mean)" if one.curve == "mean" else "")
-        above.append(points(1e3 * place, one.cof, label, **style))
+        label = LABELS[name] + (" (mean)" if cof_points.curve == "mean" else "")
+        above.append(points(1e3 * place, cof_points.cof, label, **style))
         fitted = np.interp(np.log(place), np.log(master[0]), master[1])
-        below.append(points(1e3 * place, one.cof - fitted, **style))
+        below.append(points(1e3 * place, cof_points.cof - fitted, **style))
     axis: dict[str, Any] = {"x_label": "viscosity × speed (mPa m)", "x_scale": "log"}
     title = f"mean residual {fit['mean_absolute']:.3f}, R² {fit['r_squared']:.2f}"
     label = "COF (published fits and means)"
@@ -486,16 +495,16 @@ def _master_figure(
 
 def _blind_figure(points_of: Mapping[str, CofPoints], spread: Propagated) -> Figure:
     panels = []
-    for i, (name, one) in enumerate(points_of.items()):
+    for i, (name, cof_points) in enumerate(points_of.items()):
         own = name == CALIBRATION_FLUID
         colour = GREY if own else OURS
-        error = float(np.mean(np.abs(spread.value[i] - one.cof)))
+        error = float(np.mean(np.abs(spread.value[i] - cof_points.cof)))
         what = "calibrated on" if own else f"error {error:.3f}"
-        mean = ", published mean" if one.curve == "mean" else ""
+        mean = ", published mean" if cof_points.curve == "mean" else ""
         layers = (
-            Layer("band", one.speed, low=spread.low[i], high=spread.high[i], colour=colour),
-            line(one.speed, spread.value[i], colour=colour),
-            points(one.speed, one.cof, colour=PRINTED),
+            Layer("band", cof_points.speed, low=spread.low[i], high=spread.high[i], colour=colour),
+            line(cof_points.speed, spread.value[i], colour=colour),
+            points(cof_points.speed, cof_points.cof, colour=PRINTED),
         )
         title = f"{LABELS[name]}: {what}{mean}"
         panels.append(Panel(layers, "sliding speed (m/s)", "COF", title, y_limits=(0.0, None)))

@@ -522,8 +522,8 @@ def _fluid_figure(
                         places,
                         medians,
                         "default law, 95 %",
-                        low=[one[0] for one in ends],
-                        high=[one[1] for one in ends],
+                        low=[end[0] for end in ends],
+                        high=[end[1] for end in ends],
                         marker="o",
                     ),
                     points(places, left[sole], "Eq. 26", colour=GREY, marker="s"),
@@ -533,8 +533,8 @@ def _fluid_figure(
                 x_ticks=list(TICKS),
             )
         )
-        highest = max(highest, *(one[1] for one in ends))
-    panels = [replace(one, y_limits=(0.0, 1.05 * highest)) for one in panels]
+        highest = max(highest, *(end[1] for end in ends))
+    panels = [replace(panel, y_limits=(0.0, 1.05 * highest)) for panel in panels]
     return Figure(
         panels,
         "Fig. 24: adhesion left under a fluid (friction less that under gear oil)",

@@ -232,10 +232,10 @@ def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
 
 def inputs_of(condition: Condition, *, quick: bool = False) -> list[OpenInput]:
     """Return the open inputs that are varied: all of an untreaded shoe, the deciding ones else."""
-    found = open_inputs(condition.case)
+    inputs = open_inputs(condition.case)
     if condition.untreaded and not quick:
-        return found
-    return [one for one in found if one.path in DECIDING]
+        return inputs
+    return [open_input for open_input in inputs if open_input.path in DECIDING]
 
 
 def sensitivities(
@@ -278,9 +278,11 @@ def sensitivities(
 def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) -> dict[str, Outcome]:
     """Return the conditions above COF 0.11 at 250 N, where the tester gave no more; by name."""
     high = [one.condition for one in readings if one.number("cof") > LOWER_FORCE_ABOVE]
-    cases = [one.case.replace("motion.normal_force", f"{LOWER_FORCE} N") for one in high]
+    cases = [
+        condition.case.replace("motion.normal_force", f"{LOWER_FORCE} N") for condition in high
+    ]
     found = outcomes(cases, quick=True, processes=processes)
-    return {one.name: each for one, each in zip(high, found, strict=True)}
+    return {condition.name: each for condition, each in zip(high, found, strict=True)}
 
 
 def depth_series(
@@ -363,7 +365,10 @@ def variance_p(chosen: Sequence[Condition], loads: Sequence[float]) -> dict[str,
     """Return p of tread, fluid and their interaction ("fluid:tread"); the shoes are repeats."""
     table = analysis_of_variance(
         list(loads),
-        {"fluid": [one.fluid for one in chosen], "tread": [one.tread for one in chosen]},
+        {
+            "fluid": [condition.fluid for condition in chosen],
+            "tread": [condition.tread for condition in chosen],
+        },
         ("fluid", "tread", "fluid:tread"),
     )
     return {row.term: row.p for row in table.rows if row.p is not None}
@@ -440,7 +445,10 @@ def lower_table(lower: Mapping[str, Outcome]) -> Table:
         "lower_force",
         "The same at 250 N where COF is above 0.11, as the tester was run (G.4.1; quick grid)",
         ("condition", "sensor N", "under the sole N", "COF"),
-        [(n, *(one.number(key) for key in (LOAD, TRUE_LOAD, "cof"))) for n, one in lower.items()],
+        [
+            (n, *(outcome.number(key) for key in (LOAD, TRUE_LOAD, "cof")))
+            for n, outcome in lower.items()
+        ],
     )
 
 
@@ -476,12 +484,12 @@ def depth_table(depths: Sequence[tuple[float, Outcome]]) -> Table:
         [
             {
                 "depth mm": 1e3 * depth,
-                "sensor N": one.number(LOAD),
-                "under the sole N": one.number(TRUE_LOAD),
-                "peak by sensor kPa": one.number(PEAK) / 1e3,
-                "COF": one.number("cof"),
+                "sensor N": outcome.number(LOAD),
+                "under the sole N": outcome.number(TRUE_LOAD),
+                "peak by sensor kPa": outcome.number(PEAK) / 1e3,
+                "COF": outcome.number("cof"),
             }
-            for depth, one in depths
+            for depth, outcome in depths
         ],
     )
 
@@ -570,7 +578,7 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
 def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
     """Return load against depth of tread: by the sensor and under the sole."""
     depth = [1e3 * each for each, _ in depths]
-    sole, sensor = ([one.number(name) for _, one in depths] for name in (TRUE_LOAD, LOAD))
+    sole, sensor = ([outcome.number(name) for _, outcome in depths] for name in (TRUE_LOAD, LOAD))
     layers = (
         Layer("span", low=1.5, high=3.0, label="report: no change", colour="0.9"),
         line(depth, sole, "under the sole", colour=SECOND, marker="s"),

@@ -138,7 +138,7 @@ def fill_cache(case: Case) -> dict[str, Any]:
 
 def crossing(study: SlipStudy) -> list[Any]:
     """Return the persons whose heel crossed the sensors."""
-    return [one for one in study.subjects if one.seen.crossed]
+    return [subject for subject in study.subjects if subject.seen.crossed]
 
 
 def numbers_of(study: SlipStudy) -> dict[str, float]:
@@ -171,7 +171,9 @@ def regressions(passages: Mapping[str, Array]) -> dict[str, float]:
     if passages["peak"].size < 6 or any(np.ptp(passages[p]) == 0 for p in PREDICTORS):
         return dict.fromkeys(("slope_lateral", "slope_speed", *names), math.nan)
     subsets = all_subsets(passages["peak"], {name: passages[name] for name in PREDICTORS})
-    found = {f"r2_{'_'.join(one.predictors)}": float(one.adjusted_r_squared) for one in subsets}
+    found = {
+        f"r2_{'_'.join(subset.predictors)}": float(subset.adjusted_r_squared) for subset in subsets
+    }
     for name in ("lateral", "speed"):
         found[f"slope_{name}"] = float(np.polyfit(passages[name], passages["peak"], 1)[0])
     return found
@@ -200,12 +202,12 @@ def population_draws(
             by_name[name] = np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1)
     by_name["peak_speed"] = by_friction.means("peak_speed", count, crossed=True)
     by_name["correlation"] = correlations(columns["peak_speed"], columns["peak_pressure"])
-    rows = np.array([one.seen.row_peaks for one in persons if one.seen.row_peaks])
+    rows = np.array([person.seen.row_peaks for person in persons if person.seen.row_peaks])
     if len(rows) == len(persons):
         means = rows[drawn].mean(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             by_name["last_row_change"] = means[:, -1] / means[:, 0] - 1.0
-    each = [_passages(study, [one]) for one in persons]
+    each = [_passages(study, [person]) for person in persons]
     table = [
         regressions({key: np.concatenate([each[i][key] for i in row]) for key in each[0]})
         for row in drawn[: draws // 5]
@@ -364,7 +366,7 @@ def conclusions(studies: Mapping[str, SlipStudy], passages: Mapping[str, Array])
     bare, tread = studies["untreaded"], studies["treaded"]
     speeds = [bare.peak_speed_at(effective_mass=share) for share in (0.06, 0.114, 0.17)]
     text = " / ".join("-" if v is None else f"{v:.2f}" for v in speeds)
-    pressures = [numbers_of(one)["peak_pressure"] / 1e3 for one in (bare, tread)]
+    pressures = [numbers_of(study)["peak_pressure"] / 1e3 for study in (bare, tread)]
     return (
         f"Treaded: {100 * tread.of('slipped').mean():.0f} % slip here, nobody in the report.",
         f"Untreaded: {100 * bare.of('slipped').mean():.0f} % slip. Tread takes the fluid pressure "
@@ -579,7 +581,7 @@ def _wedge_squeeze_figure(films: Sequence[HeldFilm], passages: Mapping[str, Arra
 
 def wedge_sentence(films: Sequence[HeldFilm]) -> str:
     """Return in words what speed leaves of the film once the fluid trapped at landing is out."""
-    middle = {one.speed: one for one in films if one.viscosity == CURVES[1]}
+    middle = {film.speed: film for film in films if film.viscosity == CURVES[1]}
     shares = ", ".join(
         f"{middle[speed].at(HELD_FOR):.2g} % at {speed:g} m/s" for speed in HELD_SPEEDS
     )
@@ -588,7 +590,7 @@ def wedge_sentence(films: Sequence[HeldFilm]) -> str:
 
 def _wedge_squeeze_quantities(films: Sequence[HeldFilm]) -> dict[str, Quantity]:
     """Return the trends that the concept of Fig. 35 draws: more film with each of three."""
-    by = {(one.viscosity, one.speed): one for one in films}
+    by = {(film.viscosity, film.speed): film for film in films}
     thin, middle, thick = (by[v, 0.5] for v in sorted(CURVES))
     slow, quick = (by[CURVES[1], s].at(0.2) for s in (HELD_SPEEDS[0], HELD_SPEEDS[-1]))
     return {

@@ -186,11 +186,13 @@ def pin_strength() -> tuple[float, float]:
     """
     catalogue = Catalogue.load()
     pin = pin_on_disk(catalogue)
-    own = next(one for one in measured_fluids(catalogue) if one.fluid == FLUID)
-    assert own.tau_hydro is not None
-    assert own.cof_asymptote is not None
-    left = float(own.cof_asymptote.value or 0.0)
-    cof = float(stribeck_cof(0.3, own.cof_boundary.value or 0.0, own.tau_hydro.value or 0.0, left))
+    friction = next(fluid for fluid in measured_fluids(catalogue) if fluid.fluid == FLUID)
+    assert friction.tau_hydro is not None
+    assert friction.cof_asymptote is not None
+    left = float(friction.cof_asymptote.value or 0.0)
+    cof = float(
+        stribeck_cof(0.3, friction.cof_boundary.value or 0.0, friction.tau_hydro.value or 0.0, left)
+    )
     rules = sole_case(60.0, "stribeck")
     factor, longest, hurst = (
         float(rules.value(f"interface.{name}"))
@@ -229,7 +231,10 @@ def sole_frictions(
     frictions = [
         _friction(*one, found[i * width : (i + 1) * width], coarse[i]) for i, one in enumerate(plan)
     ]
-    return [_with_draws(one) if one.law in (JUDGED, "pair") else one for one in frictions]
+    return [
+        _with_draws(friction) if friction.law in (JUDGED, "pair") else friction
+        for friction in frictions
+    ]
 
 
 def _with_draws(friction: SoleFriction) -> SoleFriction:
@@ -246,12 +251,12 @@ def _with_draws(friction: SoleFriction) -> SoleFriction:
 def _friction(
     sole: str, law: str, shore: float, computed: list[Outcome], coarse: Outcome | None
 ) -> SoleFriction:
-    window, ends = computed[:-2], [one.number("cof") for one in computed[-2:]]
-    values = np.array([one.number("cof") for one in window])
+    window, ends = computed[:-2], [outcome.number("cof") for outcome in computed[-2:]]
+    values = np.array([outcome.number("cof") for outcome in window])
     weights = np.array([1.0, 4.0, 1.0]) / 6 if values.size == 3 else np.ones(1)
     middle = window[len(window) // 2]
     mean = float(weights @ values)
-    pressures = [max(one.number("peak_fluid_pressure_sensor") for one in window)]
+    pressures = [max(outcome.number("peak_fluid_pressure_sensor") for outcome in window)]
     on_coarse = math.nan
     if coarse is not None:
         on_coarse = mean + coarse.number("cof") - middle.number("cof")
@@ -284,8 +289,8 @@ def risk_by_rcof(count: int = 29) -> tuple[float, float, float]:
     Lowest and highest are the expected extremes of normal values (0.20 ± 0.03).
     """
     rcof = risk_places(count)
-    found = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
-    return float(found[0]), float(found[1]), float(found[2])
+    incomplete = np.mean([ReportG6()(acof, rcof) for acof in PRINTED_ACOF.values()], axis=0)
+    return float(incomplete[0]), float(incomplete[1]), float(incomplete[2])
 
 
 def risk_places(count: int = 29) -> Array:
@@ -363,8 +368,8 @@ def slips(
         study = slip_study(
             replace(setting, friction=law, key=""), population, array=slip_sensors(case)
         )
-        fell = np.array([one.seen.slipped for one in study.subjects])
-        rcof = np.array([one.walker.rcof for one in study.subjects])
+        fell = np.array([subject.seen.slipped for subject in study.subjects])
+        rcof = np.array([subject.walker.rcof for subject in study.subjects])
         share[sole] = float(fell.mean())
         every.append((np.full(fell.size, level), rcof, fell))
     levels, rcof, fell = (np.concatenate(column) for column in zip(*every, strict=True))
@@ -373,7 +378,7 @@ def slips(
 
 def of_law(frictions: Sequence[SoleFriction], law: str) -> dict[str, SoleFriction]:
     """Return the soles of one law by name."""
-    return {one.sole: one for one in frictions if one.law == law}
+    return {friction.sole: friction for friction in frictions if friction.law == law}
 
 
 def quantities(
@@ -414,7 +419,7 @@ def quantities(
         by_name[f"softer.{law}"] = Quantity.of(change, **given, levels=levels)
         order = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"), chance=chance)
         by_name[f"order.{law}"] = order
-    pressures = np.max([one.sensor_pressure for one in frictions], axis=0)
+    pressures = np.max([sole_friction.sensor_pressure for sole_friction in frictions], axis=0)
     levels = on_grids(pressures[0], pressures[-1])
     by_name["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
     for sole, acof in PRINTED_ACOF.items():
@@ -447,25 +452,25 @@ def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
         "ACOF under the slip tester of G.6; low and high: hardness ± 5 Shore A",
         [
             {
-                "law": one.law,
-                "outsole": one.sole,
-                "Shore A": one.shore,
-                "ACOF": one.cof,
-                "±": one.deviation,
-                "low": one.low,
-                "high": one.high,
-                "coarse grid": one.coarse,
-                "sensor Pa": one.sensor_pressure[-1],
-                "load on film": one.film_share,
+                "law": friction.law,
+                "outsole": friction.sole,
+                "Shore A": friction.shore,
+                "ACOF": friction.cof,
+                "±": friction.deviation,
+                "low": friction.low,
+                "high": friction.high,
+                "coarse grid": friction.coarse,
+                "sensor Pa": friction.sensor_pressure[-1],
+                "load on film": friction.film_share,
             }
-            for one in frictions
+            for friction in frictions
         ],
     )
 
 
 def _risk_table(frictions: Sequence[SoleFriction]) -> Table:
     every = [("printed", name, acof) for name, acof in PRINTED_ACOF.items()]
-    every += [(one.law, one.sole, one.cof) for one in frictions]
+    every += [(friction.law, friction.sole, friction.cof) for friction in frictions]
     return Table.of(
         "slip_risk",
         "Share of a population with RCOF 0.20 ± 0.03 that slips, by published models",
@@ -483,14 +488,14 @@ def _step_table(steps: Mapping[str, Slips]) -> Table:
         [
             {
                 "friction": STEPS[name],
-                **{sole: one.share[sole] for sole in SOLES},
-                "all": np.mean(list(one.share.values())),
-                "slope": one.fit.slope,
-                "slope low": one.fit.slope_low,
-                "slope high": one.fit.slope_high,
-                "half slip at": one.fit.half,
+                **{sole: step.share[sole] for sole in SOLES},
+                "all": np.mean(list(step.share.values())),
+                "slope": step.fit.slope,
+                "slope low": step.fit.slope_low,
+                "slope high": step.fit.slope_high,
+                "half slip at": step.fit.half,
             }
-            for name, one in steps.items()
+            for name, step in steps.items()
         ],
     )
 

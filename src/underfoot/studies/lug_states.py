@@ -49,9 +49,9 @@ def states_scores(stresses: Sequence[float] = STRESSES) -> list[StatesScore]:
         law = parts.local_law
         if isinstance(law, EdgedLaw):
             law = replace(law, dewetting=stress)
-        found = contact_friction(parts.case, parts.context, law, parts.sole, contact)
-        assert found.sampled is not None
-        return np.append(found.sums.cof.value or 0.0, found.sampled.cof)
+        friction = contact_friction(parts.case, parts.context, law, parts.sole, contact)
+        assert friction.sampled is not None
+        return np.append(friction.sums.cof.value or 0.0, friction.sampled.cof)
 
     scores = []
     for stress in stresses:
@@ -77,5 +77,6 @@ def _evidence(pairs: Sequence[TreadPair]) -> float:
 
 if __name__ == "__main__":
     print("S, Pa   ln p: fitted sources   others   of these in thin fluids")
-    for one in states_scores():
-        print(f"{one.stress:5g} {one.fitted:20.2f} {one.left_out:12.2f} {one.left_out_thin:12.2f}")
+    for score in states_scores():
+        left_out = f"{score.left_out:12.2f} {score.left_out_thin:12.2f}"
+        print(f"{score.stress:5g} {score.fitted:20.2f} {left_out}")

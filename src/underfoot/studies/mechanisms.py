@@ -146,7 +146,7 @@ def mechanisms() -> dict[str, Mechanism]:
         Mechanism("viscoelastic_area", "area lost to stiffening rubber", area, power, "no fluid"),
         Mechanism("one_constant", "no mechanism: one constant", constant, scale, "viscosity"),
     )
-    return {one.name: one for one in terms}
+    return {term.name: term for term in terms}
 
 
 def mechanism(name: str) -> Mechanism:
@@ -175,13 +175,13 @@ def calibrated_mechanism(
 
     def model(values: Mapping[str, float]) -> NDArray[np.float64]:
         return np.concatenate(
-            [predicted(chosen, values, one, pin, own_boundary=own_boundary) for one in points]
+            [predicted(chosen, values, point, pin, own_boundary=own_boundary) for point in points]
         )
 
-    fluids = ", ".join(dict.fromkeys(one.label for one in points))
+    fluids = ", ".join(dict.fromkeys(point.label for point in points))
     return calibrated(
         model,
-        np.concatenate([one.cof for one in points]),
+        np.concatenate([point.cof for point in points]),
         unknown,
         source=f"{chosen.name} calibrated on {fluids}",
     )
@@ -245,7 +245,7 @@ class BlindTest:
     @property
     def error(self) -> float:
         """Mean absolute error over fluids and speeds, each fluid counted alike."""
-        return float(np.mean([one.error for one in self.predictions]))
+        return float(np.mean([prediction.error for prediction in self.predictions]))
 
     @property
     def deviation(self) -> float:
@@ -269,8 +269,8 @@ def blind_test(
         chosen,
         fit,
         tuple(
-            Prediction(one, predicted(chosen, fit.values, one, pin, own_boundary=own_boundary))
-            for one in others
+            Prediction(other, predicted(chosen, fit.values, other, pin, own_boundary=own_boundary))
+            for other in others
         ),
         own_boundary,
     )
@@ -284,7 +284,7 @@ def leave_one_out(
         raise InputError(f"{len(points)} fluid", where="points", allowed="2 or more")
     found = []
     for left_out in points:
-        rest = tuple(one for one in points if one is not left_out)
+        rest = tuple(point for point in points if point is not left_out)
         fit = calibrated_mechanism(chosen, rest, pin)
         found.append(
             Prediction(left_out, predicted(chosen, fit.values, left_out, pin, own_boundary=False))
@@ -297,9 +297,9 @@ def stribeck_left_out(fluids: Sequence[BoundaryFriction], pin: Pin) -> tuple[Pre
     from underfoot.friction import stribeck_law_at
 
     found = []
-    for one in fluids:
-        law = stribeck_law_at(one.viscosity, [other for other in fluids if other is not one])
-        points = fluid_points(one, rq=pin.sole_rq)
+    for fluid in fluids:
+        law = stribeck_law_at(fluid.viscosity, [other for other in fluids if other is not fluid])
+        points = fluid_points(fluid, rq=pin.sole_rq)
         # a film of 1 m: the viscous part is no part of what Eq. 17 fits
         shear = law(pin.pressure, points.speed, 1.0)
         found.append(Prediction(points, (shear.adhesion + shear.hysteresis) / pin.pressure))

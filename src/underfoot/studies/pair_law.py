@@ -223,7 +223,8 @@ class Rows:
         self.error = np.array([c.reading.sd_ln for c in self.conditions])
         sources = [c.source for c in self.conditions]
         self.groups = [
-            np.flatnonzero([one == name for one in sources]) for name in dict.fromkeys(sources)
+            np.flatnonzero([source == name for source in sources])
+            for name in dict.fromkeys(sources)
         ]
         self.pairs = [c.pair for c in self.conditions]
         self.same_pair = [_same(self.pairs, group) for group in self.groups]
@@ -560,7 +561,8 @@ def weights(conditions: Sequence[Condition]) -> Array:
     """Return weights (rows,): each laboratory 1, its printed curves alike, their points alike."""
     curves = [c.curve for c in conditions]
     each = [
-        len({c.curve for c in conditions if c.laboratory == one.laboratory}) for one in conditions
+        len({c.curve for c in conditions if c.laboratory == condition.laboratory})
+        for condition in conditions
     ]
     return np.array([1 / (n * curves.count(c)) for n, c in zip(each, curves, strict=True)])
 
@@ -676,8 +678,10 @@ def _regression(
 
     names = np.array([c.laboratory for c in training])
     rest = np.empty_like(y)
-    for one in dict.fromkeys(names):
-        rest[names == one] = y[names == one] - predicted(names != one, x[names == one])
+    for fromkey in dict.fromkeys(names):
+        rest[names == fromkey] = y[names == fromkey] - predicted(
+            names != fromkey, x[names == fromkey]
+        )
     sd = np.sqrt(np.average(rest**2, weights=weight))
     mean = predicted(np.ones(y.size, dtype=bool), features(left_out))
     noise = np.random.default_rng(seed).normal(size=(2000, len(left_out)))
@@ -736,19 +740,19 @@ class CorpusScore:
 
 def corpus_score(law: str, left_out: Sequence[LaboratoryScore]) -> CorpusScore:
     """Return the summary over the laboratories left out in turn."""
-    conditions = [c for one in left_out for c in one.conditions]
+    conditions = [c for score in left_out for c in score.conditions]
     weight = weights(conditions)
     log_density, error, inside_50, inside_95, width = (
-        np.concatenate([getattr(one.score, name) for one in left_out])
+        np.concatenate([getattr(score.score, name) for score in left_out])
         for name in ("log_density", "error", "inside_50", "inside_95", "width")
     )
-    median = np.concatenate([np.median(one.draws, axis=0) for one in left_out])
+    median = np.concatenate([np.median(score.draws, axis=0) for score in left_out])
     ranks = []
-    for one in left_out:
-        rows = np.flatnonzero([not c.reading.is_censored for c in one.conditions])
+    for score in left_out:
+        rows = np.flatnonzero([not c.reading.is_censored for c in score.conditions])
         if rows.size >= 4:
-            values = [one.conditions[row].reading.low for row in rows]
-            expected = one.expected[rows].round(6)
+            values = [score.conditions[row].reading.low for row in rows]
+            expected = score.expected[rows].round(6)
             # equal predictions order nothing
             ranks.append(spearmanr(values, expected)[0] if np.ptp(expected) > 0 else 0.0)
     return CorpusScore(

@@ -186,7 +186,9 @@ def summary_verdicts(text: str) -> dict[str, str]:
 
 def beside_the_print(row: Row, verdicts: Mapping[str, str]) -> str:
     """Return the verdicts of a row's statements, as "2 agrees, 1 undecided"; "-" without any."""
-    known = {one.name: one for name in studies() for one in study(name).statements}
+    known = {
+        statement.name: statement for name in studies() for statement in study(name).statements
+    }
     given = Counter(
         verdicts.get(f"{known[name].text} ({known[name].place})", "not in the last run")
         for name in row.of("statement")
@@ -201,7 +203,7 @@ def markdown(verdicts: Mapping[str, str]) -> str:
     """Return the page."""
     every, told = rows(), sentences()
     counts = Counter(row.rating for row in every)
-    stands = Counter(one.stands for one in told)
+    stands = Counter(sentence.stands for sentence in told)
     against = [row for row in every if "disagrees" in beside_the_print(row, verdicts)]
     text = [
         "# The report, row by row",
@@ -229,13 +231,14 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         f"{len(told)} sentences: " + ", ".join(f"{stands[k]} {v}" for k, v in STANDS.items()) + ".",
         "",
     ]
-    for number, one in enumerate(told, start=1):
+    for number, sentence in enumerate(told, start=1):
         text += [
-            f"{number}. **{one.text}** ({one.place}): *{STANDS[one.stands]}*. {one.finds}",
-            f"   Why: {one.why}",
+            f"{number}. **{sentence.text}** ({sentence.place}): *{STANDS[sentence.stands]}*. "
+            f"{sentence.finds}",
+            f"   Why: {sentence.why}",
         ]
-        text += [f"   What would decide: {one.decides}"] if one.decides != "-" else []
-        text += [f"   Evidence: {one.sources}.", ""]
+        text += [f"   What would decide: {sentence.decides}"] if sentence.decides != "-" else []
+        text += [f"   Evidence: {sentence.sources}.", ""]
     text += ["## Row by row", ""]
     table = [
         "| row | what | what a person runs | rating | beside the print | cause |",

@@ -52,7 +52,7 @@ class Table:
     def of(cls, name: str, title: str, records: Iterable[Mapping[str, Any]]) -> Table:
         """Return the table of one or more records, each cell by the name of its column."""
         items = list(records)
-        return cls(name, title, tuple(items[0]), [tuple(one.values()) for one in items])
+        return cls(name, title, tuple(items[0]), [tuple(item.values()) for item in items])
 
 
 def _cell(value: Any) -> Any:
@@ -103,14 +103,22 @@ class StudyResult(Presentable):
                 kind.heading,
                 columns,
                 [
-                    (f"{s.text} ({s.place})", s.printed, one.ours, str(one.verdict), one.reason)
-                    for one in some
-                    for s in [one.statement]
+                    (
+                        f"{s.text} ({s.place})",
+                        s.printed,
+                        judgement.ours,
+                        str(judgement.verdict),
+                        judgement.reason,
+                    )
+                    for judgement in some
+                    for s in [judgement.statement]
                 ],
             )
             for kind, some in tables_by_kind(self.judgements)
         ]
-        computed = [ShownTable(one.title, one.columns, one.rows) for one in self.computed.tables]
+        computed = [
+            ShownTable(table.title, table.columns, table.rows) for table in self.computed.tables
+        ]
         return (*verdicts, *computed)
 
     def heading(self) -> str:
@@ -148,7 +156,7 @@ class StudyResult(Presentable):
         return {
             "study": self.study.name,
             "source": self.study.source,
-            "statements": [one.to_dict() for one in self.judgements],
+            "statements": [judgement.to_dict() for judgement in self.judgements],
             **computed,
             "errata": self.study.errata,
             "quick": self.quick,

@@ -89,7 +89,7 @@ def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
     slope, half, prior = _grid()
     z = np.linspace(-2.5, 2.5, 15)
     errors, weight = SD_SOURCE * z, np.exp(-0.5 * z**2) / np.exp(-0.5 * z**2).sum()
-    shares = [share(one, slope, half, errors) for one in sources]
+    shares = [share(source, slope, half, errors) for source in sources]
     rows: list[dict[str, Any]] = []
     for slips, computed in zip(sources, shares, strict=True):
         log_weight = np.log(prior)

@@ -229,26 +229,26 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
 
 def _check(study_name: str, statements: Sequence[Statement]) -> None:
     """Refuse what would let one reading count twice."""
-    ids = [one.id for one in statements]
+    ids = [statement.id for statement in statements]
     read: dict[str, str] = {}
-    for one in statements:
-        where = f"statements/{study_name}.toml, {one.id}"
-        if ids.count(one.id) > 1:
+    for statement in statements:
+        where = f"statements/{study_name}.toml, {statement.id}"
+        if ids.count(statement.id) > 1:
             raise InputError("two statements have this id", where=where)
-        if one.kind in (Kind.RESTATES, Kind.ALTERNATIVE):
-            other, _, rest = one.of.partition(".")
-            if not rest and one.of not in ids:
-                raise unknown_name("statement", one.of or "(none)", ids, where=f"{where}.of")
+        if statement.kind in (Kind.RESTATES, Kind.ALTERNATIVE):
+            other, _, rest = statement.of.partition(".")
+            if not rest and statement.of not in ids:
+                raise unknown_name("statement", statement.of or "(none)", ids, where=f"{where}.of")
             if rest and other not in studies():
                 raise unknown_name("study", other, studies(), where=f"{where}.of")
-        if one.kind is Kind.INDEPENDENT and one.quantity:
-            if one.quantity in read:
+        if statement.kind is Kind.INDEPENDENT and statement.quantity:
+            if statement.quantity in read:
                 raise InputError(
-                    f"reads {one.quantity}, as {read[one.quantity]} does",
+                    f"reads {statement.quantity}, as {read[statement.quantity]} does",
                     where=where,
                     remedy='Mark it kind = "restates", of = "..."; a reading counts once',
                 )
-            read[one.quantity] = one.id
+            read[statement.quantity] = statement.id
 
 
 def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:

@@ -74,9 +74,14 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
             text += [f"### {kind.heading}", ""]
             table = ["| statement | printed | tolerance | computed | outside by | verdict | why |"]
             table += ["|---" * 7 + "|"]
-            for one in some:
-                s = one.statement
-                ours = (one.ours, one.difference, str(one.verdict), one.reason)
+            for judgement in some:
+                s = judgement.statement
+                ours = (
+                    judgement.ours,
+                    judgement.difference,
+                    str(judgement.verdict),
+                    judgement.reason,
+                )
                 cells = (f"{s.text} ({s.place})", s.printed, s.tolerance_reason, *ours)
                 table.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
             text += folded(f"Statements: {len(some)}", table)
@@ -95,7 +100,7 @@ def folded(label: str, lines: Iterable[str]) -> list[str]:
 
 def write_summary(results: Sequence[StudyResult], folder: Path) -> None:
     """Write summary.csv and summary.md into an existing folder."""
-    rows = [one.to_dict() for result in results for one in result.judgements]
+    rows = [judgement.to_dict() for result in results for judgement in result.judgements]
     with (folder / "summary.csv").open("w", newline="", encoding="utf-8-sig") as stream:
         writer = csv.DictWriter(stream, list(rows[0]) if rows else ["statement"])
         writer.writeheader()

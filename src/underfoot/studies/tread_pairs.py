@@ -35,8 +35,12 @@ pair is known. Both named before the fit."""
 
 def tread_contrasts() -> list[Contrast]:
     """Return the published effects of treads that can be computed."""
-    every = (one for source in corpus() if source.verified for one in contrasts(source))
-    return [one for one in every if set(one.topic.split(", ")) <= TREAD and not one.reason]
+    every = (contrast for source in corpus() if source.verified for contrast in contrasts(source))
+    return [
+        contrast
+        for contrast in every
+        if set(contrast.topic.split(", ")) <= TREAD and not contrast.reason
+    ]
 
 
 def cof_and_draws(case: Case) -> Array:
@@ -54,14 +58,14 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
     model itself: of contact law, film and suction. Sources that the two states of lugs were fitted
     to are computed with one: a fit makes no error smaller.
     """
-    for one in tread_contrasts():
-        stands = (_unfitted(stand, one.source) for stand in (one.over, one.under))
+    for contrast in tread_contrasts():
+        stands = (_unfitted(stand, contrast.source) for stand in (contrast.over, contrast.under))
         over, under = (_drawn(stand, of_case) for stand in stands)
-        ends = _published(one, under[0])
-        second = _place(one.under.cases[0])
-        names, case = (one.source, one.effect), one.over.cases[0]
-        yield _pair(*names, case, ends, over / under, second, one.extremes_of)
-    paired = {one.source for one in tread_contrasts()}
+        ends = _published(contrast, under[0])
+        second = _place(contrast.under.cases[0])
+        names, case = (contrast.source, contrast.effect), contrast.over.cases[0]
+        yield _pair(*names, case, ends, over / under, second, contrast.extremes_of)
+    paired = {contrast.source for contrast in tread_contrasts()}
     for source in corpus():
         shoes = whole_shoe_stands(source) if source.verified and source.name not in paired else []
         for condition, stand in shoes:
@@ -80,7 +84,7 @@ def computed_pairs(of_case: Callable[[Case], Array] = cof_and_draws) -> Iterator
 def _unfitted(stand: Stand, source: str) -> Stand:
     if source not in FITTED:
         return stand
-    return replace(stand, cases=tuple(one.replace("film.dewetting", 0.0) for one in stand.cases))
+    return replace(stand, cases=tuple(case.replace("film.dewetting", 0.0) for case in stand.cases))
 
 
 def _pair(

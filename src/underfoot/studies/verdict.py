@@ -278,11 +278,11 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
             )
             for i, value in enumerate(values)
         ]
-        note = next((one.note for one in on_grids if not one.converged), "")
+        note = next((grid.note for grid in on_grids if not grid.converged), "")
         if note:
             return _judgement(statement, Verdict.NOT_CONVERGED, note, quantity)
-        values, error = [one.value for one in on_grids], max(one.error for one in on_grids)
-        note = next((one.note for one in on_grids if one.note), "")
+        values, error = [grid.value for grid in on_grids], max(grid.error for grid in on_grids)
+        note = next((grid.note for grid in on_grids if grid.note), "")
     chance = quantity.probability(low, high)
     ours_low, ours_high = quantity.interval
     ours_low, ours_high = min(ours_low, *values) - error, max(ours_high, *values) + error
@@ -324,15 +324,15 @@ def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
 
 def judged(statements: Iterable[Statement], quantities: Mapping[str, Quantity]) -> list[Judgement]:
     """Return the verdicts of a study."""
-    return [judge(one, quantities) for one in statements]
+    return [judge(statement, quantities) for statement in statements]
 
 
 def counts(judgements: Iterable[Judgement]) -> dict[Verdict, int]:
     """Return how many *independent* statements got each verdict; no other kind is counted."""
     number = dict.fromkeys(Verdict, 0)
-    for one in judgements:
-        if one.statement.kind is Kind.INDEPENDENT:
-            number[one.verdict] += 1
+    for judgement in judgements:
+        if judgement.statement.kind is Kind.INDEPENDENT:
+            number[judgement.verdict] += 1
     return number
 
 

@@ -119,8 +119,8 @@ def _fields(path: Path) -> tuple[dict[str, np.ndarray], list[float] | None]:
 
             with h5py.File(BytesIO(data), "r") as file:
                 attributes = dict(file.attrs)
-                fields = {name: np.asarray(one) for name, one in file.items()
-                          if isinstance(one, h5py.Dataset)}  # fmt: skip
+                fields = {name: np.asarray(dataset) for name, dataset in file.items()
+                          if isinstance(dataset, h5py.Dataset)}  # fmt: skip
         elif data.startswith(_NUMPY):
             fields = {"": np.load(BytesIO(data), allow_pickle=False)}
         else:

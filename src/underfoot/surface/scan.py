@@ -330,13 +330,13 @@ def _cutoff(length: float, resolved: float, given: float | None, where: str) -> 
                 "fits",
             )
         return given, ""
-    fitting = [one for one in CUTOFFS if holds(length, one) and one >= 4 * resolved]
+    fitting = [cutoff for cutoff in CUTOFFS if holds(length, cutoff) and cutoff >= 4 * resolved]
     if not fitting:
         raise DataError(
             f"a scan of {display(length, 'm')} that resolves waves of "
             f"{display(resolved, 'm')} holds no cut-off",
             where=where,
-            allowed=f"{', '.join(display(one, 'm') for one in CUTOFFS)}: at most the length, "
+            allowed=f"{', '.join(display(cutoff, 'm') for cutoff in CUTOFFS)}: at most the length, "
             "at least four of the shortest waves",
             remedy="Measure a longer part, or with a smaller spacing",
         )
@@ -397,7 +397,7 @@ def _numbers(
     source = f"{STANDARDS[0]}, cut-off {display(cutoff, 'm')}, {count} sections"
     values = {}
     for name, (_, unit, _) in QUANTITIES.items():
-        found = [getattr(one, name) for one in read]
+        found = [getattr(roughness, name) for roughness in read]
         if any(value is None for value in found):
             values[name] = SourcedValue(None, unit, reason=read[0].not_estimated[name])
             continue

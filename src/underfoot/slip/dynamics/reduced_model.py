@@ -443,14 +443,14 @@ def error_of(sole: ReducedSole, runs: Sequence[SlipMotion]) -> FitError:
     """Return the root-mean-square errors of the reduced model against full runs."""
     peaks, speeds, distances, shares, same = [], [], [], [], []
     for run in runs:
-        own = sole.motion(run.walker)
-        peaks.append(own.peak_speed - run.peak_speed)
-        speeds.append(np.interp(run.time, own.time, own.speed, right=0.0) - run.speed)
-        distances.append(own.distance[-1] - run.distance[-1])
+        motion = sole.motion(run.walker)
+        peaks.append(motion.peak_speed - run.peak_speed)
+        speeds.append(np.interp(run.time, motion.time, motion.speed, right=0.0) - run.speed)
+        distances.append(motion.distance[-1] - run.distance[-1])
         fluid, _ = sole.carried_at(run)
         loaded = run.normal > LEAST_LOAD
         shares.append((fluid - run.fluid_load)[loaded] / run.normal[loaded])
-        same.append((own.peak_speed > SPEED_SCALE) == (run.peak_speed > SPEED_SCALE))
+        same.append((motion.peak_speed > SPEED_SCALE) == (run.peak_speed > SPEED_SCALE))
 
     def rms(values: Sequence[float] | Array) -> float:
         return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
@@ -472,8 +472,8 @@ def _residual(sole: ReducedSole, runs: Sequence[SlipMotion]) -> Array:
         fluid, _ = sole.carried_at(run)
         load = np.maximum(run.normal[at], LEAST_LOAD)
         out.append((fluid[at] - run.fluid_load[at]) / load / math.sqrt(at.size))
-        own = sole.motion(run.walker, step=1e-3)
-        speed = np.interp(run.time[at], own.time, own.speed, right=0.0)
+        motion = sole.motion(run.walker, step=1e-3)
+        speed = np.interp(run.time[at], motion.time, motion.speed, right=0.0)
         out.append((speed - run.speed[at]) / SPEED_SCALE / math.sqrt(at.size))
     residuals = np.concatenate(out)
     return np.where(np.isfinite(residuals), residuals, 1e3)

@@ -176,17 +176,17 @@ class SlipStudy:
         """
         if self.sole is None:
             return None
-        own = self.setting.friction
+        pa = self.setting.friction
         place: dict[str, Any] = {
             "contact_pressure": MEAN_PRESSURE,
             "speed": SPEED_SCALE,
             "film_thickness": 1e-3,
         }
-        spread = sampled_points(law or own, samples=draws, seed=seed, **place)
+        spread = sampled_points(law or pa, samples=draws, seed=seed, **place)
         if spread is None:
             return None
         cof = np.ravel(spread.draws)
-        parts = own(MEAN_PRESSURE, SPEED_SCALE, 1e-3)
+        parts = pa(MEAN_PRESSURE, SPEED_SCALE, 1e-3)
         factors = cof * MEAN_PRESSURE / float(parts.adhesion + parts.hysteresis)
         low, high = np.maximum(np.quantile(factors, [0.005, 0.995]), 0.01)
         levels = np.geomspace(low, high, LEVELS)
@@ -446,8 +446,8 @@ def _pressure_error(
     errors = []
     for run in tested:
         true = float(array_pressures(run.motion, run.maps, array).max())
-        own = sole.motion(run.motion.walker)
-        reading = float(array_pressures(own, shape.maps(own), array).max())
+        motion = sole.motion(run.motion.walker)
+        reading = float(array_pressures(motion, shape.maps(motion), array).max())
         if true > 1e3:
             errors.append(reading / true - 1)
     return float(np.sqrt(np.mean(np.square(errors)))) if errors else None

@@ -72,8 +72,8 @@ def audit_page(analysis: FolderAnalysis, fingerprint: str) -> str:
     known = {table.name: page_table(table, limit=_ALL) for table in analysis.tables}
     said = dict.fromkeys(
         m.conventions[key]
-        for one in analysis.files
-        for m in one.measurements
+        for file in analysis.files
+        for m in file.measurements
         for key in ("calibration", "check surfaces")
         if key in m.conventions
     )

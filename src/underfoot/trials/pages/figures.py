@@ -154,17 +154,17 @@ def trial_figures(analysis: FolderAnalysis, *, details: int = 4) -> list[TrialFi
 
     ``details`` is the number of single trials drawn: first those with cautions, then accepted ones.
     """
-    single = [made for one in _chosen(analysis.files, details) for made in _details(one)]
+    single = [made for result in _chosen(analysis.files, details) for made in _details(result)]
     return [*_study(analysis), *single]
 
 
 def _chosen(files: Sequence[FileResult], details: int) -> list[FileResult]:
-    drawn = [one for one in files if one.curves]
-    slips = [one for one in drawn if one.main.get("slip") == 1.0]
-    others = [one for one in drawn if one not in slips]
+    drawn = [file for file in files if file.curves]
+    slips = [result for result in drawn if result.main.get("slip") == 1.0]
+    others = [result for result in drawn if result not in slips]
     # A slip first, then one without, then what needs a second look.
     order = [*slips[:1], *others[:1], *(f for f in drawn if f.verdict == "caution"), *drawn]
-    return list({one.file: one for one in order}.values())[:details]
+    return list({result.file: result for result in order}.values())[:details]
 
 
 def _details(result: FileResult) -> Iterator[TrialFigure]:
@@ -367,15 +367,20 @@ def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
         (("run",), "COF of every run", 0.5, 0.075),
         (("hold",), "Force of every hold, share of its start", 1.0, 1.1),
     ):
-        curves = [(k, one, c) for one in files for k in keys for c in one.curves.get(k, [])]
+        curves = [
+            (k, result, c) for result in files for k in keys for c in result.curves.get(k, [])
+        ]
         if not curves:
             continue
-        made = [(one.file, *_tile(key, one, curve)) for key, one, curve in curves]
+        made = [(result.file, *_tile(key, result, curve)) for key, result, curve in curves]
         ends = [t.x[-1] for _, t, _ in made if keys[0] not in ("steps", "heel")]
         empty = [
-            (one.file, Tile(one.file, one.verdict, *_NO_CURVE, reason=joined(one.reasons)))
-            for one in files
-            if not one.curves
+            (
+                result.file,
+                Tile(result.file, result.verdict, *_NO_CURVE, reason=joined(result.reasons)),
+            )
+            for result in files
+            if not result.curves
         ]
         yield Sheet(
             keys[0],
@@ -443,16 +448,20 @@ def _study(analysis: FolderAnalysis) -> Iterator[TrialFigure]:
 
 def _risk(risk: Sequence[Curve]) -> Figure:
     figure, row = _row(3.4 * len(risk), 3.1, len(risk))
-    for axes, one in zip(row, risk, strict=True):
-        axes.fill_between(one["grid"], one["low"], one["high"], color="tab:blue", alpha=0.18, lw=0)
-        axes.plot(one["grid"], one["risk"], color="tab:blue")
-        y = np.array(one["y"], dtype=float)
+    for axes, curve in zip(row, risk, strict=True):
+        axes.fill_between(
+            curve["grid"], curve["low"], curve["high"], color="tab:blue", alpha=0.18, lw=0
+        )
+        axes.plot(curve["grid"], curve["risk"], color="tab:blue")
+        y = np.array(curve["y"], dtype=float)
         shift = 0.035 * ((np.arange(len(y)) * _SPREAD) % 1.0)
         spread = np.where(y > 0.5, y + shift, y - shift)
-        axes.plot(one["x"], spread, "o", ms=3.5, color="0.2", alpha=0.6)
-        inside = one["grid"][0] < one["half"] < one["grid"][-1]
-        title = f"slope {one['slope']:.1f}" + (f", 50 % at {one['half']:.3f}" if inside else "")
-        _finish(axes, _NAMES.get(one["name"], str(one["name"])), small=title, ylim=(-0.06, 1.06))
+        axes.plot(curve["x"], spread, "o", ms=3.5, color="0.2", alpha=0.6)
+        inside = curve["grid"][0] < curve["half"] < curve["grid"][-1]
+        title = f"slope {curve['slope']:.1f}" + (f", 50 % at {curve['half']:.3f}" if inside else "")
+        _finish(
+            axes, _NAMES.get(curve["name"], str(curve["name"])), small=title, ylim=(-0.06, 1.06)
+        )
         axes.locator_params(axis="x", nbins=5)
     row[0].set_ylabel("slip (1) or not (0), risk")
     return figure
@@ -460,7 +469,7 @@ def _risk(risk: Sequence[Curve]) -> Figure:
 
 def _maps(maps: Sequence[Curve]) -> Figure:
     figure, row = _row(3.3 * len(maps) + 0.6, 4.6, len(maps))
-    top = max(1e-3 * float(np.max(one["pressure"])) for one in maps)
+    top = max(1e-3 * float(np.max(curve["pressure"])) for curve in maps)
     image: Any = None
     for axes, scan_map in zip(row, maps, strict=True):
         right, along = -1e3 * np.array(scan_map["lateral"]), 1e3 * np.array(scan_map["along"])
@@ -488,17 +497,17 @@ def _fits(fits: Sequence[Curve]) -> Figure:
     down = -(-len(groups) // across)
     figure = _empty(3.3 * across, 3.3 * down)
     outer: Any = figure.subfigures(down, across, squeeze=False)
-    highest = max(max(one["cof"]) for one in fits)
-    for i, (group, own) in enumerate(groups.items()):
+    highest = max(max(fit["cof"]) for fit in fits)
+    for i, (group, curves) in enumerate(groups.items()):
         top, low = outer.flat[i].subplots(2, 1, sharex=True, height_ratios=(2.6, 1))
-        for number, one in enumerate(own):
+        for number, curve in enumerate(curves):
             colour = f"C{number % 10}"
-            speed, cof = np.array(one["speed"]), np.array(one["cof"])
+            speed, cof = np.array(curve["speed"]), np.array(curve["cof"])
             grid = np.linspace(0, 1.02 * speed.max(), 120)
-            top.plot(grid, _fitted(one, grid), color=colour, linewidth=0.9)
+            top.plot(grid, _fitted(curve, grid), color=colour, linewidth=0.9)
             top.plot(speed, cof, "o", ms=2.6, color=colour)
-            low.plot(speed, cof - _fitted(one, speed), "o", ms=2.2, color=colour)
-        verdicts = [f["verdict"] for f in own]
+            low.plot(speed, cof - _fitted(curve, speed), "o", ms=2.2, color=colour)
+        verdicts = [f["verdict"] for f in curves]
         words = ", ".join(f"{verdicts.count(v)} {v}" for v in dict.fromkeys(verdicts))
         low.axhline(0, color="0.7", linewidth=0.8)
         low.set_xlabel("sliding speed (m/s)", fontsize=8)

@@ -72,7 +72,9 @@ def write_trials_report(
         "models/: data and scripts of R and Python that find the mixed models again.\n"
         f"{STORE}/: results of single files, so that an interrupted analysis can go on.\n",
     )
-    models = {name: text for one in analysis.study.findings for name, text in one.files.items()}
+    models = {
+        name: text for finding in analysis.study.findings for name, text in finding.files.items()
+    }
     for name in ("tables", "figures", "models"):
         (folder / name).mkdir(exist_ok=True)
         for old in (folder / name).iterdir():
@@ -90,12 +92,14 @@ def write_trials_report(
     for page in pages:
         write(f"figures/{page.name}.svg", page.svg)
     jobs: list[tuple[Any, ...]] = [(tables, analysis.methods, folder / "trials.xlsx")]
-    jobs += [(one, folder / "figures") for one in figures]
+    jobs += [(figure, folder / "figures") for figure in figures]
     count = processes if len(jobs) >= _MANY else 1
     drawing = part(progress, 0.0, 0.95)
     for _, paths in sorted(in_processes(_written, jobs, count, progress=drawing, stage="drawing")):
         written += paths
-    pictures = [(one, (folder / "figures" / f"{one.name}.png").read_bytes()) for one in figures]
+    pictures = [
+        (figure, (folder / "figures" / f"{figure.name}.png").read_bytes()) for figure in figures
+    ]
     write("report.html", trials_page(analysis, tables, pictures, pages))
     progress("drawing", 1.0)
     return written
@@ -128,10 +132,10 @@ def trials_page(
 ) -> str:
     """Return the page of an analysis as HTML text; it opens without a network."""
     chapters: dict[str, list[dict[str, str]]] = {"study": [], "trials": []}
-    for one, picture in pictures:
-        width = f"{5.3 * one.figure.get_figwidth():.1f}"
-        chapters[one.chapter].append(
-            {"caption": one.caption, "source": embedded(picture), "width": width}
+    for figure, picture in pictures:
+        width = f"{5.3 * figure.figure.get_figwidth():.1f}"
+        chapters[figure.chapter].append(
+            {"caption": figure.caption, "source": embedded(picture), "width": width}
         )
     tables = {table.name: table for table in all_tables}
     return environment(__package__ or "").get_template("trials.html").render(
@@ -159,14 +163,14 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
     summary = study.pop(0) if study and study[0].name not in ("steps",) else None
     reasons = Counter(
         kind
-        for one in analysis.files
-        for kind in one.kinds or one.reasons
-        if one.verdict != "accepted"
+        for file in analysis.files
+        for kind in file.kinds or file.reasons
+        if file.verdict != "accepted"
     )
     findings = analysis.study.findings
     return {
         "lead": lead_sentence(analysis),
-        "counts": Counter(one.verdict for one in analysis.files),
+        "counts": Counter(file.verdict for file in analysis.files),
         "reasons": reasons.most_common(4),
         "summary": None if summary is None else page_table(_compact(summary)),
         "study": [page_table(_compact(table)) for table in study],
@@ -176,25 +180,25 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
 
 def lead_sentence(analysis: FolderAnalysis) -> str:
     """Return one sentence with what a reader came for: mean, spread, interval and how many."""
-    usable = [one for one in analysis.files if one.usable]
+    usable = [file for file in analysis.files if file.usable]
     kind = analysis.protocol.kind
     if not usable:
         return "No file gave usable numbers: see the reasons below."
-    cautions = sum(one.verdict == "caution" for one in usable)
+    cautions = sum(result.verdict == "caution" for result in usable)
     of = f"{cautions} of {_counted(len(usable), 'usable files')}"
     carry = "carries a caution" if cautions == 1 else "carry a caution"
     tail = f" {of} {carry}." if cautions else ""
     tables = {table.name: table for table in analysis.study.tables}
     if kind == "human_slip":
-        judged = [one for one in usable if "slip" in one.main]
-        slips = int(sum(one.main["slip"] for one in judged))
+        judged = [result for result in usable if "slip" in result.main]
+        slips = int(sum(result.main["slip"] for result in judged))
         text = f"{_counted(slips, 'slips')} in {_counted(len(judged), 'trials')}"
         if judged:
             text += f" ({100 * slips / len(judged):.0f} %)"
-        near = sum(abs(one.main.get("slip_margin", 1.0)) < 0.05 for one in judged)
+        near = sum(abs(result.main.get("slip_margin", 1.0)) < 0.05 for result in judged)
         if near:
             text += f", {near} of them within 0.05 m/s of the limit"
-        rcof = [one.main["rcof"] for one in usable if "rcof" in one.main]
+        rcof = [result.main["rcof"] for result in usable if "rcof" in result.main]
         if rcof:
             text += f"; required friction {min(rcof):.2f} to {max(rcof):.2f}"
         return text + "." + tail
@@ -226,7 +230,7 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
     samples = tables.get("samples")
     if samples is not None:
         return f"{_counted(len(samples.rows), 'samples')}.{tail}"
-    cof = [one.main["cof"] for one in usable if "cof" in one.main]
+    cof = [result.main["cof"] for result in usable if "cof" in result.main]
     if cof:
         text = f"COF {min(cof):.3f} to {max(cof):.3f} in {_counted(len(cof), 'usable runs')}."
         return text + carried + tail

@@ -29,13 +29,13 @@ def read_bts(draft: Draft) -> Trial:
     numbers = draft.table(rows, "\t", len(labels), at + 2)
     named = dict(zip(draft.names(labels, "track"), numbers.T, strict=True))
     if any(label.lstrip("e") in _EVENTS for label in labels):
-        found = [
+        events = [
             Event(*_named(label, float(when)))
             for label, column in named.items()
             if label.lstrip("e") in _EVENTS
             for when in column[np.isfinite(column)]
         ]
-        draft.events = tuple(sorted(found, key=lambda event: event.time))
+        draft.events = tuple(sorted(events, key=lambda event: event.time))
         return draft.trial("BTS events")
     if "Time" not in named:
         kind = header.get("type", "table")

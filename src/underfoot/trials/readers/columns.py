@@ -63,11 +63,13 @@ def read_columns(draft: Draft) -> Trial:
     With the profile its columns are used; what it does not name is recognised: time, force
     triples (Fx, Fy, Fz with any ending), marker triples (name_x, name_y, name_z).
     """
-    own = draft.profile
-    sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
+    profile = draft.profile
+    sheet = sheet_from(
+        draft.data, draft.name, profile.sheet, profile.delimiter, profile.header_line
+    )
     sheet = _with_axes_behind(sheet)
     above = [line for line in sheet.header if line.strip()]
-    named = own.name or own.plates or own.channels or _is_known(sheet)
+    named = profile.name or profile.plates or profile.channels or _is_known(sheet)
     if not named and len(above) > _PREAMBLE:
         words = f"text of an unknown system: {len(above)} lines stand above the table"
         remedy = "Name its columns in a profile, or export as C3D or as a plain table"
@@ -91,8 +93,8 @@ def _with_axes_behind(sheet: Sheet) -> Sheet:
             names[name] = f"{base}_{'xyz'[int(index[1])]}" if int(index[1]) < len("xyz") else ""
         elif unit.startswith(":,"):
             names[name] = ""
-        elif found := _AXIS_FIRST.match(name):
-            triples.setdefault(found["base"], {})[found["axis"]] = name
+        elif match := _AXIS_FIRST.match(name):
+            triples.setdefault(match["base"], {})[match["axis"]] = name
     if names and (first := next(iter(sheet.numbers))) not in names:
         names[first] = "time"
     for base, columns in triples.items():
@@ -210,7 +212,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
 def _clock_times(sheet: Sheet, name: str) -> np.ndarray:
     """Return the seconds of a column of clock times: "10:15:20.001", with a date or without."""
     times = [clock_time(cell) for cell in sheet.texts[name]]
-    wrong = next((n for n, one in enumerate(times) if one is None), None)
+    wrong = next((n for n, time in enumerate(times) if time is None), None)
     if wrong is not None:
         raise DataError(
             f'"{sheet.texts[name][wrong]}" in the column "{name}" is no time',

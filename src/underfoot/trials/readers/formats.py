@@ -138,7 +138,7 @@ READERS = (
 def trial_suffixes() -> tuple[str, ...]:
     """Return the endings of names by which a folder's trial files are found."""
     every = (C3D, *READERS, TABLE)
-    return tuple(dict.fromkeys(suffix for one in every for suffix in one.suffixes))
+    return tuple(dict.fromkeys(suffix for reader in every for suffix in reader.suffixes))
 
 
 def file_format(data: bytes, path: Path) -> TrialReader:
@@ -153,16 +153,16 @@ def file_format(data: bytes, path: Path) -> TrialReader:
         return TABLE
     text = head[: len(head) // 2 * 2].decode(wide or "latin-1", "replace")
     text = text.lstrip("\ufeffï»¿").casefold().replace("\r", "\n")
-    found = next((one for one in READERS if one.recognises(data, text)), None)
-    return found or next((one for one in READERS if suffix in one.suffixes), TABLE)
+    trial_reader = next((reader for reader in READERS if reader.recognises(data, text)), None)
+    return trial_reader or next((reader for reader in READERS if suffix in reader.suffixes), TABLE)
 
 
 def nearest_format(header: Iterable[str]) -> str | None:
     """Return the format whose marks come nearest to words of a file's first lines, or None."""
     words = {
-        word: one.name
-        for one in READERS
-        for mark in one.marks
+        word: reader.name
+        for reader in READERS
+        for mark in reader.marks
         for word in re.findall(r"[a-z_]{6,}", mark)
     }
     lines = [line.casefold() for line in header]

@@ -20,9 +20,11 @@ def read_stm603(draft: Draft) -> Trial:
     profile that names them goes first. From memory of SATRA TM144 logs, not verified on a file of
     the maker: the columns taken stand in the notes.
     """
-    own = draft.profile
-    sheet = sheet_from(draft.data, draft.name, own.sheet, own.delimiter, own.header_line)
-    if not own.plates:
+    profile = draft.profile
+    sheet = sheet_from(
+        draft.data, draft.name, profile.sheet, profile.delimiter, profile.header_line
+    )
+    if not profile.plates:
         columns = [
             next((n for n in sheet.numbers if p.search(n)), "") for p in (_FRICTION, _NORMAL)
         ]
@@ -33,6 +35,8 @@ def read_stm603(draft: Draft) -> Trial:
                 remedy="Name them in a profile",
             )
         tester = PlateColumns((columns[0], "", columns[1]))
-        draft.profile = replace(own, plates={"tester": tester}, vertical=own.vertical or "z")
+        draft.profile = replace(
+            profile, plates={"tester": tester}, vertical=profile.vertical or "z"
+        )
         draft.notes.append(f'friction is "{columns[0]}", normal force "{columns[1]}"')
     return trial_from_sheet(draft, sheet, "SATRA STM 603")

@@ -283,7 +283,7 @@ def _xlsx(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str
     from openpyxl import load_workbook
 
     book = load_workbook(BytesIO(data), read_only=True, data_only=True)
-    names = _chosen([one.title for one in book.worksheets], sheet, where)
+    names = _chosen([worksheet.title for worksheet in book.worksheets], sheet, where)
     return {name: _texts(book[name].iter_rows(values_only=True), where) for name in names}
 
 

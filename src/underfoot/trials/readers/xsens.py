@@ -23,7 +23,7 @@ def read_mvnx(draft: Draft) -> Trial:
         raise draft.error(f"not valid XML ({error})", remedy="Export it again") from error
 
     def every(place: ElementTree.Element, name: str) -> Iterator[ElementTree.Element]:
-        return (one for one in place.iter() if one.tag.rpartition("}")[2] == name)
+        return (element for element in place.iter() if element.tag.rpartition("}")[2] == name)
 
     subject = next(every(root, "subject"), None)
     frames = [f for f in every(root, "frame") if f.get("type", "normal") == "normal"]
@@ -38,7 +38,7 @@ def read_mvnx(draft: Draft) -> Trial:
         raise draft.error("the subject has no frameRate")
 
     def values(name: str, width: int) -> np.ndarray:
-        texts = [next((one.text or "" for one in every(f, name)), "") for f in frames]
+        texts = [next((element.text or "" for element in every(f, name)), "") for f in frames]
         rows = [np.array(text.split(), dtype=float) for text in texts]
         if any(len(row) != width * len(segments) for row in rows):
             raise draft.error(f"truncated: {name} of {len(segments)} segments is not in each frame")

@@ -187,7 +187,9 @@ def mean_of(measurements: Sequence[Measurement], name: str | None = None) -> Mea
     first, ignored = measurements[0], ("baseline", "walking direction", "belt", "uncertainty")
     choices = [{k: v for k, v in m.conventions.items() if k not in ignored} for m in measurements]
     shared = choices[0]
-    if any(m.unit != first.unit for m in measurements) or any(one != shared for one in choices):
+    if any(m.unit != first.unit for m in measurements) or any(
+        choice != shared for choice in choices
+    ):
         raise InputError("measurements of different conventions can't be averaged")
     values = np.array([m.value for m in measurements if m.value is not None])
     name = name or first.name

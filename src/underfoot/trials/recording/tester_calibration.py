@@ -193,10 +193,10 @@ def written_day(text: str) -> datetime.date | None:
     None where it is no day, and where month and day could be exchanged (03/05/2026).
     """
     plain = _CLOCK.sub("", text.strip())
-    found = _YEAR_FIRST.fullmatch(plain) or _DAY_FIRST.fullmatch(plain)
-    if found is None:
+    match = _YEAR_FIRST.fullmatch(plain) or _DAY_FIRST.fullmatch(plain)
+    if match is None:
         return None
-    year, month, day = (int(found[part]) for part in ("year", "month", "day"))
+    year, month, day = (int(match[part]) for part in ("year", "month", "day"))
     try:
         return datetime.date(year + 2000 if year < 100 else year, month, day)
     except ValueError:

@@ -308,13 +308,13 @@ def joined(first: Trial, second: Trial) -> Trial:
         return {**base, **{f"{n} (2)" if n in base else n: value for n, value in added.items()}}
 
     pair, notes = [first, second], list(second.notes)
-    told = next((one.vertical for one in pair if one.plates), first.vertical)
-    ends = [one.vertical for one in pair if one.vertical]
+    told = next((trial.vertical for trial in pair if trial.plates), first.vertical)
+    ends = [trial.vertical for trial in pair if trial.vertical]
     if len(ends) == 2 and not (first.markers and second.markers):
         along = sum(a * b for a, b in zip(ends[0].axis, ends[1].axis, strict=True))
         if along < -0.5:
-            told = next((one.vertical for one in pair if one.markers), told)
-            pair = [one if one.vertical == told else _other_end_up(one) for one in pair]
+            told = next((trial.vertical for trial in pair if trial.markers), told)
+            pair = [trial if trial.vertical == told else _other_end_up(trial) for trial in pair]
         elif along < 0.5:
             notes.append("the two files find another axis vertical: are they in the same axes?")
     first, second = pair

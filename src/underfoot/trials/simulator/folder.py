@@ -242,26 +242,26 @@ def slip_truth(number: int, seed: int) -> tuple[SlipTruth, Defects, dict[str, st
     """
     subject, order = divmod(number, 2)
     person = np.random.default_rng([seed, 1, subject])
-    own = np.random.default_rng([seed, 2, number])
+    generator = np.random.default_rng([seed, 2, number])
     outsole = list(_OUTSOLES)[(subject + order) % 3]
     mass = float(person.uniform(55, 90))
-    rcof = 0.19 + 0.03 * person.standard_normal() + 0.008 * own.standard_normal()
+    rcof = 0.19 + 0.03 * person.standard_normal() + 0.008 * generator.standard_normal()
     rcof = float(np.clip(rcof, 0.12, 0.28))
-    acof = _OUTSOLES[outsole] + 0.004 * own.standard_normal()
+    acof = _OUTSOLES[outsole] + 0.004 * generator.standard_normal()
     risk = 1.0 / (1.0 + math.exp(2.952 + 49.2 * (acof - rcof)))
-    slips = bool(own.random() < risk)
-    speed = float(own.uniform(0.5, 1.7)) if slips else float(own.uniform(0.04, 0.09))
-    rise = float(own.uniform(0.14, 0.2)) if slips else 0.09
-    start = float(own.uniform(0.03, 0.06))
-    fall = float(own.uniform(0.2, 0.27)) if slips else 0.1
-    angle = float(own.normal(0, 0.06))
+    slips = bool(generator.random() < risk)
+    speed = float(generator.uniform(0.5, 1.7)) if slips else float(generator.uniform(0.04, 0.09))
+    rise = float(generator.uniform(0.14, 0.2)) if slips else 0.09
+    start = float(generator.uniform(0.03, 0.06))
+    fall = float(generator.uniform(0.2, 0.27)) if slips else 0.1
+    angle = float(generator.normal(0, 0.06))
     pressure = float(60e3 * speed) if slips else 600.0
-    lateral = float(own.normal(0, 0.008))
+    lateral = float(generator.normal(0, 0.008))
     motion = (speed, start, rise, fall, angle)
     truth = SlipTruth(rcof, float(acof), *motion, pressure, lateral=lateral, mass=mass)
     defects = Defects(
-        missing_frames=int(own.integers(3, 9)) if own.random() < 0.2 else 0,
-        dropped_samples=int(own.integers(2, 20)) if own.random() < 0.1 else 0,
+        missing_frames=int(generator.integers(3, 9)) if generator.random() < 0.2 else 0,
+        dropped_samples=int(generator.integers(2, 20)) if generator.random() < 0.1 else 0,
     )
     conditions = {
         "subject": f"S{subject + 1:02d}",
@@ -289,15 +289,15 @@ def _study(count: int, rng: np.random.Generator) -> Iterator[_File]:
 
 def _walks(persons: int, trials: int, seed: int) -> Iterator[_File]:
     for person in range(persons):
-        own = np.random.default_rng([seed, 1, person])
-        level, mass = BETWEEN * own.standard_normal(), float(own.uniform(55, 90))
+        generator = np.random.default_rng([seed, 1, person])
+        level, mass = BETWEEN * generator.standard_normal(), float(generator.uniform(55, 90))
         for shoe, mean in SHOES.items():
-            answer = OWN * own.standard_normal()
+            answer = OWN * generator.standard_normal()
             for trial in range(trials):
-                rcof = mean + level + answer + TRIAL * own.standard_normal()
+                rcof = mean + level + answer + TRIAL * generator.standard_normal()
                 truth = SlipTruth(rcof=float(np.clip(rcof, 0.1, 0.4)), mass=mass, peak_speed=0.05)
-                made = walk_with_slip(truth, Defects(), own)
-                idle = own.normal(0.0, 1.0, made.force[1].shape)
+                made = walk_with_slip(truth, Defects(), generator)
+                idle = generator.normal(0.0, 1.0, made.force[1].shape)
                 made = replace(made, force=(made.force[0], idle), pressures={})
                 name = f"S{person + 1:02d}_{shoe}_{trial + 1}.c3d"
                 yield name, walk_c3d(made, mass=mass), {}, {"rcof": f"{made.truth['rcof']:.6g}"}

@@ -141,8 +141,8 @@ def separation(matrix: np.ndarray, outcome: np.ndarray) -> Separation:
     def most(direction: np.ndarray, sides: np.ndarray, *margin: tuple[float, float]) -> float:
         """Return the largest step in a direction that leaves every observation on its side."""
         bounds = [(-1.0, 1.0)] * p + list(margin)
-        found = linprog(-direction, A_ub=-sides, b_ub=np.zeros(n), bounds=bounds)
-        return -float(found.fun) if found.success else 0.0
+        optimize_result = linprog(-direction, A_ub=-sides, b_ub=np.zeros(n), bounds=bounds)
+        return -float(optimize_result.fun) if optimize_result.success else 0.0
 
     infinite = tuple(max(most(e, signed), most(-e, signed)) > 1e-7 for e in np.eye(p))
     if not any(infinite):

@@ -53,7 +53,7 @@ class VarianceComponents:
         """Return degrees of freedom and what F is multiplied by, after Kenward and Roger."""
         q = len(contrasts)
         middle = np.linalg.inv(contrasts @ self.plain @ contrasts.T)
-        moved = np.array([middle @ contrasts @ one @ contrasts.T for one in self.slopes])
+        moved = np.array([middle @ contrasts @ slope @ contrasts.T for slope in self.slopes])
         traces = np.trace(moved, axis1=1, axis2=2)
         first = float(traces @ self.uncertainty @ traces)
         second = float(np.einsum("kl,kij,lji->", self.uncertainty, moved, moved))
@@ -98,7 +98,9 @@ def variance_components(
     scale = float(np.sqrt((np.sum(count * (mean - middle) ** 2) + squares) / count.sum()))
     if not scale > 0:
         raise DataError("the values do not scatter", where="mixed model")
-    parts = [(one[:, None] == one).astype(float) for one in groupings] + [np.diag(1.0 / count)]
+    parts = [(grouping[:, None] == grouping).astype(float) for grouping in groupings] + [
+        np.diag(1.0 / count)
+    ]
     kept = _distinct(parts, free > 0)
     data = (mean - middle) / scale, design, [parts[i] for i in kept], free, squares / scale**2
     theta = np.full(len(kept), 1.0 / len(kept))

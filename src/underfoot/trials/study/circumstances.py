@@ -34,14 +34,16 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
     the end of file names; nobody's where numbers repeat.
     """
     places: dict[str, float] = {}
-    for own in grouped(files, (person,)).values():
+    for results in grouped(files, (person,)).values():
         for key in (*ORDERS, ""):
-            numbers = [_number(one, key) for one in own]
+            numbers = [_number(result, key) for result in results]
             known = [number for number in numbers if number is not None]
-            if len(own) < 3 or len(known) < len(own) or len(set(known)) < len(own):
+            if len(results) < 3 or len(known) < len(results) or len(set(known)) < len(results):
                 continue
-            ranks = np.argsort(np.argsort(known)) / (len(own) - 1.0)
-            places |= {one.file: float(rank) for one, rank in zip(own, ranks, strict=True)}
+            ranks = np.argsort(np.argsort(known)) / (len(results) - 1.0)
+            places |= {
+                result.file: float(rank) for result, rank in zip(results, ranks, strict=True)
+            }
             break
     return places
 
@@ -49,32 +51,32 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
 def run_numbers(files: Sequence[FileResult]) -> dict[str, float]:
     """Return the place of each file in the order of runs: by a column, else by its name."""
     for key in (*ORDERS, ""):
-        numbers = [_number(one, key) for one in files]
+        numbers = [_number(file, key) for file in files]
         known = [number for number in numbers if number is not None]
         if len(known) == len(files) == len(set(known)):
-            return {one.file: number for one, number in zip(files, known, strict=True)}
-    names = sorted(one.file for one in files)
-    return {one.file: float(names.index(one.file)) for one in files}
+            return {file.file: number for file, number in zip(files, known, strict=True)}
+    names = sorted(file.file for file in files)
+    return {file.file: float(names.index(file.file)) for file in files}
 
 
 def _number(result: FileResult, key: str) -> float | None:
     text = str(result.conditions.get(key, "")) if key else result.file.rsplit(".", 1)[0]
-    found = re.search(r"(\d+)(\.0+)?$", text)
-    return float(found[1]) if found else None
+    match = re.search(r"(\d+)(\.0+)?$", text)
+    return float(match[1]) if match else None
 
 
 def circumstances(
     files: Sequence[FileResult], person: str
 ) -> dict[str, tuple[list[FileResult], list[float]]]:
     """Return the files and their numbers for "speed" (m/s) and "place" in the session (0 to 1)."""
-    speeds = [(one, walking_speed(one)) for one in files]
+    speeds = [(file, walking_speed(file)) for file in files]
     places = places_in_session(files, person) if person else {}
     both = {
-        "speed": [(one, speed) for one, speed in speeds if speed is not None],
-        "place": [(one, places[one.file]) for one in files if one.file in places],
+        "speed": [(result, speed) for result, speed in speeds if speed is not None],
+        "place": [(file, places[file.file]) for file in files if file.file in places],
     }
     return {
-        name: ([one for one, _ in pairs], [value for _, value in pairs])
+        name: ([result for result, _ in pairs], [value for _, value in pairs])
         for name, pairs in both.items()
         if len(pairs) > 1
     }
@@ -88,16 +90,18 @@ def circumstance_table(
     if not found or not keys:
         return None
     levels = dict.fromkeys(
-        (key, str(one.conditions[key])) for key in keys for one in files if key in one.conditions
+        (key, str(file.conditions[key])) for key in keys for file in files if key in file.conditions
     )
     rows: list[tuple[Cell, ...]] = []
     for key, level in levels:
         cells: list[Cell] = [key, level]
         for name in ("speed", "place"):
             own: dict[str, list[float]] = {}
-            for one, value in zip(*found.get(name, ([], [])), strict=True):
-                if str(one.conditions.get(key)) == level:
-                    own.setdefault(str(one.conditions.get(person, one.file)), []).append(value)
+            for result, value in zip(*found.get(name, ([], [])), strict=True):
+                if str(result.conditions.get(key)) == level:
+                    own.setdefault(str(result.conditions.get(person, result.file)), []).append(
+                        value
+                    )
             means = [float(np.mean(values)) for values in own.values()]
             cells += mean_and_interval(means, name)[:2] if name == "speed" else [
                 100.0 * float(np.mean(means)) if means else None
@@ -127,9 +131,9 @@ def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, M
     told: dict[str, Mapping[str, float]] = {}
     for name, (having, values) in circumstances(files, person).items():
         rows = [
-            (str(one.conditions[key]), str(one.conditions.get(person, one.file)), value)
-            for one, value in zip(having, values, strict=True)
-            if key in one.conditions
+            (str(result.conditions[key]), str(result.conditions.get(person, result.file)), value)
+            for result, value in zip(having, values, strict=True)
+            if key in result.conditions
         ]
         levels = list(dict.fromkeys(level for level, _, _ in rows))
         if not 1 < len(levels) < len(rows):
@@ -138,7 +142,7 @@ def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, M
         own = person_means(numbers, {key: column}, who)
         of = np.array(own.factors[key])
         groups = [own.mean[of == level] for level in levels]
-        means = {level: float(np.mean(one)) for level, one in zip(levels, groups, strict=True)}
+        means = {level: float(np.mean(group)) for level, group in zip(levels, groups, strict=True)}
         if np.ptp(list(means.values())) <= ROUNDING * max(map(abs, means.values())):
             continue
         try:
@@ -149,7 +153,7 @@ def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, M
             else:
                 if len(own.mean) - len(levels) < 3:
                     continue
-                spread = sum(len(one) * (one.mean() - own.mean.mean()) ** 2 for one in groups)
+                spread = sum(len(group) * (group.mean() - own.mean.mean()) ** 2 for group in groups)
                 apart = spread >= _SHARE * float(((own.mean - own.mean.mean()) ** 2).sum())
                 # the same order in all: no scatter, and F is infinite
                 p = float(np.nan_to_num(f_oneway(*groups).pvalue))

@@ -365,7 +365,7 @@ def plain_spelling(text: str, *, person: bool = False) -> str:
 
 def person_condition(files: Iterable[FileResult], preferred: str = "") -> str:
     """Return the name of the condition that says which person a file is of, or nothing."""
-    names = {name for one in files for name in one.conditions}
+    names = {name for file in files for name in file.conditions}
     return next((n for n in (preferred, *PERSON) if n in names), "")
 
 

@@ -219,7 +219,7 @@ def rank_findings(
     from scipy.stats import shapiro
 
     rows: list[tuple[Cell, ...]] = []
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for factor, levels in factors.items():
         columns = person_columns(values, levels, persons or range(len(values)))
         people = {who: [own[who] for own in columns.values() if who in own]
@@ -243,14 +243,14 @@ def rank_findings(
             (factor, test.name, test.statistic, test.p, _HOW[test.how], test.persons, normal)
         )
         if test.pairs:
-            found.append(_ranked_pairs(response, factor, test.pairs))
+            findings.append(_ranked_pairs(response, factor, test.pairs))
     if not rows:
         return []
     title = f"Rank tests of {quantity_name(response)}: the scatter is not normal"
     normality = Column("p of normality (Shapiro-Wilk)", Role.CHANCE)
     heads = ("factor", "test", "statistic", P_VALUE, "p by", "persons", normality)
     note = "Read beside the tests above, which assume a normal scatter of persons' means."
-    return [finding(f"ranks_{response}", title, heads, rows, note), *found]
+    return [finding(f"ranks_{response}", title, heads, rows, note), *findings]
 
 
 _HOW = {"exact": "all orders", "drawn": "100 000 random orders", "large sample": "large samples"}
@@ -262,7 +262,7 @@ def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) 
     title = f"Pairs of {quantity_name(response)} by {factor}: rank tests"
     heads = ("first", "second", "median difference", HOLM_P)
     note = f"Levels that share a letter do not differ at 0.05: {listed}."
-    rows = [(one.first, one.second, one.difference, one.p) for one in pairs]
+    rows = [(pair.first, pair.second, pair.difference, pair.p) for pair in pairs]
     name = f"rank_pairs_{response}_{factor}".replace(" ", "_")
     return finding(name, title, heads, rows, note)
 

@@ -101,7 +101,7 @@ def analyse_folder(
     files, doubts = guarded_files(results)
     doubts += study_doubts(files, protocol)
     out = {name for doubt in doubts if doubt.out for name in doubt.files}
-    study = study_of([one for one in files if one.file not in out or not one.usable], protocol)
+    study = study_of([file for file in files if file.file not in out or not file.usable], protocol)
     methods = tuple(methods_paragraphs(files, protocol, study, version()))
     return FolderAnalysis(protocol, tuple(files), study, methods, notes, tuple(doubts))
 
@@ -194,7 +194,9 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     handle, part = tempfile.mkstemp(dir=store, suffix=".part")
     with os.fdopen(handle, "w", encoding="utf-8") as stream:
         # faster than json.dump
-        stream.write(json.dumps([stored_form(one.as_dict()) for one in results], default=list))
+        stream.write(
+            json.dumps([stored_form(result.as_dict()) for result in results], default=list)
+        )
     os.replace(part, path)
     return results
 

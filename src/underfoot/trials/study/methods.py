@@ -22,7 +22,7 @@ def methods_paragraphs(
     files: Sequence[FileResult], protocol: Protocol, study: Study, version: str
 ) -> list[str]:
     """Return paragraphs that say which files were used, how numbers were taken, which tests."""
-    counts = Counter(one.verdict for one in files)
+    counts = Counter(file.verdict for file in files)
     n = len(files)
     first = (
         f"{n} {'file was' if n == 1 else 'files were'} analysed with underfoot {version} by the "
@@ -55,9 +55,9 @@ def _rules(files: Sequence[FileResult], protocol: Protocol) -> str:
     text = (
         f"Rules checked on every trial: {'; '.join(rule.statement() for rule in protocol.rules)}."
     )
-    usable = [one for one in files if one.usable]
+    usable = [file for file in files if file.usable]
     for rule in protocol.rules:
-        lacking = sum(rule.quantity not in one.facts for one in usable)
+        lacking = sum(rule.quantity not in result.facts for result in usable)
         if lacking and rule.quantity != "repeats":
             name = rule.quantity.replace("_", " ")
             text += (
@@ -79,8 +79,8 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
         )
     speeds = [
         step.belt_speed
-        for one in files
-        for step in one.steps
+        for file in files
+        for step in file.steps
         if step.belt_speed is not None and step.rcof is not None
     ]
     if speeds:
@@ -95,7 +95,7 @@ def _surface(files: Sequence[FileResult], protocol: Protocol) -> str:
 
 def _selection(files: Sequence[FileResult]) -> list[str]:
     """Return how contacts were found and which were rejected for what, with counts."""
-    steps = [step for one in files for step in one.steps]
+    steps = [step for file in files for step in file.steps]
     if not steps:
         return []
     counts = Counter(step.verdict for step in steps)
@@ -177,11 +177,11 @@ def _conventions(files: Sequence[FileResult]) -> list[str]:
     numbers: dict[
         str, list[tuple[str, Mapping[str, Message]]]
     ] = {}  # file and conventions, by name
-    for one in files:
-        for m in one.measurements:
+    for file in files:
+        for m in file.measurements:
             known = m.value is not None and m.name in _TOLD and m.item != MEAN_OF_STEPS
             if known and m.conventions:
-                numbers.setdefault(m.name, []).append((one.file, m.conventions))
+                numbers.setdefault(m.name, []).append((file.file, m.conventions))
     sentences: list[str] = []
     for name, made in numbers.items():
         if _TOLD_BY.get(name) in numbers:

@@ -78,7 +78,7 @@ def model_files(
         "fixed": " + ".join(map(term, model.design.terms)),
         "random": " + ".join(f"(1 | {what})" for what in random),
         "text": ", ".join(f'"{one}": str' for one in (own, *columns)),
-        "factors": ", ".join(f'"{one}"' for one in columns),
+        "factors": ", ".join(f'"{column}"' for column in columns),
         "terms": ", ".join(f'"{term(one)}"' for one in model.design.terms),
     }
     return {

@@ -172,7 +172,7 @@ def reading_results(
                 remedy="Leave rows of means and standard deviations out: they are computed",
             )
     one_spelling([{k: v[i] for k, v in texts.items() if v[i]} for i in range(len(values))], False)
-    board = next((one for one in cells if one.casefold() in _BOARD), None)
+    board = next((cell for cell in cells if cell.casefold() in _BOARD), None)
     boards = None
     if quantity == "angle" and board is not None:
         _check_numbers(board, cells[board], read[board], lines, name)
@@ -218,8 +218,8 @@ def _one_a_row(
 
     They are COF where the protocol names no ``quantity`` (COF as a machine gives it).
     """
-    wide = [one for one in columns if _NTH.fullmatch(one[0])]
-    beside = [one for one in columns if not _NTH.fullmatch(one[0])]
+    wide = [column for column in columns if _NTH.fullmatch(column[0])]
+    beside = [column for column in columns if not _NTH.fullmatch(column[0])]
     names = [name for one in ([quantity] if quantity else QUANTITIES) for name in QUANTITIES[one]]
     named = any(head.casefold() in names for head, _, _ in beside)
     if len(wide) < _FEWEST_BESIDE or named:

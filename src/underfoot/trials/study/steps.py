@@ -144,16 +144,16 @@ def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile
             where=trial.name,
             remedy='Add a column "thickness (mm)" to conditions.csv',
         )
-    found = relaxation_reading(trial, thickness)
+    reading = relaxation_reading(trial, thickness)
     for name in ("force_2_percent", "peak_force", "final_force"):
-        draft.add("test", getattr(found, name), main=name)
-    for measurement in _moduli(found, thickness, draft.conditions.get("area"), trial.name):
+        draft.add("test", getattr(reading, name), main=name)
+    for measurement in _moduli(reading, thickness, draft.conditions.get("area"), trial.name):
         draft.add("test", measurement, main=measurement.name)
-    draft.note(found.hold_time, "s", fact="hold_time")
-    draft.note(found.peak_displacement / (2.0 * thickness), "1", fact="compression")
-    time, force = found.hold
+    draft.note(reading.hold_time, "s", fact="hold_time")
+    draft.note(reading.peak_displacement / (2.0 * thickness), "1", fact="compression")
+    time, force = reading.hold
     log = np.unique(np.geomspace(1, len(time) - 1, 300).astype(int))
-    draft.curve("hold", time=time[log], force=force[log], final=found.final_force.value or 0.0)
+    draft.curve("hold", time=time[log], force=force[log], final=reading.final_force.value or 0.0)
 
 
 def _moduli(
@@ -170,7 +170,7 @@ def _moduli(
     test = compression(reading, thickness, area, name)
     meant = {"modulus": Message("of the pair, apparent (Eq. 13 to 16)")}
     forces = reading.force_2_percent, reading.peak_force, reading.final_force
-    low, peak, final = ((one.value or 0.0, one.uncertainty or 0.0) for one in forces)
+    low, peak, final = ((force.value or 0.0, force.uncertainty or 0.0) for force in forces)
     for time, (high, noise) in (("short", peak), ("long", final)):
         spread = math.hypot(noise, low[1]) / (high - low[0])
         stiffness = getattr(test.moduli, f"{time}_time_stiffness")

@@ -50,7 +50,7 @@ def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
 
     A fit, map or test that can't be done is a note with its reason, never an end.
     """
-    usable = [one for one in files if one.usable]
+    usable = [file for file in files if file.usable]
     if not usable:
         return Study(notes=("no usable file",))
     try:
@@ -377,9 +377,9 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
     for who, f in zip(persons_of(files, person), files, strict=True):
         groups.setdefault((who, *(str(f.conditions[k]) for k in factors)), []).append(f)
     rows = tuple(
-        (*key, float(np.mean([f.main["rcof"] for f in own])), len(own),
-         sum(map(tables.counted_steps, own)))
-        for key, own in tables.in_order(dict(sorted(groups.items()))).items()
+        (*key, float(np.mean([f.main["rcof"] for f in results])), len(results),
+         sum(map(tables.counted_steps, results)))
+        for key, results in tables.in_order(dict(sorted(groups.items()))).items()
     )  # fmt: skip
     heads = (*condition_columns([person, *factors]), Column("RCOF", decimals=4), "trials", "steps")
     note = "Mean of the trials' means; these are the values that the tests compare."

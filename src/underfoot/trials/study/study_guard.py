@@ -146,8 +146,8 @@ def _with_same_steps(recordings: Sequence[Sequence[FileResult]]) -> set[tuple[in
     """Pairs of recordings that share steps: their forces and noise, whatever the gain."""
     shapes, noises, times, owners = [], [], [], []
     for i, results in enumerate(recordings):
-        steps = [c for one in results for c in one.curves.get("steps", ()) if "along" in c]
-        forces = [c for one in results for c in one.curves.get("normalised", ())]
+        steps = [c for result in results for c in result.curves.get("steps", ()) if "along" in c]
+        forces = [c for result in results for c in result.curves.get("normalised", ())]
         for step, curves in zip(steps, forces, strict=False):
             shape = np.concatenate([curves[name][::5] for name in ("vertical", "braking")])
             along = np.diff(np.nan_to_num(step["along"]), 2)
@@ -177,14 +177,14 @@ def _with_same_steps(recordings: Sequence[Sequence[FileResult]]) -> set[tuple[in
 
 def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]:
     """Return the doubts about the usable files of a study, each with the files it is about."""
-    usable = [one for one in files if one.usable]
+    usable = [file for file in files if file.usable]
     person = person_condition(usable, protocol.text("subject"))
     tables = protocol.kind == "readings"
     doubts = [*_incomplete(usable), *_numbers_lacking(usable), *_near_names(usable, person)]
     doubts += _words_exchanged(usable)
     if not tables:
         doubts += [*_single_levels(usable, person), *_confounded(usable, person)]
-    if any(one.steps for one in usable):
+    if any(result.steps for result in usable):
         doubts += [*_circumstances(usable, person), *_plates_apart(usable)]
     if person:
         doubts += [*_one_body(usable, person), *_sides_as_persons(usable, person)]
@@ -214,23 +214,23 @@ def _noted(result: FileResult) -> dict[str, Any]:
 
 
 def _names(files: Sequence[FileResult]) -> tuple[str, ...]:
-    return tuple(one.file for one in files)
+    return tuple(file.file for file in files)
 
 
 def _factors(files: Sequence[FileResult]) -> dict[str, list[FileResult]]:
     """Return the files that have each condition in words."""
     having: dict[str, list[FileResult]] = defaultdict(list)
-    for one in files:
-        for key, value in one.conditions.items():
+    for file in files:
+        for key, value in file.conditions.items():
             if isinstance(value, str) and value and key not in NUMBERS:
-                having[key].append(one)
+                having[key].append(file)
     return having
 
 
 def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
     for key, having in _factors(files).items():
         named = set(_names(having))
-        lacking = [one for one in files if one.file not in named]
+        lacking = [file for file in files if file.file not in named]
         if not lacking:
             continue
         if len(having) >= _MOST * len(files):
@@ -252,10 +252,10 @@ def _incomplete(files: Sequence[FileResult]) -> Iterator[Doubt]:
 
 
 def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
-    for key in dict.fromkeys(k for one in files for k in one.conditions if k not in NUMBERS):
-        lacking = [one for one in files if key not in one.conditions]
+    for key in dict.fromkeys(k for file in files for k in file.conditions if k not in NUMBERS):
+        lacking = [file for file in files if key not in file.conditions]
         having = len(files) - len(lacking)
-        number = any(isinstance(one.conditions.get(key), float) for one in files)
+        number = any(isinstance(file.conditions.get(key), float) for file in files)
         if number and lacking and having >= _MOST * len(files):
             words = Message(
                 '"{key}" is noted for {count} of {all} files, not for these',
@@ -268,26 +268,26 @@ def _numbers_lacking(files: Sequence[FileResult]) -> Iterator[Doubt]:
 
 def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A person who has twice the trials of a level and lacks another that the others have."""
-    for key, having in _factors([one for one in files if person in one.conditions]).items():
+    for key, having in _factors([file for file in files if person in file.conditions]).items():
         counts = {
-            who: Counter(str(one.conditions[key]) for one in own)
-            for (who,), own in grouped(having, (person,)).items()
+            who: Counter(str(result.conditions[key]) for result in results)
+            for (who,), results in grouped(having, (person,)).items()
         }
         usual = {
-            level: float(np.median([one[level] for one in counts.values()]))
-            for level in {level for one in counts.values() for level in one}
+            level: float(np.median([count[level] for count in counts.values()]))
+            for level in {level for count in counts.values() for level in count}
         }
-        if key == person or 2 * sum(len(one) > 1 for one in counts.values()) <= len(counts):
+        if key == person or 2 * sum(len(count) > 1 for count in counts.values()) <= len(counts):
             continue  # a condition between persons
-        for who, one in counts.items():
-            lacks = [level for level, n in usual.items() if n >= 1 and not one[level]]
-            crowd = [level for level, n in one.items() if n >= 2 * max(usual[level], 1.0)]
+        for who, count in counts.items():
+            lacks = [level for level, n in usual.items() if n >= 1 and not count[level]]
+            crowd = [level for level, n in count.items() if n >= 2 * max(usual[level], 1.0)]
             if lacks and crowd:
                 words = Message(
                     '{who} has {count} trials with {key} "{level}" and none with "{other}": the '
                     "others {usual:g} with each?",
                     who=who,
-                    count=one[crowd[0]],
+                    count=count[crowd[0]],
                     key=key,
                     level=crowd[0],
                     other=sorted(lacks)[0],
@@ -299,31 +299,33 @@ def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]
 
 def _unlike_trials(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A trial whose RCOF lies far from the person's others, levels of conditions allowed for."""
-    having = [one for one in files if one.main.get("rcof", 0.0) > 0.0 and person in one.conditions]
-    left = np.log([one.main["rcof"] for one in having])
+    having = [
+        file for file in files if file.main.get("rcof", 0.0) > 0.0 and person in file.conditions
+    ]
+    left = np.log([result.main["rcof"] for result in having])
     for key in (person, *(k for k in _factors(having) if k != person), person):
-        for level in {str(one.conditions.get(key)) for one in having}:
-            own = [i for i, one in enumerate(having) if str(one.conditions.get(key)) == level]
+        for level in {str(result.conditions.get(key)) for result in having}:
+            own = [i for i, result in enumerate(having) if str(result.conditions.get(key)) == level]
             left[own] -= np.median(left[own])
     if len(having) < _JUDGED:
         return
     limit = max(_SCATTERS * 1.4826 * float(np.median(np.abs(left))), _UNLIKE)
-    for one, away in zip(having, left, strict=True):
+    for result, away in zip(having, left, strict=True):
         if abs(away) > limit:
             words = Message(
                 "RCOF {rcof:.3f}, {change:+.0f} % against the other trials of "
                 "{who}: gain, or another?",
-                rcof=one.main["rcof"],
+                rcof=result.main["rcof"],
                 change=100 * np.expm1(away),
-                who=one.conditions[person],
+                who=result.conditions[person],
             )
-            yield Doubt(words, (one.file,))
+            yield Doubt(words, (result.file,))
 
 
 def _near_names(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Two levels one slip of the finger apart, one of them rare."""
     for key, having in _factors(files).items():
-        counts = Counter(str(one.conditions[key]) for one in having)
+        counts = Counter(str(result.conditions[key]) for result in having)
         for rare, n in counts.items():
             plain = plain_spelling(rare, person=key in PERSON)
             if len(plain) < 4 or any(letter.isdigit() for letter in plain):
@@ -357,7 +359,7 @@ def _one_slip(a: str, b: str) -> bool:
 def _words_exchanged(files: Sequence[FileResult]) -> Iterator[Doubt]:
     """Two levels of the same words in another order: "hard wet" beside "wet hard"."""
     for key, having in _factors(files).items():
-        levels = dict.fromkeys(str(one.conditions[key]) for one in having)
+        levels = dict.fromkeys(str(result.conditions[key]) for result in having)
         for first, second in combinations(levels, 2) if key not in ORDERS else ():
             if not _same_in_another_order(first, second):
                 continue
@@ -398,21 +400,21 @@ def _compared(files: Sequence[FileResult], person: str) -> dict[str, list[FileRe
         key: having
         for key, having in _factors(files).items()
         if key != person
-        and 1 < len({one.conditions[key] for one in having}) < len(having)
+        and 1 < len({result.conditions[key] for result in having}) < len(having)
         and not names_persons(
-            [one.conditions[key] for one in having],
-            [one.conditions[person] for one in having if person in one.conditions],
+            [result.conditions[key] for result in having],
+            [result.conditions[person] for result in having if person in result.conditions],
         )
     }
 
 
 def _confounded(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     having = _compared(files, person)
-    every = [key for key, own in having.items() if len(own) == len(files)]
-    factors = {key: [str(one.conditions[key]) for one in files] for key in every}
+    every = [key for key, results in having.items() if len(results) == len(files)]
+    factors = {key: [str(file.conditions[key]) for file in files] for key in every}
     if len(factors) > 1:
-        for one in told_apart(factors)[1]:
-            words = Message("{pair}: what is found for one may be of the other", pair=one)
+        for confounded in told_apart(factors)[1]:
+            words = Message("{pair}: what is found for one may be of the other", pair=confounded)
             yield Doubt(words, ("all",))
 
 
@@ -476,20 +478,20 @@ def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doub
 def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Two persons with one body: weight, height and distances of markers agree as repeats do."""
     bodies: dict[str, list[Mapping[str, float]]] = {
-        who: [one.body for one in own if one.body]
-        for (who,), own in grouped(files, (person,)).items()
+        who: [result.body for result in results if result.body]
+        for (who,), results in grouped(files, (person,)).items()
     }
-    usual = {who: {name: median([b[name] for b in own if name in b]) for name in own[0]}
-             for who, own in bodies.items() if own}  # fmt: skip
+    usual = {who: {name: median([b[name] for b in results if name in b]) for name in results[0]}
+             for who, results in bodies.items() if results}  # fmt: skip
     names = dict.fromkeys(name for body in usual.values() for name in body)
     within: dict[str, float] = {}
     for name in names:
         values = [np.log(body[name]) for body in usual.values() if body.get(name, 0.0) > 0.0]
         off = [
-            np.log(b[name] / usual[who][name]) * (len(own) / (len(own) - 1.0)) ** 0.5
-            for who, own in bodies.items()
-            for b in own
-            if len(own) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
+            np.log(b[name] / usual[who][name]) * (len(results) / (len(results) - 1.0)) ** 0.5
+            for who, results in bodies.items()
+            for b in results
+            if len(results) > 1 and b.get(name, 0.0) > 0.0 and usual[who].get(name, 0.0) > 0.0
         ]
         if len(off) < 3 or len(values) < 2:
             continue
@@ -512,8 +514,8 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
             evidence[_kind(name)].append((most, 0.5 * apart**2 * (1.0 / same - 1.0 / differ)))
         if not evidence:
             continue
-        counts = [min(len(own), counted) for own in evidence.values()]
-        means = [np.mean(own, axis=0) for own in evidence.values()]
+        counts = [min(len(results), counted) for results in evidence.values()]
+        means = [np.mean(results, axis=0) for results in evidence.values()]
         most, lost = np.sum([n * mean for n, mean in zip(counts, means, strict=True)], axis=0)
         # chi-square of two bodies below 2 lost, by its density at 0, which is the highest
         half = 0.5 * sum(counts)
@@ -570,16 +572,16 @@ def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Do
         having = [o for o in having if person in o.conditions and o.main.get("rcof", 0.0) > 0.0]
         cells = grouped(having, (person, key))
         left = [
-            np.log(one.main["rcof"]) - np.median([np.log(o.main["rcof"]) for o in own])
-            for own in cells.values() if len(own) > 2 for one in own
+            np.log(result.main["rcof"]) - np.median([np.log(o.main["rcof"]) for o in results])
+            for results in cells.values() if len(results) > 2 for result in results
         ]  # fmt: skip
         if len(left) < 20:
             continue
         scatter = max(1.4826 * float(np.median(np.abs(left))), 1e-3)
-        for (who, level), own in cells.items():
-            for one in own:
-                value = np.log(one.main["rcof"])
-                same = [np.log(o.main["rcof"]) for o in own if o is not one]
+        for (who, level), results in cells.items():
+            for result in results:
+                value = np.log(result.main["rcof"])
+                same = [np.log(o.main["rcof"]) for o in results if o is not result]
                 if len(same) < 2 or abs(value - np.mean(same)) < _SCATTERS * scatter:
                     continue
                 for (other, label), those in cells.items():
@@ -593,13 +595,13 @@ def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Do
                             label=label,
                             who=who,
                         )
-                        yield Doubt(words, (one.file,))
+                        yield Doubt(words, (result.file,))
                         break
 
 
 def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     for key, having in _factors(files).items():
-        counts = Counter(str(one.conditions[key]) for one in having)
+        counts = Counter(str(result.conditions[key]) for result in having)
         usual = float(np.median(list(counts.values())))
         rare = [level for level, n in counts.items() if n == 1]
         if usual >= 3 and 0 < len(rare) <= 0.5 * len(counts) and key != "date":
@@ -614,9 +616,9 @@ def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 
 def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    for (who,), own in grouped(files, (person,)).items():
+    for (who,), results in grouped(files, (person,)).items():
         for key, limit in _BODY.items():
-            noted = {one.conditions[key] for one in own if key in one.conditions}
+            noted = {result.conditions[key] for result in results if key in result.conditions}
             numbers = [value for value in noted if isinstance(value, float)]
             apart = len(numbers) > 1 and max(numbers) > (1.0 + limit) * min(numbers)
             if apart or (len(noted) > 1 and not numbers):
@@ -624,19 +626,19 @@ def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
                 words = Message(
                     "{key} of {who} is noted as {values}", key=key, who=who, values=listed
                 )
-                yield Doubt(words, _names(own))
+                yield Doubt(words, _names(results))
 
 
 def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """A recording that shows another body than the person's other recordings."""
     measured = {
-        who: [(one.file, one.body) for one in own if one.body]
-        for (who,), own in grouped(files, (person,)).items()
+        who: [(result.file, result.body) for result in results if result.body]
+        for (who,), results in grouped(files, (person,)).items()
     }
     away: dict[tuple[str, str], dict[str, float]] = {}
-    for who, own in measured.items():
-        for file, body in own:
-            others = [other for name, other in own if name != file]
+    for who, results in measured.items():
+        for file, body in results:
+            others = [other for name, other in results if name != file]
             middles = {name: _middle(others, name) for name in body}
             away[who, file] = {n: body[n] / middle - 1.0 for n, middle in middles.items() if middle}
     limits = {}
@@ -645,9 +647,9 @@ def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt
         scatter = 1.4826 * float(np.median(sizes)) if sizes else largest
         limits[kind] = min(max(_SCATTERS * scatter, _LEAST), largest)
     usual = {
-        who: {name: _middle([body for _, body in own], name) for name in own[0][1]}
-        for who, own in measured.items()
-        if own
+        who: {name: _middle([body for _, body in results], name) for name in results[0][1]}
+        for who, results in measured.items()
+        if results
     }
     for (who, file), one in away.items():
         beyond = {name: value for name, value in one.items() if abs(value) > limits[_kind(name)]}
@@ -701,9 +703,9 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
     """
     for key, what in (("rcof", "RCOF"), ("peak_force", "peak of the normal force")):
         ratios: dict[tuple[str, str], list[float]] = defaultdict(list)
-        for one in files:
+        for file in files:
             values: dict[str, list[float]] = defaultdict(list)
-            for step in one.steps:
+            for step in file.steps:
                 if (step.rcof or 0.0) > 0.0 and getattr(step, key):
                     values[step.plate].append(float(np.log(getattr(step, key))))
             for pair in combinations(sorted(values), 2):
@@ -729,31 +731,33 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """A COF far from the other repeats of the same shoe, floor and fluid."""
     keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
-    for level, own in grouped(files, keys).items() if keys else ():
-        values = np.array([one.main["cof"] for one in own if "cof" in one.main])
+    for level, results in grouped(files, keys).items() if keys else ():
+        values = np.array([result.main["cof"] for result in results if "cof" in result.main])
         if len(values) < 4:
             continue
         middle = float(np.median(values))
         usual = 1.4826 * float(np.median(np.abs(values - middle)))
-        for one in own:
-            away = abs(one.main.get("cof", middle) - middle)
+        for result in results:
+            away = abs(result.main.get("cof", middle) - middle)
             if away > max(6.0 * usual, 0.15 * middle):
                 words = Message(
                     "{level}: COF {cof:.3f} against {usual:.3f} of the other repeats: "
                     "gain or sample?",
                     level=level,
-                    cof=one.main["cof"],
+                    cof=result.main["cof"],
                     usual=middle,
                 )
-                yield Doubt(words, (one.file,))
+                yield Doubt(words, (result.file,))
 
 
 def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Repeats of one shoe, floor and fluid that rise or fall from the first to the last."""
     keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
-    for level, own in grouped([f for f in files if "cof" in f.main], keys).items():
-        places = run_numbers(own)
-        rise = drift([one.main["cof"] for one in sorted(own, key=lambda f: places[f.file])])
+    for level, results in grouped([f for f in files if "cof" in f.main], keys).items():
+        places = run_numbers(results)
+        rise = drift(
+            [result.main["cof"] for result in sorted(results, key=lambda f: places[f.file])]
+        )
         if rise is not None:
             words = Message(
                 "{level}: COF {way} by {change:.0f} % from the first run to the last: is the floor "
@@ -762,12 +766,12 @@ def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
                 way=Message("rises") if rise > 0 else Message("falls"),
                 change=100 * abs(rise),
             )
-            yield Doubt(words, _names(own))
+            yield Doubt(words, _names(results))
 
 
 def _not_on_record(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Yield the checks that need a person, each once."""
-    said = [m.conventions for one in files for m in one.measurements]
+    said = [m.conventions for file in files for m in file.measurements]
     if any(c.get("calibration") == UNCALIBRATED for c in said):
         words = Message(
             "no calibration record (calibration.toml): the tester's gain can't be judged"

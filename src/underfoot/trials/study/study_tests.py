@@ -76,7 +76,7 @@ def comparison_findings(
             for each in confounded
         ]
         reasons = [*left, *nothing]
-        lost = finding(f"anova_{response}", title, ("not done",), [(one,) for one in reasons])
+        lost = finding(f"anova_{response}", title, ("not done",), [(reason,) for reason in reasons])
         return [lost, *repeated]
     if not factors:
         return repeated
@@ -491,14 +491,14 @@ def _subsets(files: Sequence[FileResult]) -> list[Finding]:
     made = []
     for label, kind in (("as a factor (2 df)", str), ("as a trend (1 df)", float)):
         try:
-            found = statistics.all_subsets(
+            subsets = statistics.all_subsets(
                 pressure, {"SPRWD": [kind(r["row"]) for r in rows], **shared}
             )
         except UnderfootError as error:
             return [not_done("subsets", title, error)]
         made += [
             (" + ".join(s.predictors), label, s.adjusted_r_squared, s.r_squared, len(rows))
-            for s in found
+            for s in subsets
         ]
     heads = ("variables", "SPRWD enters", "adjusted R^2", "R^2", "n")
     note = "Sensor passages of trials with a slip; ML is the distance without its sign."

@@ -213,9 +213,9 @@ def grouped(
 ) -> dict[tuple[str, ...], list[FileResult]]:
     """Return the files that have all the conditions ``keys``, by their levels."""
     groups: dict[tuple[str, ...], list[FileResult]] = {}
-    for one in files:
-        if all(key in one.conditions for key in keys):
-            groups.setdefault(tuple(str(one.conditions[key]) for key in keys), []).append(one)
+    for file in files:
+        if all(key in file.conditions for key in keys):
+            groups.setdefault(tuple(str(file.conditions[key]) for key in keys), []).append(file)
     return in_order(groups)
 
 
@@ -237,23 +237,23 @@ def in_order(
 
 def file_table(files: Sequence[FileResult]) -> Table:
     """Return one row per file: verdict, main numbers, conditions, reasons."""
-    numbers = list(dict.fromkeys(name for one in files for name in one.main))
+    numbers = list(dict.fromkeys(name for file in files for name in file.main))
     # A number that the analysis took over from the conditions is shown once.
     conditions = [
         name
-        for name in dict.fromkeys(name for one in files for name in one.conditions)
+        for name in dict.fromkeys(name for file in files for name in file.conditions)
         if any(f.main.get(name, level) != level for f in files if (level := f.conditions.get(name)))
         or name not in numbers
     ]
     rows = tuple(
         (
-            one.file,
-            one.verdict,
-            *(scaled(name, one.main.get(name)) for name in numbers),
-            *(one.conditions.get(name) for name in conditions),
-            joined(one.reasons),
+            file.file,
+            file.verdict,
+            *(scaled(name, file.main.get(name)) for name in numbers),
+            *(file.conditions.get(name) for name in conditions),
+            joined(file.reasons),
         )
-        for one in files
+        for file in files
     )
     measured = (
         Column(heading(name), Role.ANSWER if name in _ANSWERS else Role.PLAIN) for name in numbers
@@ -268,15 +268,15 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
     person = person_condition(files)
     rows = tuple(
         (
-            one.file,
-            str(one.conditions.get(person, "")),
+            file.file,
+            str(file.conditions.get(person, "")),
             *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
             "yes" if m.caution_flags else "",
             joined(flag.message for flag in m.flags),
             "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
-        for one in files
-        for m in one.measurements
+        for file in files
+        for m in file.measurements
     )
     heads = (
         "file", "person", "item", "quantity", "value", "unit", "standard uncertainty",
@@ -287,7 +287,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
 
 def edit_table(files: Iterable[FileResult]) -> Table | None:
     """Return the edit log: every edit by hand with event and number before and after, or None."""
-    edits = [(one.file, edit) for one in files for edit in one.edits]
+    edits = [(result.file, edit) for result in files for edit in result.edits]
     if not edits:
         return None
     rows = tuple(
@@ -325,11 +325,11 @@ _STEP_COLUMNS = {
 def steps_table(files: Iterable[FileResult]) -> Table:
     """Return one row for each contact with a plate, rejected ones with the reason."""
     rows = []
-    for one in files:
-        for step in one.steps:
+    for file in files:
+        for step in file.steps:
             values = [getattr(step, name) for name in _STEP_COLUMNS]
             texts = [joined(v) if isinstance(v, tuple) else v for v in values]
-            rows.append((one.file, *texts))
+            rows.append((file.file, *texts))
     heads = (Column("file", always=True), *_STEP_COLUMNS.values())
     note = "All that is known of a step is in tables/steps_wide.csv and steps_long.csv."
     title = "Every contact, rejected ones with the reason"
@@ -366,9 +366,11 @@ def condition_table(
         cells: list[Cell] = [*group, len(set(people)), len(members), steps or None]
         for number in numbers:
             values: dict[str, list[float]] = {}
-            for one, who in zip(members, people, strict=True):
-                if number in one.main:
-                    values.setdefault(who, []).append(float(scaled(number, one.main[number]) or 0))
+            for member, who in zip(members, people, strict=True):
+                if number in member.main:
+                    values.setdefault(who, []).append(
+                        float(scaled(number, member.main[number]) or 0)
+                    )
             if number == "slip":
                 trials = [x for v in values.values() for x in v]
                 cells += [float(np.mean(trials)) if trials else None]
@@ -390,7 +392,8 @@ def condition_table(
     averaged = ", each person's trials averaged first." if person else "."
     notes = [f"Mean, SD and 95 % interval between {unit}{averaged} {INTERVALS}"]
     if any(
-        len({str(m.conditions.get(person, m.file)) for m in own}) < 2 for own in groups.values()
+        len({str(m.conditions.get(person, m.file)) for m in results}) < 2
+        for results in groups.values()
     ):
         notes.append(f"Of one of the {unit} alone SD and interval are not estimated: no scatter.")
     if not person and len(usable) > 1:
@@ -470,16 +473,16 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
 
     Conditions stand beside. Refused files and rejected steps are in both, with their verdict.
     """
-    files = [one for one in files if one.steps]
+    files = [file for file in files if file.steps]
     if not files:
         return []
-    conditions = list(dict.fromkeys(name for one in files for name in one.conditions))
+    conditions = list(dict.fromkeys(name for file in files for name in file.conditions))
     wide: list[tuple[Cell, ...]] = []
     long: list[tuple[Cell, ...]] = []
-    for one in files:
-        own = [one.conditions.get(name) for name in conditions]
-        for step in one.steps:
-            head = (one.file, one.verdict, *own, step.number)
+    for file in files:
+        own = [file.conditions.get(name) for name in conditions]
+        for step in file.steps:
+            head = (file.file, file.verdict, *own, step.number)
             texts = [getattr(step, name) or "" for name in _TEXTS]
             cautions = joined(step.cautions)
             wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
@@ -504,23 +507,23 @@ def curve_table(files: Iterable[FileResult]) -> Table | None:
     The steps of a person (of a file, where no person is named) are averaged first; SD is that
     between persons.
     """
-    files = [one for one in files if one.usable and one.curves.get("normalised")]
+    files = [file for file in files if file.usable and file.curves.get("normalised")]
     if not files:
         return None
     person = person_condition(files)
     keys = [
         name
-        for name in dict.fromkeys(name for one in files for name in one.conditions)
+        for name in dict.fromkeys(name for file in files for name in file.conditions)
         if name != person
         and name not in NUMBERS
-        and 1 < len({str(one.conditions.get(name)) for one in files}) < len(files)
-        and all(isinstance(one.conditions.get(name, ""), str) for one in files)
+        and 1 < len({str(file.conditions.get(name)) for file in files}) < len(files)
+        and all(isinstance(file.conditions.get(name, ""), str) for file in files)
     ]
     groups: dict[tuple[str, ...], dict[str, list[np.ndarray]]] = {}
-    for one in files:
-        key = tuple(str(one.conditions.get(name, "")) for name in keys)
-        who = str(one.conditions.get(person, one.file))
-        for curve in one.curves["normalised"]:
+    for file in files:
+        key = tuple(str(file.conditions.get(name, "")) for name in keys)
+        who = str(file.conditions.get(person, file.file))
+        for curve in file.curves["normalised"]:
             values = np.array([curve[name] for name in _CURVES], dtype=float)  # None gives NaN
             groups.setdefault(key, {}).setdefault(who, []).append(values)
     rows: list[tuple[Cell, ...]] = []

@@ -142,7 +142,7 @@ class Description:
                 under.append(f"{step.verdict}: RCOF {number}, {after:.0f} ms after contact")
             lines += [" " * 13 + text for text in (*under, *(f"! {flag}" for flag in rcof.flags))]
         good = [step.measurement for step in self.steps if step.measurement.estimated]
-        doubtful = sum(bool(one.caution_flags) for one in good)
+        doubtful = sum(bool(measurement.caution_flags) for measurement in good)
         if len(good) > 1:
             mean = mean_of(good)
             lines.append(

@@ -145,7 +145,7 @@ class RequiredFriction(Presentable):
 
     def table(self) -> Table:
         """Return the step with its number, flags and conventions."""
-        stance, own = self.stance, self.measurement.table()
+        stance, table = self.stance, self.measurement.table()
         rows: list[tuple[Any, ...]] = [
             ("verdict", self.verdict),
             ("contact (s)", stance.contact),
@@ -154,7 +154,7 @@ class RequiredFriction(Presentable):
             ("peak force (N)", stance.peak),
             ("peak of the ratio (s after contact)", self.peak_time - stance.contact),
         ]
-        return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *own.rows])
+        return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *table.rows])
 
 
 @of_walkway

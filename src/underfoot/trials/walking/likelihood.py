@@ -120,7 +120,9 @@ def unlikely_flags(
                 Flag(law.feature, text, True, law.shown(value), limit, "", law.source, likelihood)
             )
     for need, (what, missed) in _NEEDS.items():
-        if not any(one.needs == need and one.feature in features for one in known):
+        if not any(
+            reference.needs == need and reference.feature in features for reference in known
+        ):
             flags.append(
                 remark("without {what} {missed} can't be judged", what=what, missed=missed)
             )
@@ -134,15 +136,19 @@ def impossible(
     speed: float | None = None,
 ) -> Message:
     """Return why a step at a ``speed`` (m/s) can't be one of walking, or nothing."""
-    for one in references() if known is None else known:
-        value = features.get(one.feature)
-        if one.bound and value is not None and one.likelihood(value, speed) < IMPOSSIBLE:
+    for reference in references() if known is None else known:
+        value = features.get(reference.feature)
+        if (
+            reference.bound
+            and value is not None
+            and reference.likelihood(value, speed) < IMPOSSIBLE
+        ):
             return Remark(
-                one.feature,
+                reference.feature,
                 "{value:.3g} is impossible (sound steps {usual:.3g}): gain, unit or axes of the "
                 "forces?",
-                value=one.shown(value),
-                usual=one.shown(one.mean),
+                value=reference.shown(value),
+                usual=reference.shown(reference.mean),
             )
     return NOTHING
 
@@ -172,9 +178,9 @@ def unseen_gain(
     if not features:
         return ()
     reach = {
-        one.feature: one.limit(one.mean + 1e-12, speed) - one.mean
-        for one in (references() if known is None else known)
-        if one.feature in features
+        reference.feature: reference.limit(reference.mean + 1e-12, speed) - reference.mean
+        for reference in (references() if known is None else known)
+        if reference.feature in features
     }
     shear = min((reach[name] for name in _SHEAR_GAIN if name in reach), default=_ANY_GAIN)
     judged = [reach[name] for name in _NORMAL_GAIN if name in reach]

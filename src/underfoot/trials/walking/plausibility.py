@@ -200,11 +200,11 @@ def unknown_heel(walk: Walkway) -> tuple[Flag, ...]:
 
 def unseen(walk: Walkway) -> tuple[Flag, ...]:
     """Return what can't be seen in a whole recording for want of markers or of a body mass."""
-    found = unknown_heel(walk)
+    flags = unknown_heel(walk)
     count = len(body_markers(walk.trial.markers))
     if not count:
         text = Message("no markers: slips, turns, slopes and a gain of the shear can't be seen")
-        found += (Flag("markers", text),)
+        flags += (Flag("markers", text),)
     elif not walk.pelvis:
         text = Message(
             "none of {count} markers is recognised as the pelvis's: a gain of "
@@ -212,14 +212,14 @@ def unseen(walk: Walkway) -> tuple[Flag, ...]:
             "profile.toml",
             count=count,
         )
-        found += (Flag("pelvis", text),)
+        flags += (Flag("pelvis", text),)
     if walk.weight is None:
         text = Message(
             "no body mass: a gain of the normal force can't be seen; write it "
             "into conditions.csv or profile.toml"
         )
-        found += (Flag("body mass", text),)
-    return found
+        flags += (Flag("body mass", text),)
+    return flags
 
 
 _NOT_JUDGED = remark(

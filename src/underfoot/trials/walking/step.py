@@ -112,7 +112,7 @@ class Step:
         markers = {name: walk.trial.markers[name] for name in names}
         if belt is None:
             return markers
-        return {name: belt.carry_back(one, stance.contact) for name, one in markers.items()}
+        return {name: belt.carry_back(marker, stance.contact) for name, marker in markers.items()}
 
     @property
     def heel(self) -> Marker | None:

@@ -161,7 +161,7 @@ def _force_line(step: Step, across: np.ndarray) -> dict[str, float]:
         return {}
     time = plate.start + np.arange(begin, end) / plate.rate
     near = frames_between(markers[0].time, time[0] - 0.3, time[-1] + 0.3)
-    paths = np.array([one.positions[near] for one in markers])
+    paths = np.array([marker.positions[near] for marker in markers])
     seen = np.flatnonzero(np.isfinite(paths).all(axis=(1, 2)))
     whole = paths[seen]
     if len(whole) < 2 or whole.shape[1] < 30:

@@ -95,9 +95,10 @@ class Walkway:
         self, plate: Plate, threshold: float
     ) -> tuple[tuple[Contact, Direction], ...]:
         """Return the ``contacts`` with a plate above another vertical force (N)."""
-        found, more = plate_contacts(plate, self.up, threshold), (self.belts, self.walking)
+        contacts, more = plate_contacts(plate, self.up, threshold), (self.belts, self.walking)
         return tuple(
-            (one, contact_direction(self.trial, one, *more, self.axes.body)) for one in found
+            (contact, contact_direction(self.trial, contact, *more, self.axes.body))
+            for contact in contacts
         )
 
 
