@@ -112,8 +112,8 @@ def test_compare_reads_result_folders_and_names_what_differs(finished):
     assert done.returncode == 0, done.stderr
     content = json.loads(done.stdout)
     assert content["differences"] == [{"path": "friction.cof", "values": ["0.8", "0.6"]}]
-    assert "higher COF" in content["headline"][0]
-    assert "by 0.200" in content["headline"][0]
+    assert " is 0.200 above that of " in content["headline"][0]
+    assert "no spread is known" in content["headline"][0]  # of constants that nobody measured
     shown = called("compare", "result", "other", folder=folder)
     assert "friction.cof" in shown.stdout
     three = called(

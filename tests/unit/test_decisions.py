@@ -42,8 +42,9 @@ def choice_of(monkeypatch, cofs, *, floors=("hall",), fluids=None, wears=()):
         "floor": [{"name": name, "roughness": {"rq": "2 um"}, "area": area}
                   for name, area in (floors.items() if isinstance(floors, dict)
                                      else ((name, 1) for name in floors))],
-        "shoe": [{"name": name, "from": "work_shoe_full_tread", **(WEARS if name in wears else {})}
-                 for name in cofs],
+        "shoe": [{"name": name, "from": "work_shoe_full_tread", "roughness": {"rq": f"{5 + k} um"},
+                  **(WEARS if name in wears else {})}
+                 for k, name in enumerate(cofs)],
     }  # fmt: skip
     return chosen(place_of(table))
 

@@ -678,10 +678,8 @@ def _regression(
 
     names = np.array([c.laboratory for c in training])
     rest = np.empty_like(y)
-    for fromkey in dict.fromkeys(names):
-        rest[names == fromkey] = y[names == fromkey] - predicted(
-            names != fromkey, x[names == fromkey]
-        )
+    for name in dict.fromkeys(names):
+        rest[names == name] = y[names == name] - predicted(names != name, x[names == name])
     sd = np.sqrt(np.average(rest**2, weights=weight))
     mean = predicted(np.ones(y.size, dtype=bool), features(left_out))
     noise = np.random.default_rng(seed).normal(size=(2000, len(left_out)))

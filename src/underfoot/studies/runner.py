@@ -17,7 +17,6 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
-from underfoot.core.remark import Message
 
 from .figure import Figure
 from .statements import Study, studies, study, study_module
@@ -70,7 +69,7 @@ class Computed:
     figures: Mapping[str, Figure] = field(default_factory=dict)
     conclusions: Sequence[str] = ()
     notes: Sequence[str] = ()
-    assumptions: Sequence[Message] = ()
+    assumptions: Sequence[str] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
