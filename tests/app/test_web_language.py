@@ -120,6 +120,10 @@ def test_sentences_are_put_in_whole_and_numbers_have_their_signs(tmp_path):
         page.add_script_tag(path=text.FOLDER.parent / "static" / "language.js")
         for english, german in said.items():
             assert page.evaluate("t => inLanguage(t)", english) == german
+        busy = "Nobody works on it; 4 cases a minute, workers 93\u00a0% busy"
+        said = page.evaluate("t => inLanguage(t)", busy)
+        assert said.startswith("Niemand")
+        assert "93\u00a0%" in said
         # what is written is not read as English again: 1,234 would be a thousand
         page.evaluate("speakAll(document.body)")
         for _ in range(3):
@@ -166,7 +170,7 @@ def test_names_of_the_user_stay_as_they_are(tmp_path):
     with page_of(page_file.as_uri()) as page:
         page.evaluate(
             "w => { window.spoken = { words: w, decimal: ',' }; window.namesOfUser = ['sample']; }",
-            text.Text("de").of_package(),
+            text.Text("de").sentences(),
         )
         page.add_script_tag(path=text.FOLDER.parent / "static" / "language.js")
         assert {each: page.evaluate("t => inLanguage(t)", each) for each in said} == said

@@ -160,6 +160,8 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
             return {"problem": " ".join(words for _, words in problem_parts(error))}
         return {"path": path.relative_to(project.folder).as_posix()}
 
+    # pages say themselves what they wait for; a bar over all requests has no name to be read aloud
+    pages_app.config.quasar_config["loadingBar"]["skipHijack"] = True
     ui.run_with(
         application,
         title="Underfoot",

@@ -1,6 +1,7 @@
 """The case: shoe, floor, contaminant, motion and one option in each slot; frozen, with a hash."""
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Never, Self
@@ -19,7 +20,7 @@ from .errors import CaseError, placed, translated
 from .friction import FrictionOption
 from .motion import Motion, Sensor
 from .numerics import Numerics
-from .parts import FILE_VERSION, CaseParts, field_at, path_kind, unit_at
+from .parts import FILE_VERSION, CaseParts, field_at, path_kind, slot_table, unit_at
 from .people import Risk, Walkers
 from .quantity import DOOR, one_value
 from .section import (
@@ -625,6 +626,11 @@ def _emptied(text: str) -> list[str]:
 def _checked(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return settings in the paths of version 2; refuse unknown paths and misfits."""
     changes = current_settings(settings)
+    for path, value in changes.items():  # an option of one's own brings its keys
+        slot = slot_table().get(path.rpartition(".")[0])
+        if slot is not None and isinstance(value, str) and path.endswith(f".{slot.key}"):
+            with suppress(ValueError, InputError):  # what is wrong with it is told with all else
+                slot.pick(value)
     for path, value in changes.items():
         allowed = value is None or isinstance(value, str | Mapping | Section)
         if path_kind(path) == "section" and (not allowed or origin_of(value) is not None):

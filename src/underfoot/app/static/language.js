@@ -46,7 +46,8 @@ function inLanguage(text, depth = 0) {
   if (!translations.has(core)) {
     translations.set(core, withDecimals(core)); // what a form of itself would come back to
     const said = formed(plain, depth);
-    if (said !== plain) translations.set(core, said); // blanks that hold together stay where nothing is put in
+    const held = core.includes("\u00a0%") ? said.replaceAll(" %", "\u00a0%") : said; // no % alone on a line
+    if (said !== plain) translations.set(core, held); // blanks that hold together stay where nothing is put in
   }
   return text.replace(core, () => translations.get(core));
 }
