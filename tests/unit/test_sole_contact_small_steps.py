@@ -14,7 +14,15 @@ from underfoot.shoe import Flat, Heel, SoleMap, heel_map
 from underfoot.sole_contact._kernels.splines import Splines
 from underfoot.sole_contact.compliance import layered_compliance
 from underfoot.sole_contact.cost import AT_REST, refuse_too_large, solution_cost
-from underfoot.sole_contact.long_waves import SIDE, WAVE, net_over, splines_over
+from underfoot.sole_contact.long_waves import (
+    ALIKE,
+    FAINT,
+    SIDE,
+    WAVE,
+    _compliance,
+    net_over,
+    splines_over,
+)
 from underfoot.sole_contact.march import Counts, _calmed, _film_mask
 from underfoot.sole_contact.problem import State
 from underfoot.sole_contact.solver import longest_step, passing_time
@@ -166,3 +174,11 @@ def test_a_pool_that_reaches_no_cell_wets_those_that_are_lowest():
     assert wet.tolist() == [True, True, False, False, False]
     reached = _film_mask(cast(Any, problem), clearance - 0.95e-3, 1e-4, at_rim)
     assert reached.tolist() == [True, True, True, False, False]
+
+
+@pytest.mark.parametrize("left", [1.0, 0.5, 0.0])
+def test_a_wave_that_is_cut_off_fades_by_what_is_missing_of_it(left):
+    """1 / (its overlap, a tenth of what is missing and a thousandth of the whole)^2 of its work."""
+    size = 8e-6
+    (rise,) = _compliance(np.eye(1), np.array([[left * size]]), size).ravel()
+    assert rise == pytest.approx(1 / (size * (left + FAINT * (1 - left) + ALIKE)) ** 2)
