@@ -16,6 +16,7 @@ from underfoot.slip.dynamics import (
     slip_motion,
 )
 from underfoot.slip.dynamics._kernels import reduced as kernel
+from underfoot.slip.dynamics.motion import COLUMNS
 
 
 def test_without_friction_speed_is_the_integral_of_the_drive():
@@ -260,16 +261,7 @@ def test_the_compiled_motion_is_the_motion_in_every_column(cof, brake):
     person = walker(constant(0.2), 0.2, **changes)
     full = slip_motion(person, Floor(cof=cof), step=1e-3)
     fast = dry_sole(cof).motion(person, step=1e-3)
-    for name in (
-        "time",
-        "speed",
-        "distance",
-        "normal",
-        "drive",
-        "friction",
-        "work_in",
-        "dissipated",
-    ):
+    for name in COLUMNS:
         ours, theirs = getattr(fast, name), getattr(full, name)
         np.testing.assert_allclose(ours[1:], theirs[1:], rtol=1e-9, atol=1e-12, err_msg=name)
     braked = person.moving_mass * np.diff(person.dry_speed(fast.time)) / 1e-3
