@@ -140,7 +140,9 @@ ROW = 1 / 7.6
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="uneven by 7.2 % of the mean, below 6.6 % asked")
+@pytest.mark.xfail(
+    strict=True, reason="uneven by 7.2 % of the mean, below 6.6 % asked; the cause is not known"
+)
 def test_film_load_is_smooth_in_the_width_of_a_lug():
     cut, counted = (
         np.array([squeezed(width, cut=cut)[1].fluid_load for width in WIDTHS])

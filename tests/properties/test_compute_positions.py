@@ -737,8 +737,8 @@ def test_a_sole_whose_bars_float_converges_at_every_place(tmp_path):
         _, contact = solved_at(ready, place, spacing)
         assert contact.status is Status.CONVERGED
         rejected.append(contact.counts.rejected)
-    if max(rejected) in (9, 10):
-        pytest.xfail("9 or 10 steps in vain at one place, below 8 asked")
+    if max(rejected) == 9:
+        pytest.xfail("9 steps in vain at one place, below 8 asked")
     assert max(rejected) < 8
 
 

@@ -94,8 +94,7 @@ def _work_of_waves(pickled: bytes) -> tuple[Array, Array]:
     weighted = sp.csr_matrix(pressed.multiply(area[:, None]))
     right = np.ascontiguousarray((rise.T @ weighted).toarray())
     factors = factorization(stiffness, kind="positive definite", where="sole_contact.bricks")
-    # by what rises at the floor: a hundredth of the time of right.T @ solution
-    work = weighted.T @ (rise @ factors.solve(right))
+    work = right.T @ factors.solve(right)
     return 0.5 * (work + work.T), (pressed.T @ weighted).toarray()
 
 
