@@ -57,11 +57,6 @@ def numbers(case):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True,
-    reason="from 200 um the march ends at 41 s, where the film still drains: 66.8 N for 66.1 N at "
-    "2,300 s, where that from 15 um ends: rest is judged by the load, not by the film",
-)
 def test_a_default_answer_forgets_the_film_at_touch_down():
     (thin, _), (thick, contact) = (
         numbers(treaded(**{"motion.start_film": film})) for film in ("15 um", "200 um")

@@ -36,7 +36,7 @@ LEAST_LOAD = 1e-3  # of the largest load so far: what a foot about to lift still
 LEAST_STEPS = 100  # in which ``LONGEST_TIME`` is marched at least
 LONGEST_TIME = 1e5  # s, when a film that still moves is given up as not steady
 STEADY_STEP = 0.25  # share of the elapsed time over which a steady state must not move
-STEADY_CHANGE = 1e-4  # share of the load by which that on the film may change over such a step
+STEADY_CHANGE = 2e-4  # share of film, or of contact, by which it may change over such a step
 STEADY_MOVE = 3e-3  # share of the load that may change its place then
 REJECTED = (4, 20)  # steps that fail on the way to a steady state: from none to all of ``SLOW``
 SLOW = 0.01  # share of film, and of contact, by which a film that rests may change where steps fail
@@ -209,10 +209,12 @@ class SlidingSole:
         """Carry on at constant load and speed until nothing moves, and return that.
 
         At rest: over a step of a quarter of the elapsed time, in which the sole slides its own
-        length, the load on the film changes by less than 1e-4 of the whole, and less than 3e-3 of
-        it moves to another place. From the fifth to the twentieth step that failed, a film
-        may change by 0.06 to 1 % over half the elapsed time, in which the sole slides at least
-        twice its length; after ``LONGEST_TIME`` one is at rest whose last ten steps lie within 1 %.
+        length, the load on the film changes by less than 2e-4 of itself or, where less touches, of
+        what touches, and less than 3e-3 of the load moves to another place. From the fifth to the
+        twentieth step that failed, a film may change by 0.06 to 1 % over half the elapsed time, in
+        which the sole slides at least twice its length; after ``LONGEST_TIME`` one is at rest whose
+        last ten steps lie within 1 %. A film or a contact of less than 1 % of the load counts as
+        1 %.
         """
         check_demand(1.0, normal_force, speed, None)
         self._speed = speed
@@ -221,19 +223,20 @@ class SlidingSole:
         loading = max(2 * self.settings.rise_time, self._time)
         passing, rejected = self.sliding_time(speed), self.counts.rejected
 
+        def least(film: float) -> float:
+            return max(min(film, normal_force - film), SLOW * normal_force)
+
         def slow(share: float = SLOW) -> bool:
             begin = self._time - max(2 * passing, 0.5 * self._time)
             film = self.history.fluid_load
             if not film:
                 return False
             change = abs(film[-1] - float(np.interp(begin, self.history.time, film)))
-            least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
-            return begin > loading and change < share * least
+            return begin > loading and change < share * least(film[-1])
 
         def hovers() -> bool:
             film = np.array(self.history.fluid_load[-HOVERING:])
-            least = max(min(film[-1], normal_force - film[-1]), SLOW * normal_force)
-            return bool(np.ptp(film) < SLOW * least)
+            return bool(np.ptp(film) < SLOW * least(film[-1]))
 
         def settled(before: State, step: float) -> bool:
             after = self._march.state
@@ -245,7 +248,7 @@ class SlidingSole:
             return (
                 self._time > loading
                 and step > max(min(STEADY_STEP * self._time, 0.5 * longest_step), passing)
-                and moved < STEADY_CHANGE * normal_force
+                and moved < STEADY_CHANGE * least(self.history.fluid_load[-1])
                 and change < STEADY_MOVE * normal_force
             )
 
