@@ -10,6 +10,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
+from underfoot.core.presentation import Part
 from underfoot.core.remark import MARK, Message
 
 from .jobs import INTERRUPTED, Task
@@ -109,9 +110,9 @@ def table(
                     for number, cell in enumerate(row):
                         with ui.element("td" if number else "th") as made_cell:
                             whole = isinstance(cell, Message)  # no % alone on a line
-                            told(cell if whole else cell.strip().replace(" %", "\u00a0%"))
+                            told(cell if whole else cell.replace(" %", "\u00a0%"))
                         if not number:
-                            made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
+                            made_cell.props('scope="row"').classes("part" * isinstance(cell, Part))
                         if action and place in rows and number == len(row) - 1:
                             with made_cell:
                                 button = ui.button(action[0], on_click=partial(action[1], place))

@@ -16,7 +16,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from underfoot.core import DataError, InputError, SourcedValue, display
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import Part, Presentable, Table
+from underfoot.core.remark import Amount, Message, Remark
 from underfoot.material import (
     DynamicMasterCurve,
     DynamicSweep,
@@ -80,7 +81,7 @@ class Compound(Presentable):
     poisson_ratio: float
     polymer: str | None
     notes: tuple[str, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
 
     def __repr__(self) -> str:
         return f"<Compound {self.name:.60}: {self.spectrum!r:.100}>"
@@ -108,19 +109,38 @@ class Compound(Presentable):
         source = f"{self.name}: after {display(self._time, 's')} of load"
         return SourcedValue(value, "Pa", source=source, uncertainty=deviation * value or None)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return modulus, loss tangent and the frequencies tested."""
         if self.spectrum is None:
             assert self.hardness is not None
-            return (f"Shore A {self.hardness.shore_a:.0f}: a hardness gives no loss tangent.",)
-        words = f"Young's modulus {_shown(self.modulus())} after {display(self._time, 's')} of load"
+            shore_a = self.hardness.shore_a
+            return (
+                Message(
+                    "Shore A {shore_a:.0f}: a hardness gives no loss tangent.", shore_a=shore_a
+                ),
+            )
+        values = {
+            "modulus": _shown(self.modulus()),
+            "time": Amount(self._time, "s"),
+            "count": len(self.spectrum),
+        }
         if self.fit is None or self.tested is None:
-            return (f"{words}; {len(self.spectrum)} terms as given.",)
-        rates = " to ".join(display(w / (2 * math.pi), "Hz") for w in self.tested)
-        return (f"{words}; spectrum of {len(self.spectrum)} terms, tested from {rates}, "
-                f"fit {self.fit.quality} (rms {self.fit.rms_residual:.1%}).",)  # fmt: skip
+            return (
+                Message(
+                    "Young's modulus {modulus} after {time} of load; {count} terms as given.",
+                    **values,
+                ),
+            )
+        return (
+            Message(
+                "Young's modulus {modulus} after {time} of load; spectrum of {count} terms, "
+                "tested from {rates: to }, fit {quality} (rms {rms:.1%}).",
+                **values, rates=[display(w / (2 * math.pi), "Hz") for w in self.tested],
+                quality=self.fit.quality, rms=self.fit.rms_residual,
+            ),
+        )  # fmt: skip
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what the tests leave open for a case."""
         return self.warnings
 
@@ -129,8 +149,8 @@ class Compound(Presentable):
         rows = [("Young's modulus", _shown(self.modulus()), self.modulus().source)]
         if self.spectrum is not None:
             rows += [
-                ("  at once", display(self.spectrum.instantaneous_modulus, "Pa"), "spectrum"),
-                ("  at rest", display(self.spectrum.equilibrium_modulus, "Pa"), "spectrum"),
+                (Part("at once"), display(self.spectrum.instantaneous_modulus, "Pa"), "spectrum"),
+                (Part("at rest"), display(self.spectrum.equilibrium_modulus, "Pa"), "spectrum"),
             ]
         for test in self.compressions:
             printed = test.moduli
@@ -139,7 +159,7 @@ class Compound(Presentable):
                 ("E_0 (Eq. 14)", display(printed.short_time_modulus, "Pa"), "apparent, bonded"),
                 ("K_inf (Eq. 15)", display(printed.long_time_stiffness, "N/m"), test.name),
                 ("E_inf (Eq. 16)", display(printed.long_time_modulus, "Pa"), "apparent, bonded"),
-                ("  over Young's modulus",
+                (Part("over Young's modulus"),
                  f"{test.factor:.3g} ± {test.factor * test.deviation:.2g}",
                  f"1 + 2 k S^2, shape factor S = {test.shape_factor:.3g}"),
             ]  # fmt: skip
@@ -177,8 +197,9 @@ class Compound(Presentable):
         storage, tangent = self.spectrum.storage_modulus(w), self.spectrum.loss_tangent(w)
         shown, remark = f"{float(tangent):.3f}", ""
         if band is not None:
-            size = float(storage)
-            shown += f" ({band.loss_low[n] / size:.3f} to {band.loss_high[n] / size:.3f})"
+            low, high = (float(loss[n] / storage) for loss in (band.loss_low, band.loss_high))
+            ends = Message("{low:.3f} to {high:.3f}", low=low, high=high)
+            shown = Message("{tangent} ({ends})", tangent=shown, ends=ends)
             remark = "not tested" if band.extrapolated[n] else ""
         return display(w / (2 * math.pi), "Hz"), display(float(storage), "Pa"), shown, remark
 
@@ -201,7 +222,7 @@ class Compound(Presentable):
             for kelvin, (shift, error) in zip(table.temperatures.tolist(), errors, strict=True)
         ]
         at = _celsius(table.reference_temperature)
-        title = f"Shift factors to {at} ({table.law})"
+        title = Message("Shift factors to {at} ({law})", at=at, law=table.law)
         return Table(title, ("Temperature", "log10 of the shift factor"), rows)
 
     def data_tables(self) -> dict[str, Table]:
@@ -352,14 +373,14 @@ def compound_from_files(
             prony = found
         elif isinstance(found, Compression):
             compressions.append(found)
-            notes += [f"{file.name}: {note}" for note in found.reading.notes]
+            notes += [Remark.of(file.name, note) for note in found.reading.notes]
         elif isinstance(found[0], DynamicSweep):
             sweeps += found
         else:
             curves += found
     for curve in (*curves, *(relaxation_of(test) for test in compressions)):
         _refuse_rising(curve)
-    warnings: list[str] = []
+    warnings: list[Message] = []
     sweep, shifts, at, fit = None, None, None, None
     if sweeps:
         sweep, shifts, at = _swept(sweeps, temperature, warnings)
@@ -378,7 +399,7 @@ def compound_from_files(
             notes.append(_beside(fit, relaxed))
     spectrum = prony if fit is None else fit.spectrum
     if fit is not None and prony is not None:
-        notes.append("the Prony series is left out: tests go before it")
+        notes.append(Message("the Prony series is left out: tests go before it"))
     if fit is not None:
         warnings += _fit_warnings(fit)
     elif spectrum is not None:
@@ -387,10 +408,13 @@ def compound_from_files(
     if at is None:
         at = temperature
         if spectrum is not None:
-            told = f"no test names its temperature: that of use is assumed, {_celsius(used)}"
+            told = Message(
+                "no test names its temperature: that of use is assumed, {used}", used=_celsius(used)
+            )
             (warnings if abs(used - ROOM) > APART else notes).append(told)
     elif abs(at - used) > APART:
-        warnings.append(f"Tested at {_celsius(at)}, used at {_celsius(used)}: not shifted.")
+        tested = {"at": _celsius(at), "used": _celsius(used)}
+        warnings.append(Message("Tested at {at}, used at {used}: not shifted.", **tested))
     return Compound(
         name=_names(files) or (f"Shore A {hardness.shore_a:.0f}" if hardness else ""),
         spectrum=spectrum,
@@ -428,7 +452,7 @@ def _read(
     shear: bool | None,
     given: Mapping[str, Any],
 ) -> tuple[
-    list[DynamicSweep] | list[RelaxationCurve] | RelaxationSpectrum | Compression, list[str]
+    list[DynamicSweep] | list[RelaxationCurve] | RelaxationSpectrum | Compression, list[Remark]
 ]:
     """Return what a file holds, moduli as Young's, and what was taken of it."""
     factor = 2 * (1 + poisson_ratio)
@@ -441,11 +465,15 @@ def _read(
         test, reason = None, error.what
     if test is not None:
         of_shear = bool(test.shear) if shear is None else shear
-        notes = [f"{file.name}: {note}" for note in test.notes]
+        notes = [Remark.of(file.name, note) for note in test.notes]
         if test.shear is None and shear is None:
             notes.append(
-                f"{file.name}: nothing says whether its moduli are of shear or of tension: taken "
-                f"as Young's; of shear they are {factor:.3g} times as much (--shear)"
+                Remark(
+                    file.name,
+                    "nothing says whether its moduli are of shear or of tension: taken as Young's; "
+                    "of shear they are {factor:.3g} times as much (--shear)",
+                    factor=factor,
+                )
             )
         if test.series is not None:
             series = test.series
@@ -505,13 +533,15 @@ def _refuse_rising(curve: RelaxationCurve) -> None:
 
 
 def _swept(
-    sweeps: list[DynamicSweep], temperature: float | None, warnings: list[str]
+    sweeps: list[DynamicSweep], temperature: float | None, warnings: list[Message]
 ) -> tuple[DynamicSweep | DynamicMasterCurve, ShiftTable | None, float | None]:
     if len(sweeps) == 1:
         only = sweeps[0]
         warnings.append(
-            "One temperature was tested: no shift factors, and nothing is known beyond its "
-            "frequencies. Sweeps at 0 °C and below reach the rates of sliding."
+            Message(
+                "One temperature was tested: no shift factors, and nothing is known beyond its "
+                "frequencies. Sweeps at 0 °C and below reach the rates of sliding."
+            )
         )
         return only, None, only.temperature
     at = _reference([sweep.temperature for sweep in sweeps], temperature)
@@ -549,39 +579,52 @@ def _reference(tested: Sequence[float | None], temperature: float | None) -> flo
     return temperature
 
 
-def _fit_warnings(fit: SpectrumFit) -> list[str]:
-    warnings = []
-    if fit.quality != "good":
+def _fit_warnings(fit: SpectrumFit) -> list[Message]:
+    warnings: list[Message] = []
+    off = {"rms": fit.rms_residual, "largest": fit.largest_residual}
+    if fit.quality == "rough":
         warnings.append(
-            f"The spectrum follows the readings {fit.quality}ly (rms {fit.rms_residual:.0%}, "
-            f"largest {fit.largest_residual:.0%}): superposition may not hold for this compound."
-            if fit.quality == "rough"
-            else f"The spectrum does not follow the readings (rms {fit.rms_residual:.0%}, largest "
-            f"{fit.largest_residual:.0%}): do not use its loss. Test fewer temperatures, or check "
-            "which side of the glass transition they lie on."
+            Message(
+                "The spectrum follows the readings roughly (rms {rms:.0%}, largest "
+                "{largest:.0%}): superposition may not hold for this compound.",
+                **off,
+            )
+        )
+    elif fit.quality != "good":
+        warnings.append(
+            Message(
+                "The spectrum does not follow the readings (rms {rms:.0%}, largest "
+                "{largest:.0%}): do not use its loss. Test fewer temperatures, or check which side "
+                "of the glass transition they lie on.",
+                **off,
+            )
         )
     slow, fast = (2 * math.pi * SLIDING_SPEED / wave for wave in SLIDING_WAVES)
     if fit.frequency_range[1] < fast * (1 - 1e-9):
-        rates = [display(w / (2 * math.pi), "Hz") for w in (fit.frequency_range[1], slow, fast)]
+        rates = [Amount(w / (2 * math.pi), "Hz") for w in (fit.frequency_range[1], slow, fast)]
         warnings.append(
-            f"Tested up to {rates[0]}; asperities at {display(SLIDING_SPEED, 'm/s')} work the "
-            f"rubber at {rates[1]} to {rates[2]}. Its loss there is extrapolated: sweep at lower "
-            "temperatures and take the master curve."
-        )
+            Message(
+                "Tested up to {tested}; asperities at {speed} work the rubber at {slow} to {fast}. "
+                "Its loss there is extrapolated: sweep at lower temperatures and take the master "
+                "curve.",
+                tested=rates[0], speed=Amount(SLIDING_SPEED, "m/s"), slow=rates[1], fast=rates[2],
+            )
+        )  # fmt: skip
     return warnings
 
 
-def _beside(fit: SpectrumFit, relaxed: SpectrumFit) -> str:
+def _beside(fit: SpectrumFit, relaxed: SpectrumFit) -> Message:
     low = max(1 / fit.frequency_range[1], 1 / relaxed.frequency_range[1])
     high = min(1 / fit.frequency_range[0], 1 / relaxed.frequency_range[0])
     if low >= high:
-        return "sweep and relaxation test share no time: the spectrum is that of the sweep"
+        return Message("sweep and relaxation test share no time: the spectrum is that of the sweep")
     time = math.sqrt(low * high)
     ratio = float(relaxed.spectrum.relaxation_modulus(time) / fit.spectrum.relaxation_modulus(time))
-    return (
-        f"the relaxation test gives {ratio:.2f} times the modulus of the sweep at "
-        f"{display(time, 's')}; the spectrum is that of the sweep"
-    )
+    return Message(
+        "the relaxation test gives {ratio:.2f} times the modulus of the sweep at {time}; the "
+        "spectrum is that of the sweep",
+        ratio=ratio, time=Amount(time, "s"),
+    )  # fmt: skip
 
 
 def _celsius(kelvin: float) -> str:
@@ -594,6 +637,6 @@ def _names(files: Sequence[Path]) -> str:
 
 def _shown(value: SourcedValue) -> str:
     if value.value is None:
-        return f"not estimated: {value.reason}"
+        return Message("not estimated: {reason}", reason=value.reason)
     spread = "" if value.uncertainty is None else f" ± {display(value.uncertainty, 'Pa')}"
     return display(value.value, "Pa") + spread

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match
+from underfoot.core.remark import Message, Remark
 
 Array = NDArray[np.float64]
 FORMS = ("fit", "readings")
@@ -147,7 +148,9 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     if form not in FORMS:
         raise unknown_name("form", form, FORMS, where="--form")
     speed, cof = readings.speed, readings.cof
-    notes = [f"{readings.left_out} refused files left out"] if readings.left_out else []
+    notes: list[Message] = []
+    if readings.left_out:
+        notes.append(Message("{count} refused files left out", count=readings.left_out))
     if form == "readings":
         return _means(readings, notes)
     fit = stribeck_fit(speed, cof)
@@ -168,12 +171,15 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     normal = slopes(speed)
     covariance = residual * np.linalg.pinv(normal.T @ normal)
     own = np.einsum("ij,jk,ik->i", slopes(places), covariance, slopes(places))
-    remarks = [f"{p.name}: {p.remark}" for p in (fit.boundary, fit.tau, fit.asymptote) if p.remark]
+    parts = fit.boundary, fit.tau, fit.asymptote
     notes += [
-        f"Eq. 17: COF_BL {boundary:.4g}, tau_hydro {tau:.4g} m/s, COF_asymptote {left:.4g}, "
-        f"R^2 {fit.r_squared:.3f}, {fit.n} readings",
-        *remarks,
-    ]
+        Message(
+            "Eq. 17: COF_BL {boundary:.4g}, tau_hydro {tau:.4g} m/s, COF_asymptote {left:.4g}, "
+            "R^2 {r_squared:.3f}, {count} readings",
+            boundary=boundary, tau=tau, left=left, r_squared=fit.r_squared, count=fit.n,
+        ),
+        *(Remark.of(each.name, each.remark) for each in parts if each.remark),
+    ]  # fmt: skip
     return LawTable(
         places,
         np.maximum(fit.curve(places), 0.0),
@@ -184,7 +190,7 @@ def law_table(readings: TrialReadings, *, form: str = "fit") -> LawTable:
     )
 
 
-def _means(readings: TrialReadings, notes: list[str]) -> LawTable:
+def _means(readings: TrialReadings, notes: list[Message]) -> LawTable:
     places, group = np.unique(readings.speed, return_inverse=True)
     counts = np.bincount(group)
     mean = np.bincount(group, readings.cof) / counts
@@ -198,7 +204,8 @@ def _means(readings: TrialReadings, notes: list[str]) -> LawTable:
         )
     pooled = float(squares.sum()) / freedom
     own = np.where(counts >= ENOUGH, squares / np.maximum(counts - 1, 1), pooled)
-    notes = [*notes, f"means of {readings.cof.size} readings at {places.size} speeds"]
+    count = {"count": readings.cof.size, "speeds": places.size}
+    notes = [*notes, Message("means of {count} readings at {speeds} speeds", **count)]
     return LawTable(
         places, mean, np.sqrt(own), readings.viscosity, f"{readings.origin}; means", tuple(notes)
     )

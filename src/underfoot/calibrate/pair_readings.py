@@ -32,6 +32,7 @@ from underfoot.core import ConvergenceError, DataError, InputError, Progress, si
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import part
+from underfoot.core.remark import Message
 from underfoot.friction import PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import DRY_PART, LABORATORY, even_rows
 from underfoot.friction.propagation import normal_draws
@@ -98,38 +99,55 @@ class PairCalibration(Presentable):
         """Return the title."""
         return "Friction of a pair, calibrated to readings"
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return what the readings are worth."""
-        names = "one reading" if len(self.readings) == 1 else f"{len(self.readings)} readings"
+        count = len(self.readings)
+        names = Message("one reading")
+        if count > 1:
+            names = Message("{count} readings", count=count)
         before, after = (np.sqrt(rows[0, 2] / rows[0, 0]) for rows in (self.before, self.after))
         return (
-            f"Law of the pair calibrated to {names}: the 95 % interval of the first went from a "
-            f"factor of {before:.2g} to one of {after:.2g} either way.",
-            "It was taken from "
-            + ", ".join(f"{name} ({then:.2f} to {now:.2f})" for name, then, now in self._taken())
-            + " (standard deviations of logarithms). Another tread keeps its own error.",
+            Message(
+                "Law of the pair calibrated to {names}: the 95 % interval of the first went from a "
+                "factor of {before:.2g} to one of {after:.2g} either way.",
+                names=names, before=before, after=after,
+            ),
+            Message(
+                "It was taken from {errors} (standard deviations of logarithms). Another tread "
+                "keeps its own error.",
+                errors=[
+                    Message("{name} ({then:.2f} to {now:.2f})", name=name, then=then, now=now)
+                    for name, then, now in self._taken()
+                ],
+            ),
             *self._missed(),
-        )
+        )  # fmt: skip
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return the cases whose own draws are not those that the readings begin with."""
         return tuple(
-            f"friction.draws_file of {name} is not begun with: what it says is not in the file of "
-            "these readings. Give all readings of this tester at once; what a machine read of the "
-            'floor stays in a case with friction.model = "pair_read".'
+            Message(
+                "friction.draws_file of {name} is not begun with: what it says is not in the file "
+                "of these readings. Give all readings of this tester at once; what a machine read "
+                'of the floor stays in a case with friction.model = "pair_read".',
+                name=name,
+            )
             for name in self.not_begun
         )
 
-    def _missed(self) -> list[str]:
+    def _missed(self) -> list[Message]:
         """Return each reading that lies outside what all readings together leave."""
         return [
-            f"{reading} of {reading.case.name} lies outside what all readings together leave "
-            f"({low:.3f} to {high:.3f}): it contradicts the others or the law, and one of smaller "
-            "scatter weighs more. Check it before you use the file."
+            Message(
+                "{reading} of {case} lies outside what all readings together leave ({low:.3f} to "
+                "{high:.3f}): it contradicts the others or the law, and one of smaller scatter "
+                "weighs more. Check it before you use the file.",
+                reading=reading, case=reading.case.name, low=low, high=high,
+            )
             for reading, (low, _, high) in zip(self.readings, self.after, strict=True)
             if (reading.kind != "upper" and reading.cof > high)
             or (reading.kind != "lower" and reading.cof < low)
-        ]
+        ]  # fmt: skip
 
     def _taken(self) -> list[tuple[str, float, float]]:
         """Return the errors that the readings made smaller, the most first."""
@@ -149,7 +167,10 @@ class PairCalibration(Presentable):
             (
                 reading.case.name,
                 str(reading),
-                *("{1:.3f} ({0:.3f} to {2:.3f})".format(*row) for row in (before, after)),
+                *(
+                    Message("{cof:.3f} ({low:.3f} to {high:.3f})", low=low, cof=cof, high=high)
+                    for low, cof, high in (before, after)
+                ),
             )
             for reading, before, after in zip(self.readings, self.before, self.after, strict=True)
         ]
@@ -253,16 +274,19 @@ def calibrated_pair(
     for reading, law in zip(readings, laws, strict=True):
         case, name = reading.case, law.pair.compound_and_floor
         context = resolved(case)
-        words[name] = f"the pair of {case.name}"
+        words[name] = Message("the pair of {case}", case=case.name)
         errors[name] = wide.error(name, wide.sd_pair, seed)
         place = place_of_tread(case, sole_map(case, case.value(grid)))
         if context.leak_deviation:
             normal = normal_draws(seed, f"{LEAK} of the rough contact", wide.count)
             errors.setdefault(leak_name(context), context.leak_deviation * normal)
-            words[leak_name(context)] = f"the roughness that lets fluid leak under {case.name}"
+            words[leak_name(context)] = Message(
+                "the roughness that lets fluid leak under {case}", case=case.name
+            )
         for subject, error in sole_errors(case, context).items():
             name = error.name(place)
-            words[name] = f"the {subject.removesuffix('_error')} of {case.name}"
+            part_of = {"subject": subject.removesuffix("_error"), "case": case.name}
+            words[name] = Message("the {subject} of {case}", **part_of)
             errors[name] = error.draws(place, samples=wide.count, seed=seed, known=errors)
     wide = replace(wide, errors=errors)
     predicted = np.empty((len(readings), wide.count))

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from .stribeck_points import pin_on_disk
 
 if TYPE_CHECKING:
@@ -40,11 +42,11 @@ class PinRegimes:
             "regime_by_load_share": self.by_load_share[index],
         }
 
-    def sentences(self) -> tuple[str, str]:
+    def sentences(self) -> tuple[Message, Message]:
         """Return over which speeds each regime holds, by lambda and by load share."""
         return (
-            f"By lambda: {_spans(self.speed, self.by_lambda)}.",
-            f"By load share: {_spans(self.speed, self.by_load_share)}.",
+            Message("By lambda: {spans}.", spans=_spans(self.speed, self.by_lambda)),
+            Message("By load share: {spans}.", spans=_spans(self.speed, self.by_load_share)),
         )
 
 
@@ -91,16 +93,17 @@ def pin_regimes(
     )
 
 
-def _spans(speed: np.ndarray, names: Sequence[str]) -> str:
+def _spans(speed: np.ndarray, names: Sequence[str]) -> list[Message]:
     """Return names in order with the speeds between which each holds."""
     changes = [i for i in range(1, len(names)) if names[i] != names[i - 1]]
     if not changes:
-        return f"{names[0]} at every speed"
-    words = []
+        return [Message("{regime} at every speed", regime=names[0])]
+    spans: list[Message] = []
     for start, end in zip([0, *changes], [*changes, None], strict=True):
         if end is None:
-            words.append(f"{names[start]} above")
+            spans.append(Message("{regime} above", regime=names[start]))
         else:
             limit = math.sqrt(speed[end - 1] * speed[end])
-            words.append(f"{names[start]} up to {limit:.2g} m/s")
-    return ", ".join(words)
+            values = {"regime": names[start], "limit": limit}
+            spans.append(Message("{regime} up to {limit:.2g} m/s", **values))
+    return spans

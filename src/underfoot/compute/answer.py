@@ -7,7 +7,7 @@ from typing import Any
 from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
 from underfoot.core.fields import Fields, labelled
-from underfoot.core.remark import Remark, joined, remarks
+from underfoot.core.remark import Message, Remark, joined, remarks
 from underfoot.film import NewtonianFilm
 
 from . import numbers
@@ -107,7 +107,7 @@ def _provenance(
         },
         citations=_unique(each.source for each in cited),
         errata=tuple(
-            f"{path}: {origin.leaf.erratum}"
+            Message("{path}: {erratum}", path=path, erratum=origin.leaf.erratum)
             for path, origin in case.origins.items()
             if origin.leaf.erratum
         ),

@@ -12,7 +12,7 @@ from underfoot.case import assumptions
 from underfoot.case.describe import tested_range_breaches
 from underfoot.core import InputError
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 from underfoot.sole_contact.cost import Cost, megabytes
 
 from .positions import run_cost
@@ -51,24 +51,31 @@ class CaseCheck(Presentable):
     def heading(self) -> str:
         return f"{self.case.name}  [{self.case.hash[:12]}]"
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         case = self.case
         options = (case.compliance.name, case.rough_contact.name, case.motion.name)
         made = not case.value("rough_contact.file")
         dear = [name for name in options if name in DEAR and (made or name != "contact_table")]
         return (
-            f"Cost: {self.full}, on one core; with --quick {self.quick}.",
-            *(DEAR[name] for name in dear),
+            Message(
+                "Cost: {full}, on one core; with --quick {quick}.", full=self.full, quick=self.quick
+            ),
+            *(Message.plain(DEAR[name]) for name in dear),
         )
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         reasons, limit = [self.refusal] if self.refusal else [], self.case.numerics.most_memory
         if self.full.memory > limit:
             reasons.append(
-                f"numerics.most_memory is {megabytes(limit)}; use --quick or a coarser "
-                "numerics.grid_spacing."
+                Message(
+                    "numerics.most_memory is {limit}; use --quick or a coarser "
+                    "numerics.grid_spacing.",
+                    limit=megabytes(limit),
+                )
             )
-        return tuple(f"A run would be refused: {reason}" for reason in reasons)
+        return tuple(
+            Message("A run would be refused: {reason}", reason=reason) for reason in reasons
+        )
 
     def table(self) -> Table:
         return self.case.table()

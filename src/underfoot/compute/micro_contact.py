@@ -4,7 +4,8 @@ import math
 from dataclasses import dataclass
 
 from underfoot.case.friction import contact_deviation
-from underfoot.core import SourcedValue, display
+from underfoot.core import SourcedValue
+from underfoot.core.remark import Amount, Message
 from underfoot.rough_contact import ContactTable
 from underfoot.sole_contact.solver import SoleContact
 
@@ -32,7 +33,7 @@ class MicroContact:
 
     def scalars(self) -> dict[str, SourcedValue]:
         """Return real area (share of the apparent), hysteresis COF, mean gap (m), flow factor."""
-        at = f"at {display(self.pressure, 'Pa')}"
+        at = Message("at {pressure}", pressure=Amount(self.pressure, "Pa"))
         names = {
             "micro_contact": ("real_contact_fraction", self.contact_deviation),
             "micro_hysteresis": ("cof_hysteresis", self.contact_deviation),

@@ -182,8 +182,8 @@ def with_stated(
         value, draws = values[name], added(stated, name)
         if value.value and np.std(draws) > 0:
             off = display(float(np.std(value.value * np.exp(draws))), value.unit)
-            words = f"± {off} by what the case states"
-            note = f"{value.note}; {words}" if value.note else words
+            words = Message("± {off} by what the case states", off=off)
+            note = joined([value.note, words]) if value.note else words
             result[name] = replace(value, note=note)
     return result
 
@@ -231,14 +231,12 @@ def slip_probability(
         note=joined(
             Message(
                 "extrapolated: {quantity} = {value:.3f} is outside the tested {low:g} to {high:g}",
-                quantity=breach.quantity,
-                value=breach.low,
-                low=breach.range.low,
+                quantity=breach.quantity, value=breach.low, low=breach.range.low,
                 high=breach.range.high,
             )
             for breach in risk.breaches
         ),
-    )
+    )  # fmt: skip
     return probability, risk
 
 
@@ -262,7 +260,9 @@ def regime(share: float) -> dict[str, str]:
     low, high = SHARE_LIMITS
     name = lubrication_by_load_share(min(max(share, 0.0), 1.0))
     return {
-        "regime": str(name) if name is Lubrication.FULL_FILM else f"{name} lubrication",
+        "regime": str(name)
+        if name is Lubrication.FULL_FILM
+        else Message("{name} lubrication", name=name),
         "regime_rule": Message(
             "by load share: below {low:g} % boundary, above {high:g} % full film",
             low=100 * low,
@@ -287,10 +287,8 @@ def no_result_words(contact: SoleContact, overload: Sequence[Breach]) -> Message
     share = contact.fluid_load / contact.normal_force if contact.normal_force else 0.0
     where = Message(
         "the march stopped at {time}, where the film carried {share:.0%} of {load}",
-        time=Amount(contact.time, "s"),
-        share=share,
-        load=Amount(contact.normal_force, "N"),
-    )
+        time=Amount(contact.time, "s"), share=share, load=Amount(contact.normal_force, "N"),
+    )  # fmt: skip
     if overload:
         return Message(
             "lugs crushed: {share:.0%} of the load rests on pressures above the modulus of the "

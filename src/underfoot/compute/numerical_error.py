@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, Progress, SourcedValue, display, silent
-from underfoot.core.remark import NOTHING, Message
+from underfoot.core.remark import NOTHING, Amount, Message, joined
 from underfoot.friction import SampledCof
 from underfoot.friction.propagation import normal_draws
 from underfoot.sole_contact.solver import SoleContact
@@ -82,8 +82,8 @@ class NumericalErrors:
         result = dict(values)
         for name in self.grid:
             value, error = values[name], self.deviation(name)
-            note = f"numerical error {_error(error, value)}"
-            note = f"{value.note}; {note}" if value.note else note
+            note = Message("numerical error {error}", error=_error(error, value))
+            note = joined([value.note, note]) if value.note else note
             change: dict[str, Any] = {"note": note, "numerical": error}
             if name != "cof" and value.value is not None:
                 known, ends = value.uncertainty or 0.0, value.interval
@@ -112,10 +112,8 @@ class NumericalErrors:
             )
         return Message(
             "grid: {errors} ({origin}){steps}",
-            errors=parts(self.grid),
-            origin=self.origin,
-            steps=steps,
-        )
+            errors=parts(self.grid), origin=self.origin, steps=steps,
+        )  # fmt: skip
 
 
 def with_numerical_error(sampled: SampledCof, error: float, *, cof: float, sole: str) -> SampledCof:
@@ -272,9 +270,13 @@ def _compared(
     return NumericalErrors(grid, by_steps if len(coarse) > 1 else {}, origin)
 
 
-def _cells(parts: Prepared, columns: int) -> str:
-    spacing = display(parts.case.numerics.quick_grid_spacing, "m")
-    return f"cells of {spacing}" + f", {columns} along the sliding" * (columns > 1)
+def _cells(parts: Prepared, columns: int) -> Message:
+    spacing = Amount(parts.case.numerics.quick_grid_spacing, "m")
+    if columns < 2:
+        return Message("cells of {spacing}", spacing=spacing)
+    return Message(
+        "cells of {spacing}, {columns} along the sliding", spacing=spacing, columns=columns
+    )
 
 
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.core import SourcedValue, content_hash, display
+from underfoot.core import SourcedValue, content_hash
 from underfoot.core.arrays import Array
 from underfoot.core.remark import NOTHING, Amount, Message, Remark
 from underfoot.friction import FrictionCoefficients, SampledCof
@@ -206,15 +206,16 @@ class TreadPositions:
         for name in self.values:
             if name in numbers and not name.startswith("cof"):
                 means[name] = replace(numbers[name], value=self.answer(name))
-        over = f"over {len(self.places)} {self.several}"
+        over = Message("over {count} {several}", count=len(self.places), several=self.several)
         means["fluid_load"] = replace(
-            means["fluid_load"], note=f"{self._range('fluid_load', 'N')} {over}"
+            means["fluid_load"],
+            note=Message("{range} {over}", range=self._range("fluid_load", "N"), over=over),
         )
         means[f"cof_{self.origin}"] = SourcedValue(
             float(np.std(self.values["cof"])),
             source=f"contact and film at another {self.held}",
             reason="itself a standard deviation",
-            note=f"{self._range('cof')} {over}",
+            note=Message("{range} {over}", range=self._range("cof"), over=over),
         )
         if self.by_angle:
             means["cof_shoe_angle"] = SourcedValue(
@@ -261,10 +262,8 @@ class TreadPositions:
             "COF {range}, load on the film {loads} over {count} positions of the tread. Numbers "
             "are means over them; maps, histories and drainage show the position that the case "
             "describes (COF {cof}, {load} on the film){failed}",
-            **self._ranges(),
-            count=len(self.places),
-            failed=failed,
-        )
+            **self._ranges(), count=len(self.places), failed=failed,
+        )  # fmt: skip
         return {"tread_position": average, **told}
 
     def _ranges(self) -> dict[str, Any]:
@@ -305,9 +304,11 @@ class TreadPositions:
             "position_fluid_load": at(self.values["fluid_load"], "N", "load on the film", **film),
         }
 
-    def _range(self, name: str, unit: str = "1") -> str:
+    def _range(self, name: str, unit: str = "1") -> Message:
         values = self.values[name]
-        return f"{display(values.min(), unit)} to {display(values.max(), unit)}"
+        return Message(
+            "{low} to {high}", low=Amount(values.min(), unit), high=Amount(values.max(), unit)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -354,10 +355,8 @@ class ShoeAngles(TreadPositions):
             "COF {range}, load on the film {loads} from {least:.1f} to +{most:.1f} deg beside the "
             "case's angle. Numbers are means over them; maps and histories show the case's angle "
             "(COF {cof}, {load} on the film)",
-            **self._ranges(),
-            least=least,
-            most=most,
-        )
+            **self._ranges(), least=least, most=most,
+        )  # fmt: skip
         return {"shoe_angle": average, **self._bevel_label()}
 
     def fields(self) -> dict[str, Any]:

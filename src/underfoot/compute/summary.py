@@ -10,6 +10,7 @@ from typing import Literal
 from underfoot.core import SourcedValue, Status
 from underfoot.core.fields import Fields
 from underfoot.core.presentation import (
+    Part,
     Table,
     interval_text,
     percent,
@@ -19,7 +20,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.remark import NOTHING, Message, Remark, subjects
-from underfoot.shoe.lug_drainage import MATTERS, SIDES, across_text
+from underfoot.shoe.lug_drainage import MATTERS, across_text
 
 FILM_MATTERS = 0.05
 """Share of the load carried by the film above which drainage can raise the friction."""
@@ -29,25 +30,28 @@ GAIN_MATTERS = 1.1
 """Ratio of the COF without the film to the present one above which drainage is worth naming."""
 QUANTITIES: Mapping[str, tuple[str, str]] = {
     "cof": ("Coefficient of friction", ""),
-    "later_cof": ("  held on", "load, speed and shoe angle stay"),
-    "cof_tread_position": ("  spread over tread positions", ""),
-    "cof_shoe_angle": ("  spread over a degree of shoe angle", ""),
-    "cof_adhesion": ("  from adhesion", ""),
-    "cof_hysteresis": ("  from hysteresis", ""),
-    "cof_viscous": ("  from shearing the fluid", ""),
+    "later_cof": (Part("held on"), "load, speed and shoe angle stay"),
+    "cof_tread_position": (Part("spread over tread positions"), ""),
+    "cof_shoe_angle": (Part("spread over a degree of shoe angle"), ""),
+    "cof_adhesion": (Part("from adhesion"), ""),
+    "cof_hysteresis": (Part("from hysteresis"), ""),
+    "cof_viscous": (Part("from shearing the fluid"), ""),
     "fluid_load": ("Load carried by the fluid", "under the whole sole"),
-    "later_fluid_load": ("  held on", "load, speed and shoe angle stay"),
-    "fluid_load_sensor": ("  as floor sensors read it", ""),
+    "later_fluid_load": (Part("held on"), "load, speed and shoe angle stay"),
+    "fluid_load_sensor": (Part("as floor sensors read it"), ""),
     "peak_fluid_pressure": ("Peak fluid pressure", "anywhere under the sole"),
-    "peak_fluid_pressure_sensor": ("  as a floor sensor reads it", ""),
-    "array_peak": ("  highest in the sensor array", "the sensors stay in the floor"),
-    **{f"array_peak_row_{n}": (f"  row {n} of the array", "") for n in range(1, 10)},
-    "array_duration": ("  pressure lasts in the array", ""),
+    "peak_fluid_pressure_sensor": (Part("as a floor sensor reads it"), ""),
+    "array_peak": (Part("highest in the sensor array"), "the sensors stay in the floor"),
+    **{
+        f"array_peak_row_{n}": (Part(Message("row {count} of the array", count=n)), "")
+        for n in range(1, 10)
+    },
+    "array_duration": (Part("pressure lasts in the array"), ""),
     "contact_area": ("Contact area", "where the rough surfaces touch"),
-    "micro_contact": ("  real contact within it", ""),
-    "micro_hysteresis": ("  hysteresis COF of the rough contact", ""),
-    "micro_gap": ("  mean gap between the rough surfaces", ""),
-    "micro_flow": ("  flow factor of that gap", ""),
+    "micro_contact": (Part("real contact within it"), ""),
+    "micro_hysteresis": (Part("hysteresis COF of the rough contact"), ""),
+    "micro_gap": (Part("mean gap between the rough surfaces"), ""),
+    "micro_flow": (Part("flow factor of that gap"), ""),
     "minimum_film_thickness": ("Thinnest film", "mean gap between the surfaces"),
     "slip_probability": ("Slip probability", "walkers as described in the case"),
 }
@@ -355,20 +359,32 @@ def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Tab
     return Table("Results", ("Quantity", "Value", "Remark"), rows)
 
 
+TO_SIDES = (
+    Message("to the front"),
+    Message("to the rear"),
+    Message("to the left"),
+    Message("to the right"),
+)
+"""Where fluid goes, by the number in ``SIDES``."""
+
+
 def drainage_table(fields: Fields) -> Table:
     """Return the lugs that bear most of the film, and the way out for their fluid."""
     names = ("share", "load", "x", "y", "way", "side", "groove", "groove_side", "relief")
     lugs = zip(*(fields[f"lug_{name}"].values for name in names), strict=True)
     rows = [
         (
-            f"{quantity_text(x, 'm')} from the rear, {across_text(y)}",
-            f"{quantity_text(load, 'N')}, {percent(share)}",
-            f"{quantity_text(way, 'm')} to the {SIDES[int(side)]}",
-            f"{quantity_text(groove, 'm')} to the {SIDES[int(to)]}, {percent(relief)} of it",
+            Message("{x} from the rear, {y}", x=quantity_text(x, "m"), y=across_text(y)),
+            Message("{load}, {share}", load=quantity_text(load, "N"), share=percent(share)),
+            Message("{way} {to}", way=quantity_text(way, "m"), to=TO_SIDES[int(side)]),
+            Message(
+                "{groove} {to}, {relief} of it",
+                groove=quantity_text(groove, "m"), to=TO_SIDES[int(to)], relief=percent(relief),
+            ),
         )
         for share, load, x, y, way, side, groove, to, relief in islice(lugs, LUGS_SHOWN)
         if share >= MATTERS
-    ]
+    ]  # fmt: skip
     columns = ("Lug", "Load on its film", "Way out", "Best groove, relief")
     return Table("Drainage of lugs", columns, rows, "lug")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .html import environment
-from .presentation import Presentable, Table
+from .presentation import Part, Presentable, Table
 
 _NUMERIC = re.compile(r"[-+±]?\d[\d.,]*( ?[^\s()]{1,5})?( ?[±(].*)?|below .*|above .*|-|")
 LONGEST_NUMBER = 32
@@ -85,7 +85,12 @@ def page_part(sections: Sequence[Section]) -> str:
 
 
 def _content(sections: Sequence[Section]) -> dict[str, Any]:
-    return {"sections": sections, "numeric": _is_number, "most": MOST_ITEMS}
+    return {
+        "sections": sections,
+        "numeric": _is_number,
+        "part": lambda cell: isinstance(cell, Part),
+        "most": MOST_ITEMS,
+    }
 
 
 def table_sections(shown: Presentable) -> list[Section]:

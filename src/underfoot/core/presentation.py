@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, runtime_checkable
 
 from underfoot.core.remark import Message
 
@@ -51,6 +51,25 @@ class AssumingModel(SourcedModel, Protocol):
     def assumptions(self) -> tuple[Message, ...]:
         """What no measurement stands behind, a line each."""
         ...
+
+
+class Part(Message):
+    """First cell of a row that is a part of the row above it; text shows it two blanks in.
+
+    >>> Part("from adhesion")
+    '  from adhesion'
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, label: str, /) -> Self:
+        """Return the cell of a label."""
+        return super().__new__(cls, "  {label}", label=label)
+
+    @property
+    def label(self) -> str:
+        """What the cell says, without blanks."""
+        return self.values["label"]
 
 
 @dataclass(frozen=True, slots=True)

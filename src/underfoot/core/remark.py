@@ -163,6 +163,11 @@ def joined(lines: Iterable[object]) -> Message:
     return Message("{texts:; }", texts=texts)
 
 
+def together(sentences: Iterable[str]) -> Message:
+    """Return sentences one after the other; each keeps what it was made of."""
+    return Message("{sentences: }", sentences=sentences)
+
+
 def kind_of(line: Any) -> Any:
     """Return what a line shares with others that differ from it in numbers alone."""
     if isinstance(line, tuple):

@@ -202,15 +202,18 @@ class UnexpectedReading:
     middle: float
     high: float
 
-    def __str__(self) -> str:
+    @property
+    def text(self) -> Message:
+        """What was read and what was foretold."""
         digits = 2 if self.unit == "COF" else 0
         read, middle, low, high = (
             f"{x:.{digits}f}" for x in (self.value, self.middle, self.low, self.high)
         )
-        return (
-            f"{self.machine} read {read} {self.unit} where {middle} (95 %: {low} to {high}) was "
-            "foretold of this floor. The reading counts; check it, and the floor's roughness."
-        )
+        return Message(
+            "{machine} read {read} {unit} where {middle} (95 %: {low} to {high}) was foretold of "
+            "this floor. The reading counts; check it, and the floor's roughness.",
+            machine=self.machine, read=read, unit=self.unit, middle=middle, low=low, high=high,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import InputError, display
 from underfoot.core.arrays import scalar_or_array
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Amount, Message
 
 LEAST_AT_REST = 1e-6
 """Part of the modulus at once below which nothing is left at rest."""
@@ -78,17 +79,20 @@ class RelaxationSpectrum(Presentable):
         columns = ("term", "relaxation time s", "modulus Pa")
         return Table(f"Relaxation spectrum ({self.source or 'no source'})", columns, rows)
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return that nothing is left at rest, which no cross-linked rubber does."""
         rest, once = self.equilibrium_modulus, self.instantaneous_modulus
         if rest > LEAST_AT_REST * once:
             return ()
         return (
-            f"At rest {display(rest, 'Pa')} of {display(once, 'Pa')} is left: it flows under a "
-            f"load held longer than {display(float(self.relaxation_times.max()), 's')}, which no "
-            "cross-linked rubber does. Its fractions sum to 1: fit the series with a modulus at "
-            "rest, or add it as a row tau = inf.",
-        )
+            Message(
+                "At rest {rest} of {once} is left: it flows under a load held longer than {time}, "
+                "which no cross-linked rubber does. Its fractions sum to 1: fit the series with a "
+                "modulus at rest, or add it as a row tau = inf.",
+                rest=Amount(rest, "Pa"), once=Amount(once, "Pa"),
+                time=Amount(float(self.relaxation_times.max()), "s"),
+            ),
+        )  # fmt: skip
 
     @property
     def instantaneous_modulus(self) -> float:

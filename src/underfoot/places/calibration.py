@@ -19,6 +19,7 @@ from underfoot.case.tables import meant_file
 from underfoot.compute.resolve import resolved
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message, joined
 from underfoot.friction import (
     FrictionLaw,
     PairContactLaw,
@@ -57,13 +58,19 @@ class FloorReading:
     sd: float | None = None
 
     @property
-    def value_text(self) -> str:
+    def value_text(self) -> Message:
         """The reading with its unit and what bounds it."""
-        bound = {"value": "", "lower": "at least ", "upper": "at most "}[self.kind]
-        return f"{bound}{self.value:g} {self.machine.scale.unit}"
+        values = {"value": self.value, "unit": self.machine.scale.unit}
+        if self.kind == "lower":
+            return Message("at least {value:g} {unit}", **values)
+        if self.kind == "upper":
+            return Message("at most {value:g} {unit}", **values)
+        return Message("{value:g} {unit}", **values)
 
-    def __str__(self) -> str:
-        return f"{self.machine.title}: {self.value_text}"
+    @property
+    def text(self) -> Message:
+        """The reading with its machine."""
+        return Message("{machine}: {value}", machine=self.machine.title, value=self.value_text)
 
 
 def learn_floor(
@@ -74,7 +81,7 @@ def learn_floor(
     log = reading.machine.log_likelihood(
         joint, floor, floor_rq, reading.fluid, reading.value, kind=reading.kind, sd=reading.sd
     )
-    joint.learn(log, str(reading))
+    joint.learn(log, reading.text)
     low, middle, high = foretold
     too_high, too_low = reading.value > high, reading.value < low
     if not {"value": too_high or too_low, "lower": too_high, "upper": too_low}[reading.kind]:
@@ -99,35 +106,45 @@ class FloorCalibration(Presentable):
     again: tuple[Machine, ...] = ()
     """Machines of which the draws to begin with hold a reading of this floor already."""
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return the readings that were not foretold, left out, or may count twice."""
         return (
-            *map(str, self.draws.outside),
+            *(reading.text for reading in self.draws.outside),
             *(
-                f"{reading} stays in the case, and is not in the file: friction.model = "
-                '"pair_read" counts it there.'
+                Message(
+                    "{reading} stays in the case, and is not in the file: friction.model = "
+                    '"pair_read" counts it there.',
+                    reading=reading.text,
+                )
                 for reading in self.beside
             ),
             *(
-                f"friction.draws_file holds a reading of {one.title} on this floor already: this "
-                "one counts as a further reading. If it is the same, do not use the file."
-                for one in self.again
+                Message(
+                    "friction.draws_file holds a reading of {machine} on this floor already: this "
+                    "one counts as a further reading. If it is the same, do not use the file.",
+                    machine=machine.title,
+                )
+                for machine in self.again
             ),
         )
 
     def heading(self) -> str:
         """Return the title."""
-        return f"Floor by {'; '.join(map(str, self.readings))}"
+        return Message("Floor by {readings:; }", readings=[each.text for each in self.readings])
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return what the readings say of the floor."""
-        texts = [
-            "{1:.2g} um (95 %: {0:.2g} to {2:.2g})".format(*(1e6 * x for x in each))
-            for each in (self.before, self.after)
-        ]
+        before, after = (
+            Message("{rq:.2g} um (95 %: {low:.2g} to {high:.2g})", low=low, rq=rq, high=high)
+            for low, rq, high in (1e6 * np.array([self.before, self.after])).tolist()
+        )
         if self.before[0] == self.before[2]:
-            return ("The roughness of the floor is given: the reading narrows the law alone.",)
-        return (f"Rq of the floor was {texts[0]} and is {texts[1]}.",)
+            return (
+                Message("The roughness of the floor is given: the reading narrows the law alone."),
+            )
+        return (
+            Message("Rq of the floor was {before} and is {after}.", before=before, after=after),
+        )
 
     def table(self) -> Table:
         """Return the draws that are left."""
@@ -165,7 +182,7 @@ def floor_calibration(
     pair_draws = replace(
         joint.constants.rows(rows),
         errors={name: values[rows] for name, values in known.items()},
-        source=f"{draws.source}; floor read: {'; '.join(map(str, readings))}",
+        source=f"{draws.source}; floor read: {joined(each.text for each in readings)}",
         basis="of a floor that was read",
         notes=draws.notes,
         outside=(*draws.outside, *outside),

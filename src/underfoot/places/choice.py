@@ -155,7 +155,7 @@ class Choice(Presentable):
 
     def heading(self) -> str:
         """Return the title."""
-        return f"Which shoe: {self.place.name}"
+        return Message("Which shoe: {place}", place=self.place.name)
 
     @property
     def first(self) -> ShoeAnswer:
@@ -199,10 +199,8 @@ class Choice(Presentable):
                 told = Message(
                     "{others} and {last} are level with a chance of {chance} each (with {shoe}: "
                     "{rate})",
-                    **answer,
-                    others=others,
-                    last=last,
-                )
+                    **answer, others=others, last=last,
+                )  # fmt: skip
             lines = [
                 Message(
                     "Which of the {count} shoes is best can't be told: {told}.",
@@ -242,7 +240,7 @@ class Choice(Presentable):
             )
         return tuple(lines)
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what the numbers are not."""
         lines = [
             Message(
@@ -251,7 +249,7 @@ class Choice(Presentable):
                 "floors count as safe; a worker takes {steps:,.0f} steps a day in a fluid.",
                 steps=self.place.wet_steps,
             ),
-            *(Remark.of(floor, str(told)) for floor, told in self.outside),
+            *(Remark.of(floor, told.text) for floor, told in self.outside),
         ]
         twins = [
             Message("{first} and {second}", first=shoe.shoe.name, second=two.shoe.name)
@@ -308,16 +306,21 @@ class Choice(Presentable):
         ]
         where = [(name, percent(share)) for name, share in self.sources]
         cofs = [
-            (*names, f"{median:.2f}", f"{low:.2f} to {high:.2f}", percent(film))
+            (
+                *names,
+                f"{median:.2f}",
+                Message("{low:.2f} to {high:.2f}", low=low, high=high),
+                percent(film),
+            )
             for *names, low, median, high, film in self.cofs
         ]
         tables = [
             self.table(),
-            Table(f"What a change leaves of the slips with {self.present}",
+            Table(Message("What a change leaves of the slips with {shoe}", shoe=self.present),
                   ("Change", "Slips left (95 %)", "Fewer"), levers),
             Table("What one measurement would change of the shoe with the fewest slips on average",
                   ("Measurement", "Chance of another choice", "Slips saved by it"), measures),
-            Table(f"Where the slips with {self.present} happen",
+            Table(Message("Where the slips with {shoe} happen", shoe=self.present),
                   ("Floor and fluid", "Share"), where),
             Table("Available friction",
                   ("Shoe", "Floor", "Fluid", "Median", "95 %", "Load on film"), cofs),
@@ -332,14 +335,20 @@ class Choice(Presentable):
         used = {each.machine for floor in self.place.floors for each in floor.readings}
         read = used or any(shoe.readings or shoe.known_class for shoe in self.place.shoes)
         notes = [
-            f"{each.title}: {each.standard}; settings and sources: underfoot explain "
-            f"{each.entry.name}"
+            Message(
+                "{title}: {standard}; settings and sources: underfoot explain {name}",
+                title=each.title, standard=each.standard, name=each.entry.name,
+            )
             for each in sorted(used, key=lambda each: each.name)
-        ]
+        ]  # fmt: skip
         return {
             "Assumed": (
                 *self.place.assumed,
-                *([f"Readings leave {self.effective:.0f} of the draws"] if read else []),
+                *(
+                    [Message("Readings leave {count:.0f} of the draws", count=self.effective)]
+                    if read
+                    else []
+                ),
                 *([WORN_EVENLY] if any(s.wear_depth > 0 for s in self.place.shoes) else []),
             ),
             "Machines": notes,
@@ -380,19 +389,23 @@ def _count(value: float) -> str:
 
 
 def _of_bins(chance: float) -> str:
-    return percent(chance) if chance > 0.5 / BINS else f"below {percent(1 / BINS)}"
+    if chance > 0.5 / BINS:
+        return percent(chance)
+    return Message("below {least}", least=percent(1 / BINS))
 
 
 def _ratio(value: float) -> str:
     """Return a ratio of slips; beyond a factor of 100 it is of the slip model's tails."""
     if value < 1 / MOST_RATIO:
-        return f"below {1 / MOST_RATIO:g}"
-    return f"above {MOST_RATIO:g}" if value > MOST_RATIO else f"{value:.2g}"
+        return Message("below {least}", least=f"{1 / MOST_RATIO:g}")
+    return Message("above {most}", most=MOST_RATIO) if value > MOST_RATIO else f"{value:.2g}"
 
 
 def _share(left: tuple[float, float, float]) -> str:
     low, median, high = map(_ratio, left)
-    return median if low == high else f"{median} ({low} to {high})"
+    if low == high:
+        return median
+    return Message("{median} ({low} to {high})", median=median, low=low, high=high)
 
 
 def _monthly(shoe: PlaceShoe) -> str:
@@ -620,7 +633,8 @@ def chosen(
     others = [each for each in answers if each.shoe.name != present.name]
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
-        levers.append(_lever(f"{other} instead of {present.name}", rates[other], today))
+        name = Message("{other} instead of {present}", other=other, present=present.name)
+        levers.append(_lever(name, rates[other], today))
     new = _sum(_slips(place, joint, states[present.name][False]))
     smooth = [
         floor
@@ -641,10 +655,10 @@ def chosen(
             for fluid in floor.fluids
             if fluid != "dry"
         }
-        where = (
-            "" if len(smooth) == len(place.floors) else f" ({', '.join(f.name for f in smooth)})"
-        )
-        name = f"floors of clay quarry tile (Rq 9 um){where}"
+        name = Message("floors of clay quarry tile (Rq 9 um)")
+        if len(smooth) < len(place.floors):
+            floors = [floor.name for floor in smooth]
+            name = Message("floors of clay quarry tile (Rq 9 um) ({floors})", floors=floors)
         levers.append(_lever(name, _sum(_slips(place, joint, tiled)), new))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     levers = sorted(
@@ -656,7 +670,7 @@ def chosen(
         for key, value in shares[present.name].items()
     }
     sources = tuple(
-        (f"{floor}, {fluid_name(fluid)}", value)
+        (Message("{floor}, {fluid}", floor=floor, fluid=fluid_name(fluid)), value)
         for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
     )
     return Choice(
@@ -813,14 +827,12 @@ def _reported(place: Place, after: Array, today: Array) -> str:
         return ""
     ends = (1 / MOST_RATIO, MOST_RATIO)
     low, median, high = np.clip(_left(after, today), *ends)
-    texts = (
-        f"below {_count(place.reported * low)}" if low == ends[0] else _count(place.reported * low),
-        f"above {_count(place.reported * high)}"
-        if high == ends[1]
-        else _count(place.reported * high),
-    )
-    middle = _count(place.reported * median)
-    return middle if low == high else f"{middle} ({texts[0]} to {texts[1]})"
+    least, middle, most = (_count(place.reported * ratio) for ratio in (low, median, high))
+    if low == high:
+        return middle
+    least = Message("below {least}", least=least) if low == ends[0] else least
+    most = Message("above {most}", most=most) if high == ends[1] else most
+    return Message("{median} ({low} to {high})", median=middle, low=least, high=most)
 
 
 def _replaced(
@@ -839,7 +851,9 @@ def _replaced(
     new = _sum(_slips(place, joint, states[False]))
     if shoe.worn_region is not None:
         left = _left(worn, new)
-        return f"{'now' if left[1] > TWICE else 'not yet'}: {_share(left)} times the slips of new"
+        if left[1] > TWICE:
+            return Message("now: {ratio} times the slips of new", ratio=_share(left))
+        return Message("not yet: {ratio} times the slips of new", ratio=_share(left))
     if shoe.months is None:
         return ""
     growth = np.log(np.maximum(worn, 1e-300) / np.maximum(new, 1e-300))
@@ -847,8 +861,8 @@ def _replaced(
         months = np.where(growth > 0, shoe.months * math.log(TWICE) / growth, np.inf)
     low, median, _ = (float(x) for x in np.quantile(months, (0.025, 0.5, 0.975), method="nearest"))
     if median > shoe.months:
-        return f"not within its {shoe.months:g} months"
-    return f"after {median:.2g} months (95 %: from {low:.2g})"
+        return Message("not within its {months:g} months", months=shoe.months)
+    return Message("after {median:.2g} months (95 %: from {low:.2g})", median=median, low=low)
 
 
 def _measurements(

@@ -17,6 +17,7 @@ from underfoot.case.surfaces import RQ_PER_RA
 from underfoot.core import to_si
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent
+from underfoot.core.remark import Message
 from underfoot.friction import packaged_pair_draws
 from underfoot.friction.tread_error import READING
 
@@ -327,19 +328,26 @@ class MachineScores(Presentable):
         """Return the title."""
         return "Machines that read floors"
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the score of the pendulum, and what its roughness rests on."""
         rows = self.of("pendulum-96", "pendulum-55")
         told, printed = score(rows), [row for row in self.rows if row.evidence.printed]
         floors = len({row.evidence.floor for row in rows})
         return (
-            f"Pendulum: {told.count} wet readings of {floors} floors by {told.sources} sources, "
-            f"each predicted without its source: {told.error:.0f} PTV off in the median (the "
-            f"median of the others: {told.constant_error:.0f}), rank correlation {told.rank:.2f}, "
-            f"{percent(told.inside)} inside the 95 % interval.",
-            f"{len(printed)} of all {len(self.rows)} readings are of floors whose roughness is "
-            "printed; of the others a range stands for the finish that is printed.",
-        )
+            Message(
+                "Pendulum: {count} wet readings of {floors} floors by {sources} sources, each "
+                "predicted without its source: {error:.0f} PTV off in the median (the median of "
+                "the others: {constant:.0f}), rank correlation {rank:.2f}, {inside} inside the "
+                "95 % interval.",
+                count=told.count, floors=floors, sources=told.sources, error=told.error,
+                constant=told.constant_error, rank=told.rank, inside=percent(told.inside),
+            ),
+            Message(
+                "{printed} of all {count} readings are of floors whose roughness is printed; of "
+                "the others a range stands for the finish that is printed.",
+                printed=len(printed), count=len(self.rows),
+            ),
+        )  # fmt: skip
 
     def table(self) -> Table:
         """Return each reading beside its prediction."""
@@ -351,8 +359,9 @@ class MachineScores(Presentable):
             read = ", ".join(bound.value_text for bound in each.bounds)
             verdict = "inside" if row.inside else "OUTSIDE"
             basis = "printed" if each.printed else "finish"
+            interval = Message("{low} to {high}", low=low, high=high)
             rows.append((each.floor, each.machine.title, ends, basis,
-                         read, median, f"{low} to {high}", verdict))  # fmt: skip
+                         read, median, interval, verdict))  # fmt: skip
         heads = ("Source and floor", "Machine", "Rq, um", "by", "Read", "Predicted", "95 %", "")
         return Table("Readings of floors", heads, rows)
 

@@ -32,6 +32,7 @@ from underfoot.core import InputError, RangeError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Entry, catalogue
 from underfoot.core.presentation import Presentable, Table, percent
+from underfoot.core.remark import Message
 from underfoot.film import side_leakage, wedge_load_factor
 from underfoot.friction.pair_contact import Pair, UnexpectedReading
 from underfoot.material import youngs_modulus_gent
@@ -451,39 +452,55 @@ class MachinePrediction(Presentable):
 
     def heading(self) -> str:
         """Return the title."""
-        return f"{self.machine.title}, {self.fluid.name}"
+        return Message("{machine}, {fluid}", machine=self.machine.title, fluid=self.fluid.name)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the number with its interval, and the likeliest class."""
         unit, (label, chance) = self.machine.scale.unit, max(self.classes, key=lambda c: c[1])
         digits = 2 if unit == "COF" else 0
         low, median, high = (f"{x:.{digits}f}" for x in (self.low, self.median, self.high))
-        told = f"{label} with a probability of {percent(chance)}"
+        told = Message(
+            "{label} with a probability of {chance}", label=label, chance=percent(chance)
+        )
         if chance < 0.75:
-            told = f"no class can be told: the likeliest is {told}"
-        return (f"{median} {unit} (95 %: {low} to {high}); {told}.",)
+            told = Message("no class can be told: the likeliest is {told}", told=told)
+        return (
+            Message(
+                "{median} {unit} (95 %: {low} to {high}); {told}.",
+                median=median, unit=unit, low=low, high=high, told=told,
+            ),
+        )  # fmt: skip
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what the number rests on that nobody measured."""
-        lines = list(map(str, self.outside))
+        lines = [reading.text for reading in self.outside]
         if self.fluid.name not in self.machine.fluids:
-            allowed = ", ".join(self.machine.fluids)
             lines.append(
-                f"Outside the standard: {self.machine.standard} reads {allowed}, not "
-                f"{self.fluid.name}."
-            )
+                Message(
+                    "Outside the standard: {standard} reads {allowed}, not {fluid}.",
+                    standard=self.machine.standard, allowed=self.machine.fluids,
+                    fluid=self.fluid.name,
+                )
+            )  # fmt: skip
         if not self.known:
             low, high = (1e6 * x for x in self.floor_rq)
             lines.append(
-                f"The floor has no roughness: it was drawn over Rq {low:.2g} to {high:.2g} um."
+                Message(
+                    "The floor has no roughness: it was drawn over Rq {low:.2g} to {high:.2g} um.",
+                    low=low,
+                    high=high,
+                )
             )
         if self.machine.learned is None:
-            lines.append("No reading of this machine stands behind the prediction.")
+            lines.append(Message("No reading of this machine stands behind the prediction."))
         unsure = [
             each for each in self.machine.entry.values.values() if each.assumed or not each.verified
         ]
         lines.append(
-            f"{len(unsure)} settings of the set-up are assumed or from memory; see the table."
+            Message(
+                "{count} settings of the set-up are assumed or from memory; see the table.",
+                count=len(unsure),
+            )
         )
         return tuple(lines)
 
@@ -496,7 +513,12 @@ class MachinePrediction(Presentable):
                 self.machine.classes, self.classes, reached, strict=True
             )
         ]
-        heads = ("class", f"from, {self.machine.scale.unit}", "probability", "of at least")
+        heads = (
+            "class",
+            Message("from, {unit}", unit=self.machine.scale.unit),
+            "probability",
+            "of at least",
+        )
         return Table("Class", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -511,7 +533,9 @@ class MachinePrediction(Presentable):
             between = ", " if name in ("labels", "names") else " to "
             basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY
             basis = Basis.ASSUMED if leaf.assumed else basis
-            setting = f"{section}: {name.replace('_', ' ')}"
+            setting = Message(
+                "{section}: {setting}", section=section, setting=name.replace("_", " ")
+            )
             rows.append((setting, between.join(map(str, given)), basis, leaf.source))
         heads = ("setting", "used", "basis", "source")
         return self.table(), Table("Set-up", heads, rows)

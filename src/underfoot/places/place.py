@@ -13,6 +13,7 @@ from underfoot.case import text as toml
 from underfoot.case.surfaces import STEEPEST_RAMP
 from underfoot.core import InputError, RangeError, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.remark import Message, Remark
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
@@ -375,14 +376,14 @@ def _floor(
             remedy = "Give the one that was measured"
             raise InputError("stands beside roughness", where=f"{where}.rz", remedy=remedy)
         section["roughness"] = {"rz": entry["rz"]}
-        assumed.append(f"{where}.roughness: Rq is Rz over 4 to 8")
+        assumed.append(Message("{where}.roughness: Rq is Rz over 4 to 8", where=where))
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
         for number, each in enumerate(_listed(entry, "reading", where), start=1)
     )
     if not section and not readings:
         assumed.append(
-            f"{where}: neither roughness nor reading; it was drawn over all usual floors"
+            Remark(where, "neither roughness nor reading; it was drawn over all usual floors")
         )
     share = _number(entry, "area", where, 1.0, (1e-9, 1e9))
     known = bool(section or readings)

@@ -16,9 +16,9 @@ from underfoot.compute.result import Result
 from underfoot.compute.run import run
 from underfoot.core import InputError, Progress, SourcedValue, nearest_match, silent
 from underfoot.core.arrays import Array
-from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
+from underfoot.core.presentation import Part, Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
-from underfoot.core.remark import subjects
+from underfoot.core.remark import Message, Remark, joined, subjects
 from underfoot.slip import slip_chances
 
 from .order import SEEN, Order, Verdict, order_of_draws, order_of_values
@@ -81,7 +81,7 @@ class Comparison(Presentable):
     ranking: tuple[Rank, ...]
     quantities: tuple[ComparedQuantity, ...]
     differences: tuple[tuple[str, ...], ...]
-    reasons: tuple[str, ...]
+    reasons: tuple[Message, ...]
     order: Order | None = None
     separations: tuple[Separation, ...] = ()
 
@@ -95,72 +95,102 @@ class Comparison(Presentable):
     def heading(self) -> str:
         return "Comparison of friction"
 
-    def label(self, letter: str) -> str:
+    def label(self, letter: str) -> Message:
         """Return the name of a result, with its letter where names repeat."""
         names = [result.name for result in self.results]
         name = names[LETTERS.index(letter)]
-        return name if names.count(name) == 1 else f"{letter} ({name})"
+        if names.count(name) == 1:
+            return Message.plain(name)
+        return Message("{letter} ({name})", letter=letter, name=name)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         for result in self.results:
-            if not result.status.usable:
-                return (f"No comparison: {result.name} is {result.status}. {result.status.remedy}",)
+            if not (status := result.status).usable:
+                told = {"name": result.name, "status": status, "remedy": status.remedy}
+                return (Message("No comparison: {name} is {status}. {remedy}", **told),)
         if len({result.provenance.case_hash for result in self.results}) == 1:
-            return ("The cases are the same; the results differ by grid or version only.",)
+            return (Message("The cases are the same; the results differ by grid or version only."),)
         first, second = self.ranking[:2]
         lead = (first.cof.value or 0.0) - (second.cof.value or 0.0)
-        better, other = self.label(first.letter), self.label(second.letter)
-        chance = first.better_than_next
-        apart = f"{lead:.3f}" if lead >= LEAST_SHOWN else f"less than {LEAST_SHOWN:.3f}"
-        sure = f"probability {_chance(chance, 'not estimated')}"
+        both: dict[str, Any] = {
+            "better": self.label(first.letter),
+            "other": self.label(second.letter),
+        }
+        apart = Message("{lead:.3f}", lead=lead)
+        if lead < LEAST_SHOWN:
+            apart = Message("less than {least:.3f}", least=LEAST_SHOWN)
         if self.order is None:
-            exact = [rank for rank in (first, second) if rank.interval is None]
-            names = " and ".join(self.label(rank.letter) for rank in exact)
-            what = f"COF of {better} is {apart} above that of {other}"
-            return (f"{what}. How sure that is can't be told: no spread is known of {names}.",)
-        verdict = self.order.verdict
-        if verdict is Verdict.EQUAL:
+            exact = [self.label(rank.letter) for rank in (first, second) if rank.interval is None]
             return (
-                f"{better} and {other} are equal for every purpose: COF {apart} apart "
-                f"({sure} that the first has more), too small to see. "
-                f"Readings of one tester repeat within {100 * SEEN:.0f} %.",
+                Message(
+                    "COF of {better} is {apart} above that of {other}. How sure that is can't be "
+                    "told: no spread is known of {names: and }.",
+                    **both, apart=apart, names=exact,
+                ),
+            )  # fmt: skip
+        both["chance"] = _chance(first.better_than_next)
+        if self.order.verdict is Verdict.EQUAL:
+            return (
+                Message(
+                    "{better} and {other} are equal for every purpose: COF {apart} apart "
+                    "(probability {chance} that the first has more), too small to see. "
+                    "Readings of one tester repeat within {seen:.0f} %.",
+                    **both, apart=apart, seen=100 * SEEN,
+                ),
                 self._different(),
-            )
-        if verdict is not Verdict.HIGHER:
-            order = f"Whether {better} or {other} has more friction is open: COF {apart} apart"
+            )  # fmt: skip
+        if self.order.verdict is not Verdict.HIGHER:
             return (
-                f"{order} ({sure} that the first has more).",
-                *self._telling(second.cof.value or 0.0),
-            )
-        order = f"{better} has the higher COF than {other}, by {lead:.3f}"
+                Message(
+                    "Whether {better} or {other} has more friction is open: COF {apart} apart "
+                    "(probability {chance} that the first has more).",
+                    **both, apart=apart,
+                ),
+                *self._telling(self.order, second.cof.value or 0.0),
+            )  # fmt: skip
         if len(self.results) > 2:
-            order = f"{better} has the highest COF, {lead:.3f} above {other}"
-        return (f"{order} ({sure}).", self._different())
+            order = Message(
+                "{better} has the highest COF, {lead:.3f} above {other} (probability {chance}).",
+                **both, lead=lead,
+            )  # fmt: skip
+        else:
+            order = Message(
+                "{better} has the higher COF than {other}, by {lead:.3f} (probability {chance}).",
+                **both, lead=lead,
+            )  # fmt: skip
+        return order, self._different()
 
-    def _telling(self, least: float) -> tuple[str, ...]:
+    def _telling(self, order: Order, least: float) -> tuple[Message, ...]:
         """Return what would tell an order that is open, and what a tester could see of it."""
-        least, share = SEEN * least, f"{100 * SEEN:.0f} %"
-        seen = f"The smallest difference a tester would see is {least:.3f} ({share})."
-        if not self.separations or self.order is None:
+        seen = Message(
+            "The smallest difference a tester would see is {least:.3f} ({share:.0f} %).",
+            least=SEEN * least, share=100 * SEEN,
+        )  # fmt: skip
+        if not self.separations:
             return (seen,)
         best = self.separations[0]
-        if best.told - self.order.told < MOVES:
-            return (f"Nothing that was tried would tell: at best {best}.", seen)
-        return (f"What would tell: {best}.", seen)
+        step = {"step": best.step, "chance": drawn_probability_text(best.told)}
+        if best.told - order.told < MOVES:
+            nothing = Message(
+                "Nothing that was tried would tell: at best {step} ({chance}).", **step
+            )
+            return nothing, seen
+        return Message("What would tell: {step} ({chance}).", **step), seen
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         return self.reasons
 
     def table(self) -> Table:
         rows = []
         for quantity in self.quantities:
             texts = ["" if v is None else value_text(quantity.name, v) for v in quantity.values]
-            remark = "; ".join(
+            remark = joined(
                 _order_text(order, letter if len(self.results) > 2 else "")
                 for letter, order in quantity.orders.items()
             )
             rows.append((quantity.label, *texts, remark))
-        return Table("Results", ("Quantity", *self.letters, f"{self.letters[1:]} against A"), rows)
+        against = Message("{letters} against A", letters=self.letters[1:])
+        return Table("Results", ("Quantity", *self.letters, against), rows)
 
     def tables(self) -> tuple[Table, ...]:
         ranking = Table(
@@ -171,8 +201,8 @@ class Comparison(Presentable):
                     rank.letter,
                     rank.name,
                     value_text("cof", rank.cof),
-                    "{:.3f} to {:.3f}".format(*rank.interval) if rank.interval else "",
-                    _chance(rank.better_than_next, ""),
+                    _interval(rank.interval) if rank.interval else "",
+                    _chance(rank.better_than_next),
                 )
                 for rank in self.ranking
             ],
@@ -232,22 +262,25 @@ class Comparison(Presentable):
             "differences": Table("", ("path", *self.letters), self.differences),
         }
 
-    def _different(self) -> str:
-        labels, parent = [], ""
+    def _different(self) -> Message:
+        several, names, whole = len(self.results) > 2, [], ""
         for quantity in self.quantities:
-            label = quantity.label.strip()
-            if not quantity.label.startswith(" "):
-                parent = label
+            label = quantity.label
+            if isinstance(label, Part):
+                name = Message("{whole} {part}", whole=whole, part=label.label)
+            else:
+                whole = label[:1].lower() + label[1:]
+                name = Message.plain(whole)
+            if quantity.different and several:
+                name = Message("{name} ({letters})", name=name, letters=quantity.different)
             if quantity.different:
-                name = (label if label == parent else f"{parent} {label}").lower()
-                letters = f" ({', '.join(quantity.different)})" if len(self.results) > 2 else ""
-                labels.append(f"{name.replace('cof', 'COF')}{letters}")
-        if not labels:
-            return "No other quantity differs for sure."
-        listed = "; ".join(labels)
-        if len(self.results) > 2:
-            return f"These differ from {self.label('A')}: {listed}."
-        return f"These differ: {listed}."
+                names.append(name)
+        if not names:
+            return Message("No other quantity differs for sure.")
+        if several:
+            first = self.label("A")
+            return Message("These differ from {first}: {names:; }.", first=first, names=names)
+        return Message("These differ: {names:; }.", names=names)
 
 
 def compare(
@@ -444,7 +477,7 @@ def _order_in(name: str, results: Sequence[Result], cases: Sequence[Case], at: i
     return replace(slips, within=friction.within if same else slips.within)
 
 
-def _order_text(order: Order, letter: str) -> str:
+def _order_text(order: Order, letter: str) -> Message:
     """Return what is said of an order, with its probability where one is stated."""
     chance = {
         Verdict.HIGHER: order.higher,
@@ -452,36 +485,44 @@ def _order_text(order: Order, letter: str) -> str:
         Verdict.EQUAL: order.within,
         Verdict.OPEN: None,
     }[order.verdict]
-    word = "not decided" if chance is None else str(order.verdict)
-    sure = "" if chance is None else f", {drawn_probability_text(chance)}"
-    return f"{letter} {word}{sure}".strip()
+    text = Message("not decided")
+    if chance is not None:
+        sure = drawn_probability_text(chance)
+        text = Message("{verdict}, {sure}", verdict=order.verdict, sure=sure)
+    return Message("{letter} {text}", letter=letter, text=text) if letter else text
 
 
-def _reasons(results: Sequence[Result]) -> tuple[str, ...]:
-    reasons = []
+def _reasons(results: Sequence[Result]) -> tuple[Message, ...]:
+    reasons: list[Message] = []
     sides = [float(np.median(np.diff(result.data["x"].values))) for result in results]
     if max(sides) > 1.01 * min(sides):
-        grids = ", ".join(
-            f"{letter} {side * 1e3:.3g} mm" for letter, side in zip(LETTERS, sides, strict=False)
-        )
         reasons.append(
-            f"The grids differ ({grids}): part of the difference may be discretisation error. "
-            "Compute all with --quick or all without."
+            Message(
+                "The grids differ ({grids}): part of the difference may be discretisation error. "
+                "Compute all with --quick or all without.",
+                grids=[
+                    Message("{letter} {side:.3g} mm", letter=letter, side=side * 1e3)
+                    for letter, side in zip(LETTERS, sides, strict=False)
+                ],
+            )
         )
     versions = {result.provenance.versions.get("underfoot", "") for result in results}
     if len(versions) > 1:
-        reasons.append(f"Computed with different versions: {', '.join(sorted(versions))}.")
+        reasons.append(
+            Message("Computed with different versions: {versions}.", versions=sorted(versions))
+        )
     for letter, result in zip(LETTERS, results, strict=False):
         if result.status.usable and result.breaches:
-            models = subjects(result.breaches)
-            reasons.append(f"{letter}: {summary.beyond_tests(models)}")
+            reasons.append(Remark.of(letter, summary.beyond_tests(subjects(result.breaches))))
     return tuple(reasons)
 
 
-def _chance(probability: float | None, unknown: str) -> str:
-    if probability is None:
-        return unknown
-    return drawn_probability_text(probability)
+def _chance(probability: float | None) -> str:
+    return "" if probability is None else drawn_probability_text(probability)
+
+
+def _interval(ends: tuple[float, float]) -> Message:
+    return Message("{low:.3f} to {high:.3f}", low=ends[0], high=ends[1])
 
 
 def with_short_names(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:

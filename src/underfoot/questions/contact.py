@@ -14,6 +14,7 @@ from underfoot.core.checks import exactly_one
 from underfoot.core.device import card, on_card
 from underfoot.core.files import read_toml
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Amount, Message
 from underfoot.rough_contact import (
     ContactTable,
     SteadySliding,
@@ -68,24 +69,33 @@ class RoughContact(Presentable):
         return self.contact.status.usable
 
     @property
-    def _at(self) -> str:
+    def _at(self) -> Message:
         contact = self.contact
-        return f"{display(contact.nominal_pressure, 'Pa')}, {display(contact.speed, 'm/s')}"
-
-    @property
-    def answer(self) -> str:
-        """The real contact and hysteresis of a usable solution, with pressure and speed."""
-        return (
-            f"Real contact {100.0 * self.contact.real_contact_fraction_corrected:.3g} %, "
-            f"hysteresis COF {self.contact.cof_hysteresis:.3g} at {self._at}"
+        return Message(
+            "{pressure}, {speed}",
+            pressure=Amount(contact.nominal_pressure, "Pa"),
+            speed=Amount(contact.speed, "m/s"),
         )
 
-    def headline(self) -> tuple[str, ...]:
+    @property
+    def answer(self) -> Message:
+        """The real contact and hysteresis of a usable solution, with pressure and speed."""
+        return Message(
+            "Real contact {contact:.3g} %, hysteresis COF {cof_hysteresis:.3g} at {at}",
+            contact=100.0 * self.contact.real_contact_fraction_corrected,
+            cof_hysteresis=self.contact.cof_hysteresis,
+            at=self._at,
+        )
+
+    def headline(self) -> tuple[Message, ...]:
         if not self.usable:
             return (
-                f"No result at {self._at}: {self.contact.status}. {self.contact.status.remedy}",
-            )
-        return (f"{self.answer} ({self.rubber}).",)
+                Message(
+                    "No result at {at}: {status}. {remedy}",
+                    at=self._at, status=self.contact.status, remedy=self.contact.status.remedy,
+                ),
+            )  # fmt: skip
+        return (Message("{answer} ({rubber}).", answer=self.answer, rubber=self.rubber),)
 
     def cautions(self) -> tuple[str, ...]:
         """Return why the heights are none of a floor."""
@@ -97,7 +107,10 @@ class RoughContact(Presentable):
             (label, _shown(content[key], unit, "not estimated"), remark)
             for label, key, unit, remark in ROWS
         ]
-        status = (str(self.contact.status), f"{self.contact.iterations} iterations")
+        status = (
+            str(self.contact.status),
+            Message("{iterations} iterations", iterations=self.contact.iterations),
+        )
         return Table("Contact", ("Quantity", "Value", "Remark"), [*rows, ("Status", *status)])
 
     def tables(self) -> tuple[Table, ...]:
@@ -264,7 +277,11 @@ def solved(
     else:
         given = floor.heights, floor.spacing, rubber, [(pressure, speed)], poisson_ratio
         (contact,) = contacts_on_card(*given)
-        cost = f"contact solved on {card()}, {time.perf_counter() - began:.1f} s"
+        cost = Message(
+            "contact solved on {card}, {time:.1f} s",
+            card=card(),
+            time=time.perf_counter() - began,
+        )
         contact = replace(contact, notes=(*contact.notes, cost))
     if not contact.status.usable:
         return contact, FlowFactors(np.nan, np.nan, np.nan, np.nan, np.nan)
@@ -327,10 +344,13 @@ def _from_profile(
     shortest = 8.0 * spacing if shortest is None else shortest
     part = spectrum.within(low, min(high, 2.0 * np.pi / shortest))
     random = surface.surface_from_spectrum(part, points, spacing, seed)
-    note = (
-        f"the levelled profile has an rms height of {display(float(np.std(flat.heights)), 'm')}, "
-        f"this surface {display(random.rms_height, 'm')}: it keeps waves from "
-        f"{display(2.0 * np.pi / part.reliable[1], 'm')} to {display(2.0 * np.pi / low, 'm')}"
+    note = Message(
+        "the levelled profile has an rms height of {rms}, this surface "
+        "{surface}: it keeps waves from {shortest} to {longest}",
+        rms=Amount(float(np.std(flat.heights)), "m"),
+        surface=Amount(random.rms_height, "m"),
+        shortest=Amount(2.0 * np.pi / part.reliable[1], "m"),
+        longest=Amount(2.0 * np.pi / low, "m"),
     )
     return replace(random, processing=(*random.processing, note))
 
@@ -363,15 +383,20 @@ def rubber_from(
     exactly_one(kinds, "no rubber", "underfoot contact", allowed)
     if modulus is not None:
         young = to_si(modulus, "Pa", where="--modulus")
-        return young, f"elastic, Young's modulus {modulus}", []
+        return young, Message("elastic, Young's modulus {modulus}", modulus=modulus), []
     if shore is not None:
         young = float(material.youngs_modulus_gent(shore))
         notes = [str(breach) for breach in material.gent_breaches(shore)]
         notes.append("Young's modulus from hardness (Gent 1958): static, tens of percent uncertain")
-        return young, f"elastic, Shore A {shore:g}: {young * 1e-6:.3g} MPa", notes
+        values = {"shore": shore, "young": young * 1e-6}
+        return young, Message("elastic, Shore A {shore:g}: {young:.3g} MPa", **values), notes
     if name is not None:
         rubber = material.report_elastomer(name)
-        return rubber.spectrum, f"{rubber.name}, {rubber.source}", []
+        return (
+            rubber.spectrum,
+            Message("{rubber}, {source}", rubber=rubber.name, source=rubber.source),
+            [],
+        )
     assert spectrum is not None
     return _spectrum(spectrum)
 
@@ -387,7 +412,11 @@ def _compound(path: Path) -> tuple[Any, str, list[str]] | None:
         return None
     compound = Material.model_validate(read)
     assert compound.relaxation is not None
-    return compound.relaxation.young(compound.poisson_ratio), f"compound of {path.name}", []
+    return (
+        compound.relaxation.young(compound.poisson_ratio),
+        Message("compound of {path}", path=path.name),
+        [],
+    )
 
 
 def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
@@ -395,7 +424,7 @@ def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
     if (compound := _compound(path)) is not None:
         return compound
     try:
-        return material.read_prony(path), f"Prony series of {path.name}", []
+        return material.read_prony(path), Message("Prony series of {path}", path=path.name), []
     except DataError as first:
         try:
             sweeps = material.read_dynamic(path)
@@ -416,5 +445,8 @@ def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
     sweep = sweeps[0]
     fit = material.fit_dynamic(sweep.angular_frequency, sweep.storage_modulus, sweep.loss_modulus)
     low, high = fit.frequency_range
-    note = f"spectrum fitted to {low:.3g} to {high:.3g} rad/s, {100 * fit.rms_residual:.2g} % rms"
-    return fit.spectrum, f"dynamic sweep of {path.name}", [note]
+    note = Message(
+        "spectrum fitted to {low:.3g} to {high:.3g} rad/s, {residual:.2g} % rms",
+        low=low, high=high, residual=100 * fit.rms_residual,
+    )  # fmt: skip
+    return fit.spectrum, Message("dynamic sweep of {path}", path=path.name), [note]

@@ -12,7 +12,7 @@ from underfoot.compute import summary
 from underfoot.core import InputError, Progress, SourcedValue, display, silent, unknown_name
 from underfoot.core.presentation import Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
-from underfoot.core.remark import Remark, subjects
+from underfoot.core.remark import Amount, Message, Remark, subjects
 from underfoot.slip import MODELS
 
 from .ask import ask
@@ -90,19 +90,26 @@ class Condition:
         """Return what left a tested range; that of a slip model is no matter of a method."""
         return [each for each in self.outcome.breaches if each.about not in MODELS]
 
-    def __str__(self) -> str:
+    @property
+    def sentence(self) -> Message:
+        """The COF with its interval, and how likely it passes."""
+        values: dict[str, Any] = {"title": self.title, "reason": self.cof.reason}
         if self.cof.value is None:
-            return f"{self.title}: not determined: {self.cof.reason}."
+            return Message("{title}: not determined: {reason}.", **values)
+        values["cof"] = self.cof.value
         if self.low is None:
-            return f"{self.title}: COF {self.cof.value:.3f}; no interval: {self.cof.reason}."
-        text = (
-            f"{self.title}: COF {self.cof.value:.3f} (95 %: {self.low:.2f} to "
-            f"{self.high:.2f}; {self.cof.note})"
+            return Message("{title}: COF {cof:.3f}; no interval: {reason}.", **values)
+        passing = Message("the method sets no limit")
+        if self.probability is not None and self.limit is not None:
+            passing = Message(
+                "probability of at least {limit:g} is {chance}",
+                limit=self.limit.value, chance=drawn_probability_text(self.probability),
+            )  # fmt: skip
+        values |= {"low": self.low, "high": self.high, "note": self.cof.note, "passing": passing}
+        del values["reason"]
+        return Message(
+            "{title}: COF {cof:.3f} (95 %: {low:.2f} to {high:.2f}; {note}); {passing}.", **values
         )
-        if self.probability is None or self.limit is None:
-            return f"{text}; the method sets no limit."
-        chance = drawn_probability_text(self.probability)
-        return f"{text}; probability of at least {self.limit.value:g} is {chance}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,18 +134,22 @@ class MethodPrediction(Presentable):
         return all(each.outcome.usable for each in self.conditions)
 
     def heading(self) -> str:
-        return f"{self.name} by {self.title}"
+        return Message("{name} by {title}", name=self.name, title=self.title)
 
-    def headline(self) -> tuple[str, ...]:
-        return tuple(map(str, self.conditions))
+    def headline(self) -> tuple[Message, ...]:
+        return tuple(each.sentence for each in self.conditions)
 
-    def cautions(self) -> tuple[str, ...]:
-        reasons = []
+    def cautions(self) -> tuple[Message, ...]:
+        reasons: list[Message] = []
         unsure = [each.name for each in self.requirements if each.basis is not Basis.VERIFIED]
         if unsure:
             reasons.append(
-                f"{len(unsure)} of {len(self.requirements)} settings are not verified against the "
-                "printed method or depart from it; see the table."
+                Message(
+                    "{unsure} of {count} settings are not verified against the printed method or "
+                    "depart from it; see the table.",
+                    unsure=len(unsure),
+                    count=len(self.requirements),
+                )
             )
         if models := subjects(self._breaches()):
             reasons.append(summary.beyond_tests(models))
@@ -151,7 +162,9 @@ class MethodPrediction(Presentable):
                 each.floor,
                 each.contaminant,
                 value_text("cof", each.cof) if each.cof.value is None else f"{each.cof.value:.3f}",
-                "" if each.low is None else f"{each.low:.2f} to {each.high:.2f}",
+                ""
+                if each.low is None
+                else Message("{low:.2f} to {high:.2f}", low=each.low, high=each.high),
                 "none" if each.limit is None else f"{each.limit.value:g}",
                 "" if each.probability is None else drawn_probability_text(each.probability),
             )
@@ -166,7 +179,9 @@ class MethodPrediction(Presentable):
                 each.name,
                 each.required,
                 each.used,
-                f"{each.basis} ({each.source})" if each.source else str(each.basis),
+                Message("{basis} ({source})", basis=each.basis, source=each.source)
+                if each.source
+                else str(each.basis),
             )
             for each in self.requirements
         ]
@@ -318,7 +333,7 @@ def method_prediction(
         requirements += [each for each in settings if each not in requirements]
     if window := _window(entry):
         end = plan[0][1].motion.end_time
-        used = "steady sliding" if end is None else f"at {display(end, 's')}"
+        used = "steady sliding" if end is None else Message("at {end}", end=Amount(end, "s"))
         leaf = entry.values["method.averaging_end"]
         requirements.append(_required("averaging window", window, used, leaf))
     return MethodPrediction(
@@ -354,9 +369,16 @@ def _prepared(
         if leaf is None:
             open_leaf = entry.values.get(f"method.{section}")
             required = "as agreed" if open_leaf is None else str(open_leaf.given)
-            settings.append(Requirement(section, required, f"{present} (of the case)", Basis.OPEN))
+            settings.append(
+                Requirement(
+                    section,
+                    required,
+                    Message("{present} (of the case)", present=present),
+                    Basis.OPEN,
+                )
+            )
         elif section in keep:
-            used = f"{present} (kept)"
+            used = Message("{present} (kept)", present=present)
             settings.append(Requirement(section, str(leaf.given), used, Basis.DEPARTURE))
         else:
             changes[section] = str(leaf.given)
@@ -382,7 +404,7 @@ def _prepared(
         label = name.replace("_", " ")
         required = f"{leaf.given}" + (f" ({leaf.note})" if leaf.note else "")
         if name in keep:
-            used = f"{display(getattr(changed.motion, name), unit)} (kept)"
+            used = Message("{setting} (kept)", setting=Amount(getattr(changed.motion, name), unit))
             settings.append(Requirement(label, required, used, Basis.DEPARTURE))
         else:
             settings.append(_required(label, required, "as required", leaf))
@@ -411,7 +433,7 @@ def _window(entry: Entry) -> str:
         for name in ("start", "end")
     )
     after = "the force is there" if entry.text("method.averaging_from") == "force" else "contact"
-    return f"{begin} to {end} after {after}"
+    return Message("{begin} to {end} after {after}", begin=begin, end=end, after=after)
 
 
 def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:

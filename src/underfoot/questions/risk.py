@@ -186,10 +186,8 @@ class RiskAssessment(Presentable):
             Message(
                 "{action}: COF {before:.2f} to {after:.2f}, slip probability {chance} to "
                 "{changed}{extrapolated}{sure}",
-                action=each.change.action,
-                before=self.outcome.number("cof"),
-                after=each.number("cof"),
-                chance=chance,
+                action=each.change.action, before=self.outcome.number("cof"),
+                after=each.number("cof"), chance=chance,
                 changed=_chance(each.scalars["slip_probability"]),
                 extrapolated=Message(" (extrapolated)") if _note(each) else NOTHING,
                 sure=Message(", higher COF with a probability of {chance}", chance=_sure(each))
@@ -197,7 +195,7 @@ class RiskAssessment(Presentable):
                 else NOTHING,
             )
             for each in self.best[:most]
-        ]
+        ]  # fmt: skip
         return lines or [Message("No tested change reduces the slip probability.")]
 
     def table(self) -> Table:
@@ -224,7 +222,11 @@ class RiskAssessment(Presentable):
             ends = None if model.low is None or model.high is None else (model.low, model.high)
             chance = _chance(SourcedValue(model.probability, interval=ends))
             rows.append((model.name, chance, needed))
-        heads = ("Model", "Slip probability", f"COF needed for {percent(self.target)}")
+        heads = (
+            "Model",
+            "Slip probability",
+            Message("COF needed for {target}", target=percent(self.target)),
+        )
         models = Table("Slip probability of the same friction by every model", heads, rows)
         return (self.table(), models) if self.usable else ()
 

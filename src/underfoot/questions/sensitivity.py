@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from underfoot.case import unit_at
 from underfoot.core import Progress, display, silent
 from underfoot.core.presentation import Presentable, Table, quantity_text
+from underfoot.core.remark import Message
 
 from .outcomes import Outcome, outcomes
 
@@ -178,31 +179,46 @@ class Sensitivity(Presentable):
     def heading(self) -> str:
         return self.nominal.name
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         if not self.usable:
-            return (f"No result: {self.nominal.status}. {self.nominal.remedy}",)
+            return (
+                Message(
+                    "No result: {status}. {remedy}",
+                    status=self.nominal.status,
+                    remedy=self.nominal.remedy,
+                ),
+            )
         band = self.band("cof")
         sentences = [
-            f"COF {band.value:.3f} ± {band.deviation:.3f} (friction law ± {band.law:.3f}, assumed "
-            f"inputs ± {band.inputs:.3f}); over all variants {band.lowest:.3f} to "
-            f"{band.highest:.3f}."
-        ]
+            Message(
+                "COF {value:.3f} ± {deviation:.3f} (friction law ± {law:.3f}, "
+                "assumed inputs ± {inputs:.3f}); over all variants {lowest:.3f} to "
+                "{highest:.3f}.",
+                value=band.value, deviation=band.deviation, law=band.law, inputs=band.inputs,
+                lowest=band.lowest, highest=band.highest,
+            )
+        ]  # fmt: skip
         if self.effects:
             first = self.ranked("cof")[0]
-            inputs, results = " to ".join(first.ends()), " to ".join(first.results("cof"))
             sentences.append(
-                f"Most effective input: {first.path}, {inputs} changes the COF from {results}."
-            )
+                Message(
+                    "Most effective input: {path}, {inputs: to } changes the COF from "
+                    "{results: to }.",
+                    path=first.path, inputs=first.ends(), results=first.results("cof"),
+                )
+            )  # fmt: skip
         return tuple(sentences)
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         if not self.usable:
             return ()
-        reasons = []
+        reasons: list[Message] = []
         if self.quick:
-            reasons.append("Coarse grid: use the differences; take values from underfoot run.")
+            reasons.append(
+                Message("Coarse grid: use the differences; take values from underfoot run.")
+            )
         if missing := self.band("cof").not_computed:
-            reasons.append(f"Not computed, so not in the ±: {', '.join(missing)}.")
+            reasons.append(Message("Not computed, so not in the ±: {missing}.", missing=missing))
         return tuple(reasons)
 
     def table(self) -> Table:
@@ -211,7 +227,7 @@ class Sensitivity(Presentable):
             band, unit = self.band(name), self.nominal.scalars[name].unit
             value = quantity_text(band.value, unit, band.deviation)
             low, high = (quantity_text(end, unit) for end in (band.lowest, band.highest))
-            rows.append((label, value, f"{low} to {high}"))
+            rows.append((label, value, Message("{low} to {high}", low=low, high=high)))
         return Table("Law and inputs together", ("Quantity", "Value ± 1 sd", "Variants"), rows)
 
     def tables(self) -> tuple[Table, ...]:
@@ -224,11 +240,20 @@ class Sensitivity(Presentable):
                 (effect.path, *effect.ends(), *effect.results(name))
                 for effect in self.ranked(name)[:MOST_INPUTS]
             ]
-            tables.append(Table(f"{label}: one standard deviation to either side", heads, rows))
+            tables.append(
+                Table(
+                    Message("{label}: one standard deviation to either side", label=label),
+                    heads,
+                    rows,
+                )
+            )
         return tuple(tables)
 
     def remarks(self) -> dict[str, Sequence[str]]:
-        reasons = [f"{effect.path}: {effect.reason}" for effect in self.ranked("cof")]
+        reasons = [
+            Message("{path}: {reason}", path=effect.path, reason=effect.reason)
+            for effect in self.ranked("cof")
+        ]
         return {"Reasons for the ranges": reasons}
 
     def to_dict(self) -> dict[str, Any]:

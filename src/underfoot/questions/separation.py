@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from underfoot.compute.continuation import Continuation
-from underfoot.core import ConvergenceError, InputError, Progress, display, silent
+from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array
-from underfoot.core.presentation import drawn_probability_text
+from underfoot.core.remark import Amount, Message
 from underfoot.friction.tread_error import READING
 
 from .order import Order, certainty_after_reading, order_of_draws
@@ -47,18 +47,16 @@ class Separation:
     order: Order | None = None
 
     @property
-    def step(self) -> str:
+    def step(self) -> Message:
         """What is done, in words."""
         if self.kind == "reading":
-            return "COF of both on one tester, all else alike"
+            return Message("COF of both on one tester, all else alike")
         if self.kind == "fluid":
-            return f"both in {str(self.value).replace('_', ' ')}"
+            return Message("both in {fluid}", fluid=str(self.value).replace("_", " "))
+        value = float(self.value or 0.0)
         if self.kind == "angle":
-            return f"both at {display(float(self.value or 0.0), 'rad')}"
-        return f"both with {display(float(self.value or 0.0), 'm')} of tread worn off"
-
-    def __str__(self) -> str:
-        return f"{self.step} ({drawn_probability_text(self.told)})"
+            return Message("both at {angle}", angle=Amount(value, "rad"))
+        return Message("both with {depth} of tread worn off", depth=Amount(value, "m"))
 
 
 def of_reading(first: Array, second: Array) -> Separation:

@@ -15,6 +15,7 @@ from underfoot.compute.run import run
 from underfoot.compute.slips import slips
 from underfoot.core import InputError, Progress, SourcedValue, silent
 from underfoot.core.presentation import (
+    Part,
     Presentable,
     Table,
     percent,
@@ -23,6 +24,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.progress import part
+from underfoot.core.remark import NOTHING, Message
 from underfoot.core.text import decoded
 from underfoot.slip.dynamics import (
     GaitHistory,
@@ -82,68 +84,100 @@ class SlipPopulation(Presentable):
         """Whether a sensor read anybody's film above its own noise."""
         return self.wet and any(each.seen.duration is not None for each in self.study.subjects)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         study = self.study
         count = len(study.subjects)
         if count == 1:
             seen = study.subjects[0].seen
-            verdict = "slips" if seen.slipped else "does not slip"
             return (
-                f"The walker {verdict}: peak heel speed {seen.peak_speed:.2f} m/s (slip above "
-                f"0.2 m/s), distance {1e3 * seen.distance:.0f} mm ({seen.outcome}).",
-                "One walker has no spread, so no interval.",
-            )
-        share, low, high = study.slipped()
-        floor = "" if self.wet else " The case has no fluid: no film."
-        spread = "walkers" if study.by_friction is None else "walkers and friction"
-        middle = "" if study.by_friction is None else ", at the middle of the friction"
+                Message(
+                    "The walker {verdict}: peak heel speed {speed:.2f} m/s (slip above 0.2 m/s), "
+                    "distance {distance:.0f} mm ({outcome}).",
+                    verdict="slips" if seen.slipped else "does not slip",
+                    speed=seen.peak_speed, distance=1e3 * seen.distance, outcome=seen.outcome,
+                ),
+                Message("One walker has no spread, so no interval."),
+            )  # fmt: skip
+        shares = zip(("share", "low", "high"), map(probability_text, study.slipped()), strict=True)
+        middle, spread = NOTHING, Message("walkers")
+        if study.by_friction is not None:
+            middle = Message(", at the middle of the friction")
+            spread = Message("walkers and friction")
         return (
-            f"{probability_text(share)} of simulated steps slip (heel faster than 0.2 m/s; 95 % of "
-            f"{count} {spread}: {probability_text(low)} to {probability_text(high)}).",
-            f"Peak heel speed {_value_text(study.mean('peak_speed', 'm/s'))} (mean and standard "
-            f"deviation between walkers{middle}).{floor}",
-        )
+            Message(
+                "{share} of simulated steps slip (heel faster than 0.2 m/s; 95 % of {count} "
+                "{spread}: {low} to {high}).",
+                **dict(shares), count=count, spread=spread,
+            ),
+            Message(
+                "Peak heel speed {speed} (mean and standard deviation between walkers{middle}).",
+                speed=_value_text(study.mean("peak_speed", "m/s")), middle=middle,
+            ),
+            *(() if self.wet else (Message("The case has no fluid: no film."),)),
+        )  # fmt: skip
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         study = self.study
-        reasons = [
-            "Drive is that of dry walking and walkers do not react: speeds and distances of long "
-            "slips are upper limits.",
+        reasons: list[Message] = [
+            Message(
+                "Drive is that of dry walking and walkers do not react: speeds and distances of "
+                "long slips are upper limits."
+            ),
             *self._other_model(),
         ]
         lower = sum(subject.motion.still_sliding for subject in study.subjects)
         if lower:
-            reasons.append(f"{lower} still slide when their step ends: lower bounds.")
-        if study.fit is not None and study.fit.at_bound:
-            names = ", ".join(study.fit.at_bound)
             reasons.append(
-                f"Constants of the reduced model not identified by these slips: {names}."
+                Message("{count} still slide when their step ends: lower bounds.", count=lower)
+            )
+        if study.fit is not None and study.fit.at_bound:
+            reasons.append(
+                Message(
+                    "Constants of the reduced model not identified by these slips: {names}.",
+                    names=study.fit.at_bound,
+                )
             )
         seen = study.highest_seen()
         if self.heard and seen is not None and seen < BLIND:
             reasons.append(
-                f"Inlets of {1e3 * study.array.inlet_diameter:.3g} mm read at most {percent(seen)} "
-                "of the film's highest pressure: a low reading does not show that there is no film."
+                Message(
+                    "Inlets of {inlet:.3g} mm read at most {seen} of the film's highest "
+                    "pressure: a low reading does not show that there is no film.",
+                    inlet=1e3 * study.array.inlet_diameter,
+                    seen=percent(seen),
+                )
             )
         if study.by_friction is None and len(study.subjects) > 1:
             reasons.append(
-                "The interval holds the number of walkers alone, not the spread of the friction."
+                Message(
+                    "The interval holds the number of walkers alone, not the spread of the "
+                    "friction."
+                )
             )
         if study.failed:
             reasons.append(
-                f"Slips that could not be solved and are left out: {study.failed} of "
-                f"{study.failed + len(study.full_runs)} full runs."
+                Message(
+                    "Slips that could not be solved and are left out: {failed} of {count} full "
+                    "runs.",
+                    failed=study.failed,
+                    count=study.failed + len(study.full_runs),
+                )
             )
         return tuple(reasons)
 
-    def _other_model(self) -> tuple[str, ...]:
+    def _other_model(self) -> tuple[Message, ...]:
         """Return what ``run`` and ``risk`` answer, and why it is another number."""
         if self.predicted.value is None:
             return ()
         return (
-            f"run and risk answer {value_text('slip_probability', self.predicted)} for these "
-            f"people on this floor ({self.model}): a curve fitted to counted slips, with the "
-            "spread of film, tread and grid; here it is that of the contact's friction alone.",
+            Message(
+                "run and risk answer {chance} for these people on this floor "
+                "({model}): a curve fitted to counted slips, with the spread of "
+                "film, tread and grid; here it is that of the contact's friction "
+                "alone.",
+                chance=value_text("slip_probability", self.predicted),
+                model=self.model,
+            ),
         )
 
     def table(self) -> Table:
@@ -151,14 +185,23 @@ class SlipPopulation(Presentable):
         single = len(study.subjects) < 2
         rows = []
         for outcome, (share, low, high) in study.shares().items():
-            interval = "" if single else f"95 %: {percent(low)} to {percent(high)}"
-            rows.append((f"Distance slipped: {outcome}", percent(share), interval))
-        middle = "" if study.by_friction is None else ", at the middle of the friction"
+            interval = NOTHING
+            if not single:
+                ends = {"low": percent(low), "high": percent(high)}
+                interval = Message("95 %: {low} to {high}", **ends)
+            rows.append(
+                (Message("Distance slipped: {outcome}", outcome=outcome), percent(share), interval)
+            )
+        middle = NOTHING
+        if study.by_friction is not None:
+            middle = Message(", at the middle of the friction")
         for name, (label, unit) in NUMBERS.items():
             if self.heard or name not in AT_SENSORS:
                 value = study.mean(name, unit, crossed=name in AT_SENSORS)
                 range_text = self._range(name, unit)
-                remark = f"{range_text}{middle}" if range_text else value.reason
+                remark: str = value.reason
+                if range_text:
+                    remark = Message("{range}{middle}", range=range_text, middle=middle)
                 rows.append((label, _value_text(value), remark))
         if self.heard:
             rows += self._sensor_rows()
@@ -167,22 +210,35 @@ class SlipPopulation(Presentable):
         if study.fit is not None:
             error, fitted = study.fit.held_out, study.fit.fitted.peak_speed
             label = "Reduced model on full runs held out"
-            remark = f"{error}; on fitted runs {error_text(fitted, 'm/s')}"
+            remark = Message(
+                "{error}; on fitted runs {fitted}", error=error, fitted=error_text(fitted, "m/s")
+            )
             rows.append((label, error_text(error.peak_speed, "m/s"), remark))
             if study.pressure_error is not None:
-                rows.append(("  peak pressure", f"± {percent(study.pressure_error)}", "relative"))
+                rows.append(
+                    (Part("peak pressure"), f"± {percent(study.pressure_error)}", "relative")
+                )
         if (start := study.slip_start()) is not None:
-            people = "in 39 slips of people 20 ms, 0.27 (Iraqi et al. 2018)"
-            remark = f"at {start[1]:.2f} of body weight; {people}"
-            rows.append(("Slip start", f"{1e3 * start[0]:.0f} ms", remark))
+            remark = Message(
+                "at {load:.2f} of body weight; in 39 slips of people 20 ms, 0.27 (Iraqi et al. "
+                "2018)",
+                load=start[1],
+            )
+            rows.append(("Slip start", Message("{start:.0f} ms", start=1e3 * start[0]), remark))
         for name, (label, unit, _, values) in BANDS.items():
             speeds = self._by(name)
             if None not in speeds.values():
-                text = " / ".join(f"{speed:.2f}" for speed in speeds.values()) + " m/s"
+                text = Message(
+                    "{speeds: / } m/s", speeds=[f"{speed:.2f}" for speed in speeds.values()]
+                )
                 if max(speed or 0.0 for speed in speeds.values()) < 0.005:
-                    text = "below 0.01 m/s"
-                remark = f"{' / '.join(f'{value:g}' for value in values)} {unit}; without marker"
-                rows.append((f"Peak speed by {label}", text, remark))
+                    text = Message("below 0.01 m/s")
+                remark = Message(
+                    "{values: / } {unit}; without marker",
+                    values=[f"{value:g}" for value in values],
+                    unit=unit,
+                )
+                rows.append((Message("Peak speed by {label}", label=label), text, remark))
         return Table("Population", ("Quantity", "Value", "Remark"), rows)
 
     def remarks(self) -> dict[str, Sequence[str]]:
@@ -190,16 +246,27 @@ class SlipPopulation(Presentable):
         people = study.population
         model = "full model for every walker" if study.full else "reduced model fitted to full runs"
         low, high = people.weight_transfer
-        lines = [f"model: {model}"] if self.wet else []
+        lines = [Message("model: {model}", model=model)] if self.wet else []
         lines += [
-            f"moving mass: {people.effective_mass:.3g} of the body mass (assumed)",
-            f"a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
+            Message(
+                "moving mass: {mass:.3g} of the body mass (assumed)",
+                mass=people.effective_mass,
+            ),
+            Message(
+                "a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
+                low=low,
+                high=high,
+            ),
         ]
         if any(spread.assumed for spread in (people.mass, people.rcof, people.heel_speed)):
             lines.append(
-                f"people: RCOF {people.rcof.mean:.3g} ± {people.rcof.sd:.2g}, heel contact at "
-                f"{people.heel_speed.mean:.3g} ± {people.heel_speed.sd:.2g} m/s (assumed)"
-            )
+                Message(
+                    "people: RCOF {mean:.3g} ± {sd:.2g}, heel contact at {speed:.3g} ± "
+                    "{spread:.2g} m/s (assumed)",
+                    mean=people.rcof.mean, sd=people.rcof.sd, speed=people.heel_speed.mean,
+                    spread=people.heel_speed.sd,
+                )
+            )  # fmt: skip
         return {
             "Outside the tested range": study.breaches,
             "Assumptions": (*lines, *study.setting.friction.assumptions),
@@ -269,20 +336,22 @@ class SlipPopulation(Presentable):
         rows = [("Correlation of peak speed and peak pressure", value, remark)]
         levels = self.study.rows()
         if np.isfinite(levels).all():
-            text = " / ".join(f"{pressure / 1e3:.3g}" for pressure in levels) + " kPa"
+            text = Message("{levels: / } kPa", levels=[f"{level / 1e3:.3g}" for level in levels])
             remark = "mean of the walkers whose heel crossed the sensors"
             rows.append(("Peak by row of sensors, first to last", text, remark))
         return rows
 
-    def _range(self, name: str, unit: str) -> str:
+    def _range(self, name: str, unit: str) -> Message:
         values = self.study.of(name)
         if name in AT_SENSORS:
             values = values[np.array([subject.seen.crossed for subject in self.study.subjects])]
         values = values[np.isfinite(values)]
         if values.size < 5:
-            return ""
+            return NOTHING
         low, high = np.percentile(values, [5, 95])
-        return f"90 % of the walkers: {_text(low, unit)} to {_text(high, unit)}"
+        return Message(
+            "90 % of the walkers: {low} to {high}", low=_text(low, unit), high=_text(high, unit)
+        )
 
 
 def slip_population(
@@ -343,10 +412,10 @@ class MeasuredRcof:
     sd_deviation: float
     within: float | None
     persons: int
-    text: str
+    text: Message
 
     @classmethod
-    def of(cls, steps: Mapping[str, Sequence[float]], who: str, more: str) -> Self:
+    def of(cls, steps: Mapping[str, Sequence[float]], who: Message, more: Message) -> Self:
         """Return that of the steps of each person or file; ``who`` names these, ``more`` adds."""
         values = [np.asarray(each, dtype=float) for each in steps.values()]
         count = sum(each.size for each in values)
@@ -356,15 +425,23 @@ class MeasuredRcof:
         one = len(values) == 1
         of = values[0] if one else np.array([each.mean() for each in values])
         mean, sd = float(of.mean()), float(of.std(ddof=1))
-        words = f"RCOF mean {mean:.3f}, SD {sd:.3f} between "
+        spread = NOTHING
         if one:
-            words += f"{count} steps of one walker: the slip probability is that walker's, nobody "
-            words += "else's"
+            between = Message(
+                "{count} steps of one walker: the slip probability is that walker's, nobody else's",
+                count=count,
+            )
         else:
-            words += f"{len(values)} {who}, {count} steps"
-            words += "" if within is None else f", SD {within:.3f} between the steps of one"
+            groups = {"number": len(values), "who": who}
+            between = Message("{number} {who}, {count} steps", **groups, count=count)
+            if within is not None:
+                spread = Message(", SD {within:.3f} between the steps of one", within=within)
+        text = Message(
+            "RCOF mean {mean:.3f}, SD {sd:.3f} between {between}{spread}{more}",
+            mean=mean, sd=sd, between=between, spread=spread, more=more,
+        )  # fmt: skip
         both = sd / math.sqrt(of.size), sd / math.sqrt(2 * (of.size - 1))
-        return cls(mean, sd, *both, within, len(values), words + more)
+        return cls(mean, sd, *both, within, len(values), text)
 
     def settings(self, *, steps: bool) -> list[str]:
         """Return what to set in a case; ``steps``: the spread between steps has a key of its own.
@@ -418,11 +495,17 @@ def measured_rcof(path: Path) -> MeasuredRcof:
             remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
         )
     cautions = sum(row.get("caution") == "yes" for row in named or rows)
-    more = f", {cautions} of them with a caution" if cautions and len(steps) > 1 else ""
+    doubted = left_out = NOTHING
+    if cautions and len(steps) > 1:
+        doubted = Message(", {count} of them with a caution", count=cautions)
     if nobody := len(rows) - len(named) if named else 0:
-        more += f"; {nobody} steps of no named person are left out"
-    who = "persons" if named else "files (no person is named: several may be one person)"
-    return MeasuredRcof.of(steps, who, more)
+        left_out = Message("; {count} steps of no named person are left out", count=nobody)
+    who = Message("files (no person is named: several may be one person)")
+    if named:
+        who = Message("persons")
+    return MeasuredRcof.of(
+        steps, who, Message("{doubted}{left_out}", doubted=doubted, left_out=left_out)
+    )
 
 
 def shown_motion(study: SlipStudy) -> SlipMotion:
@@ -444,7 +527,7 @@ def motion_table(motion: SlipMotion) -> Table:
 
 def _value_text(value: SourcedValue) -> str:
     if value.value is None:
-        return f"not determined: {value.reason}"
+        return Message("not determined: {reason}", reason=value.reason)
     if value.unit == "m/s":
         spread = "" if value.uncertainty is None else f" ± {_speed(value.uncertainty)}"
         return f"{value.value:.2f}{spread} m/s"

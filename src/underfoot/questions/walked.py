@@ -57,9 +57,14 @@ class Walked:
     distance: tuple[float, float]
     months: tuple[float, float]
 
-    def __str__(self) -> str:
+    @property
+    def text(self) -> Message:
+        """Both as people read them."""
         low, high = self.distance
-        return f"{_range((low / 1e3, high / 1e3))} km, {_range(self.months)} months"
+        distance = _range((low / 1e3, high / 1e3))
+        return Message(
+            "{distance} km, {months} months", distance=distance, months=_range(self.months)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,10 +140,12 @@ def _volume_at(depth: float, volumes: Sequence[float], lost: Sequence[float]) ->
     )
 
 
-def _range(ends: tuple[float, float]) -> str:
+def _range(ends: tuple[float, float]) -> Message:
     """Return a range with one figure at each end, once where both are the same."""
     low, high = (_one_figure(end) for end in ends)
-    return low if low == high else f"{low} to {high}"
+    if low == high:
+        return Message.plain(low)
+    return Message("{low} to {high}", low=low, high=high)
 
 
 def _one_figure(value: float) -> str:

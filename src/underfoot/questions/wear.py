@@ -15,7 +15,7 @@ from underfoot.core import InputError, Progress, display, silent, to_si, unknown
 from underfoot.core.fields import Fields, labelled
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
-from underfoot.core.remark import Amount, Message, Remark
+from underfoot.core.remark import NOTHING, Amount, Message, Remark
 from underfoot.core.units import tread_unit
 
 from .outcomes import Outcome, outcomes
@@ -86,10 +86,16 @@ class Trend:
     correlation: float | None
     agrees: bool | None
 
-    def __str__(self) -> str:
+    @property
+    def verdict(self) -> Message:
+        """Whether ours agrees, and how sure that is."""
         verdict = {None: "not testable on this series", True: "agrees", False: "disagrees"}
-        rank = "" if self.correlation is None else f" (rank correlation {self.correlation:.2f})"
-        return verdict[self.agrees] + rank
+        if self.correlation is None:
+            return Message.plain(verdict[self.agrees])
+        return Message(
+            "{verdict} (rank correlation {rank:.2f})",
+            verdict=verdict[self.agrees], rank=self.correlation,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,52 +132,74 @@ class WearSeries(Presentable):
         return any(point.outcome.usable for point in self.points)
 
     def heading(self) -> str:
-        return f"{self.name}: friction and film with wear ({self.mode})"
+        return Message(
+            "{name}: friction and film with wear ({mode})", name=self.name, mode=self.mode
+        )
 
-    def headline(self) -> tuple[str, ...]:
-        cof = self.values("cof")
-        known = np.flatnonzero(np.isfinite(cof))
+    def headline(self) -> tuple[Message, ...]:
         sentences = [self._crossing(name) for name in LOADS]
-        if known.size > 1:
-            first, last = cof[known[0]], cof[known[-1]]
-            ends = f"COF {first:.3f} new and {last:.3f} at the last state"
-            if (known[0], known[-1]) != (0, cof.size - 1):
-                ends = f"COF {first:.3f} at state {known[0]} and {last:.3f} at state {known[-1]}"
-            sentences.append(f"{ends}{self._sure()}.")
-        if self.untreaded is not None and math.isfinite(self.untreaded.number("cof")):
-            bare = self.untreaded.number("cof")
-            untreaded = f"{bare:.3f} if that sole had no tread at all."
-            if known.size > 1:
-                sentences[-1] = f"{sentences[-1][:-1]}; {untreaded}"
-            else:
-                sentences.append(f"COF {untreaded}")
-            if known.size == cof.size and bare < cof[known[0]] < cof[known[-1]]:
-                sentences[-1] = (
-                    f"COF {cof[known[0]]:.3f} new and {bare:.3f} with the tread gone; shortly "
-                    f"before that {cof[known[-1]]:.3f}{self._sure()}, no reason to wear it down."
-                )
-        walks = self.walked()
-        if walks:
+        if (cof := self._cof()) is not None:
+            sentences.append(cof)
+        if walks := self.walked():
             measured = self.walker is not None and self.walker.pair is not None
-            life = walks[-1] if measured else "life not estimated without a worn pair (--worn-pair)"
+            life = Message("life not estimated without a worn pair (--worn-pair)")
             volume = _size(float(self.measured("removed_volume")[-1]), "m^3")
-            sentences.append(f"The last state has lost {volume}: {life}.")
+            sentences.append(
+                Message(
+                    "The last state has lost {volume}: {life}.",
+                    volume=volume,
+                    life=walks[-1].text if measured else life,
+                )
+            )
         return tuple(sentences)
+
+    def _cof(self) -> Message | None:
+        """Return the COF at both ends of the series and without tread; None where none is known."""
+        cof, bare = self.values("cof"), math.nan
+        if self.untreaded is not None:
+            bare = self.untreaded.number("cof")
+        known = np.flatnonzero(np.isfinite(cof))
+        if known.size < 2:
+            if math.isnan(bare):
+                return None
+            return Message("COF {bare:.3f} if that sole had no tread at all.", bare=bare)
+        start, end = known[[0, -1]]
+        values = {"first": cof[start], "last": cof[end], "sure": self._sure()}
+        if known.size == cof.size and bare < cof[start] < cof[end]:
+            return Message(
+                "COF {first:.3f} new and {bare:.3f} with the tread gone; shortly before that "
+                "{last:.3f}{sure}, no reason to wear it down.",
+                **values, bare=bare,
+            )  # fmt: skip
+        without = NOTHING
+        if math.isfinite(bare):
+            without = Message("; {bare:.3f} if that sole had no tread at all", bare=bare)
+        if (start, end) != (0, cof.size - 1):
+            return Message(
+                "COF {first:.3f} at state {start} and {last:.3f} at state {end}{sure}{without}.",
+                **values, start=start, end=end, without=without,
+            )  # fmt: skip
+        return Message(
+            "COF {first:.3f} new and {last:.3f} at the last state{sure}{without}.",
+            **values, without=without,
+        )  # fmt: skip
 
     def curve(self, name: str) -> np.ndarray:
         """Return a number of every state that is drawn: those of ``values``, then without tread."""
         bare = [] if self.untreaded is None else [self.untreaded.number(name)]
         return np.append(self.values(name), bare)
 
-    def _sure(self) -> str:
-        """Return the probability that COF changes as computed; empty where it is not known."""
+    def _sure(self) -> Message:
+        """Return the probability that COF changes as computed; nothing where it is not known."""
         outcomes = [point.outcome for point in self.points if point.outcome.usable]
         new, worn = (outcomes[k].maps.get(DRAWS) for k in (0, -1))
         if new is None or worn is None:
-            return ""
-        falls = outcomes[-1].number("cof") < outcomes[0].number("cof")
-        chance = float(np.mean(worn < new if falls else worn > new))
-        return f" ({'lower' if falls else 'higher'} with a probability of {percent(chance)})"
+            return NOTHING
+        if outcomes[-1].number("cof") < outcomes[0].number("cof"):
+            chance = percent(float(np.mean(worn < new)))
+            return Message(" (lower with a probability of {chance})", chance=chance)
+        chance = percent(float(np.mean(worn > new)))
+        return Message(" (higher with a probability of {chance})", chance=chance)
 
     def walked(self) -> list[Walked]:
         """Return how far one walks to each state; empty without a walker."""
@@ -182,21 +210,25 @@ class WearSeries(Presentable):
         )
         return [self.walker.walked(volume, volumes, lost) for volume in volumes]
 
-    def cautions(self) -> tuple[str, ...]:
-        reasons = []
+    def cautions(self) -> tuple[Message, ...]:
+        reasons: list[Message] = []
         cof = self.values("cof")
         rises = cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof)
         if np.isfinite(cof[-1]) and rises and self.untreaded is None:
             reasons.append(
-                "The COF still rises at the last state: its fall lies beyond the range (--to)."
+                Message(
+                    "The COF still rises at the last state: its fall lies beyond the range (--to)."
+                )
             )
-        failed = [str(k) for k, p in enumerate(self.points) if not p.outcome.usable]
+        failed = [k for k, point in enumerate(self.points) if not point.outcome.usable]
         if failed:
-            reasons.append(f"No result for state {', '.join(failed)} (0 is new).")
+            reasons.append(Message("No result for state {failed} (0 is new).", failed=failed))
         if self.walker is not None and self.walker.pair is not None:
-            reasons.append("Distance walked: from the measured pair, for its wearer and floors.")
+            reasons.append(
+                Message("Distance walked: from the measured pair, for its wearer and floors.")
+            )
         if self.quick:
-            reasons.append("Coarse grid (--full for the fine one).")
+            reasons.append(Message("Coarse grid (--full for the fine one)."))
         return tuple(reasons)
 
     def table(self) -> Table:
@@ -216,18 +248,20 @@ class WearSeries(Presentable):
             shown = [v / tread_unit(unit)[0] for v, unit in zip(values, units, strict=True)]
             rows.append(["not determined" if math.isnan(v) else _short(v) for v in shown])
         heads = tuple(
-            label if unit == "1" else f"{label} ({_unit_name(unit)})"
+            label
+            if unit == "1"
+            else Message("{label} ({unit})", label=label, unit=_unit_name(unit))
             for _, unit, label in (*measures, *numbers)
         )
         walks = self.walked()
         if walks and self.walker and self.walker.pair:
-            walks = [*walks, *[""] * (len(rows) - len(walks))]
+            distances = [*(walk.text for walk in walks), *[""] * (len(rows) - len(walks))]
             heads = (*heads, "Walked")
-            rows = [[*row, str(walk)] for row, walk in zip(rows, walks, strict=True)]
+            rows = [[*row, walked] for row, walked in zip(rows, distances, strict=True)]
         return Table("States of wear, new to worn", heads, rows)
 
     def tables(self) -> tuple[Table, ...]:
-        rows = [(trend.finding, str(trend), trend.source) for trend in trends(self)]
+        rows = [(trend.finding, trend.verdict, trend.source) for trend in trends(self)]
         beside = Table("Published trends", ("Finding", "This series", "Source"), rows)
         return self.table(), beside
 
@@ -336,26 +370,35 @@ class WearSeries(Presentable):
             },
         )
 
-    def _crossing(self, name: str) -> str:
-        crossing = self.crossings[name]
-        subject = f"The fluid load {LOADS[name]}"
-        share = ""
+    def _crossing(self, name: str) -> Message:
+        crossing, part = self.crossings[name], LOADS[name]
+        share = NOTHING
         if self.points[0].variants and math.isfinite(crossing.share):
-            share = f" ({percent(crossing.share)} of the draws exceed it within the range)"
+            share = Message(
+                " ({share} of the draws exceed it within the range)", share=percent(crossing.share)
+            )
         if crossing.crossing is Crossing.UNKNOWN:
-            return f"{subject} was not determined."
+            return Message("The fluid load {part} was not determined.", part=part)
+        values = {"part": part, "limit": self.limit}
         if crossing.crossing is Crossing.FROM_NEW:
-            return f"{subject} exceeds {self.limit:g} N already when new."
+            return Message("The fluid load {part} exceeds {limit:g} N already when new.", **values)
         if crossing.crossing is Crossing.NEVER:
-            return f"{subject} stays below {self.limit:g} N within the range{share}."
+            return Message(
+                "The fluid load {part} stays below {limit:g} N within the range{share}.",
+                **values, share=share,
+            )  # fmt: skip
         tread, patch = (
             [each[measure] for each in (crossing.at, crossing.low, crossing.high)]
             for measure in ("tread_left", "worn_patch_area")
         )
-        left = f"{_interval(tread, 'm')} of tread left at the most worn place"
-        worn = any(each > 0 for each in patch)
-        area = f" and a worn patch of {_interval(patch, 'm^2')}" if worn else ""
-        return f"{subject} exceeds {self.limit:g} N with {left}{area}{share}."
+        area = NOTHING
+        if any(each > 0 for each in patch):
+            area = Message(" and a worn patch of {patch}", patch=_interval(patch, "m^2"))
+        return Message(
+            "The fluid load {part} exceeds {limit:g} N with {tread} of tread left at the most worn "
+            "place{area}{share}.",
+            **values, tread=_interval(tread, "m"), area=area, share=share,
+        )  # fmt: skip
 
 
 def wear_series(
@@ -657,10 +700,8 @@ def _assumptions(case: Case, mode: str, inputs: list[OpenInput]) -> tuple[Messag
             "worn dry at {low:.0f}, {angle:.0f} and {high:.0f} deg with equal sliding, depth "
             "proportional to pressure times sliding (Archard); the wear rate sets the sliding "
             "distance only",
-            low=low,
-            angle=math.degrees(wear.angle),
-            high=high,
-        )
+            low=low, angle=math.degrees(wear.angle), high=high,
+        )  # fmt: skip
     elif mode == "walk":
         shape = Message(
             "cut by the floor at every angle from heel contact to flat, in proportion to the load "
@@ -753,8 +794,8 @@ def _size(value: float, unit: str) -> str:
     return f"{_short(value / tread_unit(unit)[0])} {_unit_name(unit)}"
 
 
-def _interval(values: Sequence[float], unit: str) -> str:
+def _interval(values: Sequence[float], unit: str) -> Message:
     value, *ends = values
     factor, _ = tread_unit(unit)
     low, high = ("beyond the range" if math.isinf(e) else _short(e / factor) for e in ends)
-    return f"{_size(value, unit)} (90 %: {low} to {high})"
+    return Message("{size} (90 %: {low} to {high})", size=_size(value, unit), low=low, high=high)

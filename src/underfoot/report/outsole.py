@@ -17,7 +17,8 @@ from underfoot.case import text as toml
 from underfoot.core.files import checksum
 from underfoot.core.html import embedded, new_figure
 from underfoot.core.page import Picture, Section, remark_sections, table_sections
-from underfoot.core.presentation import Presentable, Table
+from underfoot.core.presentation import Part, Presentable, Table
+from underfoot.core.remark import Message
 from underfoot.core.units import tread_unit, unit_system
 from underfoot.shoe import SoleSurface
 from underfoot.shoe.files import FileOutsole, FileSettings
@@ -66,14 +67,18 @@ class OutsoleInspection(Presentable):
         return f"<OutsoleInspection of {self.file.name!r:.100}: {self.outsole.faces} faces>"
 
     def heading(self) -> str:
-        return f"{self.file.name}: {self.outsole.format}, {self.outsole.faces} faces"
+        read = {"format": self.outsole.format, "faces": self.outsole.faces}
+        return Message("{file}: {format}, {faces} faces", file=self.file.name, **read)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         m = self.measures
         return (
-            f"{_lengths(m.length, m.width, digits=4)}, land {m.land_ratio:.0%} of "
-            f"{_area(m.plan_area, PLAN)}, {m.lug_count} lugs.",
-        )
+            Message(
+                "{size}, land {land:.0%} of {area}, {count} lugs.",
+                size=_lengths(m.length, m.width, digits=4), land=m.land_ratio,
+                area=_area(m.plan_area, PLAN), count=m.lug_count,
+            ),
+        )  # fmt: skip
 
     def table(self) -> Table:
         def spread(values: tuple[float, float, float] | None, unit: str) -> str:
@@ -81,24 +86,30 @@ class OutsoleInspection(Presentable):
                 return "none"
             factor, name = tread_unit(unit)
             low, middle, high = (f"{value / factor:.3g}" for value in values)
-            return f"{middle} {name.replace('^2', '²')}  (10 to 90 %: {low} to {high})"
+            return Message(
+                "{middle} {unit}  (10 to 90 %: {low} to {high})",
+                middle=middle, unit=name.replace("^2", "²"), low=low, high=high,
+            )  # fmt: skip
 
         m = self.measures
         drained, draft = m.drained_share, self.outsole.draft
         rows = [
             ("Length x width", _lengths(m.length, m.width, digits=4)),
             ("Plan area", _area(m.plan_area, PLAN)),
-            ("Land", f"{m.land_ratio:.0%} of the plan area"),
+            ("Land", Message("{land:.0%} of the plan area", land=m.land_ratio)),
             ("Channel depth, median", spread(m.channel_depth, "m")),
             ("Channel width, median", spread(m.channel_width, "m")),
             ("Draft of the walls", "none" if draft is None else f"{np.degrees(draft):.1f}°"),
-            ("Channels open to the rim", "none" if drained is None else f"{drained:.0%} of area"),
+            (
+                "Channels open to the rim",
+                "none" if drained is None else Message("{share:.0%} of area", share=drained),
+            ),
             ("Sipes", _sipes(m)),
             ("Lugs", f"{m.lug_count}"),
             ("Lug area, median", spread(m.lug_area, "m^2")),
             ("Largest untreaded patch", _area(m.patch_area, tread_unit("m^2"))),
-            ("  length x width", _lengths(m.patch_length, m.patch_width)),
-            ("  largest circle in it", _lengths(m.patch_circle)),
+            (Part("length x width"), _lengths(m.patch_length, m.patch_width)),
+            (Part("largest circle in it"), _lengths(m.patch_circle)),
             ("Largest circle without channel", _lengths(m.free_circle)),
         ]
         thickness = self.outsole.thickness
@@ -154,8 +165,10 @@ def _sipes(measures: TreadMeasures) -> str:
     """Return how many sipes there are and what a run makes of them."""
     if measures.sipe_count == 0:
         return "none"
-    length = _lengths(measures.sipe_length)
-    return f"{measures.sipe_count}, {length} in all; computed as slits where finer than two cells"
+    return Message(
+        "{count}, {length} in all; computed as slits where finer than two cells",
+        count=measures.sipe_count, length=_lengths(measures.sipe_length),
+    )  # fmt: skip
 
 
 def _lengths(*values: float, digits: int = 3) -> str:

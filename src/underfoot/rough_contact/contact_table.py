@@ -19,6 +19,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.device import card, on_card
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Amount, Message
 from underfoot.surface import HeightMap
 
 from ._kernels.monotone import interpolated_grid
@@ -183,16 +184,19 @@ class ContactTable(Presentable):
         """Return what is in contact."""
         return f"Contact table: {self.description or 'rough contact'}"
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the contact at the middle pressure and speed."""
         p, v = (float(nodes[nodes.size // 2]) for nodes in (self.pressure, self.speed))
-        gap = core.display(float(self.mean_gap(p, v)), "m")
         return (
-            f"At {core.display(p, 'Pa')} and {core.display(v, 'm/s')}: real contact "
-            f"{100 * float(self.real_contact_fraction(p, v)):.3g} %, hysteresis COF "
-            f"{float(self.cof_hysteresis(p, v)):.2g}, mean gap {gap}, flow factor "
-            f"{float(self.flow_factor(p, v)):.2g}.",
-        )
+            Message(
+                "At {pressure} and {speed}: real contact {contact:.3g} %, hysteresis COF "
+                "{hysteresis:.2g}, mean gap {gap}, flow factor {flow:.2g}.",
+                pressure=Amount(p, "Pa"), speed=Amount(v, "m/s"),
+                contact=100 * float(self.real_contact_fraction(p, v)),
+                hysteresis=float(self.cof_hysteresis(p, v)),
+                gap=Amount(float(self.mean_gap(p, v)), "m"), flow=float(self.flow_factor(p, v)),
+            ),
+        )  # fmt: skip
 
     def tables(self) -> tuple[Table, ...]:
         """Return the nodes without their spread, units for people."""

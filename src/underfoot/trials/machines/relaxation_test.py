@@ -74,7 +74,11 @@ def relaxation_reading(
     if len(f) != len(d) or len(f) < 20:
         raise DataError("force and displacement must have the same 20 samples or more", where=where)
     finite = np.isfinite(f) & np.isfinite(d)
-    notes = [] if finite.all() else [f"{int((~finite).sum())} samples without a number left out"]
+    notes = (
+        []
+        if finite.all()
+        else [Message("{count} samples without a number left out", count=int((~finite).sum()))]
+    )
     f, d, t = f[finite], d[finite], t[finite]
     if len(f) < 20:
         raise DataError("fewer than 20 samples with numbers", where=where)
@@ -89,7 +93,7 @@ def relaxation_reading(
         raise DataError("the force does not rise above its start", where=where)
     f = f - zero
     if abs(zero) > 0.002 * f[peak_guess]:
-        notes.append(f"force of {zero:.3g} N before contact subtracted")
+        notes.append(Message("force of {zero:.3g} N before contact subtracted", zero=zero))
     peak = int(np.argmax(f))
     touching = np.flatnonzero(f[: peak + 1] < 0.01 * f[peak])
     begin = int(touching[-1]) if len(touching) else 0
@@ -110,7 +114,9 @@ def relaxation_reading(
     hold = arrived if d[arrived] >= 0.995 * level else peak
     end = peak + (int(away[0]) if len(away) else len(d) - peak)
     if end < len(d):
-        notes.append(f"unloading cut off {t[end] - t[peak]:.3g} s after the peak")
+        notes.append(
+            Message("unloading cut off {early:.3g} s after the peak", early=t[end] - t[peak])
+        )
     if end - peak < 10:
         raise DataError(f"only {end - peak} samples of hold", where=where, allowed="ten or more")
     ramp_d, ramp_f = np.maximum.accumulate(d[begin : peak + 1]), f[begin : peak + 1]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
+from underfoot.core.remark import Message
 
 
 def linear_part(
@@ -201,18 +202,37 @@ def stribeck_fit(
     if tau > 0.99 * high or tau < 1.01 * low:
         warnings.append("tau lies on the edge of its search range: the data don't bend")
     if verdict == "mean":
-        warnings.append(f"R^2 {r_squared:.2f} is below {MODERATE}: COF_BL is the mean COF")
+        warnings.append(
+            Message(
+                "R^2 {r_squared:.2f} is below {moderate}: COF_BL is the mean COF",
+                r_squared=r_squared,
+                moderate=MODERATE,
+            )
+        )
         mean = float(y.mean())
         error = float(y.std(ddof=1) / np.sqrt(len(y)))
         parameters = (
             FitParameter("cof_bl", mean, "1", error, remark="mean COF"),
-            FitParameter("tau_hydro", None, "m/s", remark=f"R^2 below {MODERATE}"),
-            FitParameter("cof_asymptote", None, "1", remark=f"R^2 below {MODERATE}"),
+            FitParameter(
+                "tau_hydro", None, "m/s", remark=Message("R^2 below {moderate}", moderate=MODERATE)
+            ),
+            FitParameter(
+                "cof_asymptote",
+                None,
+                "1",
+                remark=Message("R^2 below {moderate}", moderate=MODERATE),
+            ),
         )
     else:
         parameters = _parameters(v, y, (asymptote, start, tau, rss), boundary, confidence)
         if tau > v.max():
-            warnings.append(f"tau {tau:.3g} m/s exceeds the largest speed {v.max():.3g} m/s")
+            warnings.append(
+                Message(
+                    "tau {tau:.3g} m/s exceeds the largest speed {fastest:.3g} m/s",
+                    tau=tau,
+                    fastest=v.max(),
+                )
+            )
     raw = start, tau, asymptote
     quality = r_squared, rss, len(y), method, verdict
     return StribeckFit(*parameters, *quality, v, y, raw, tuple(warnings))

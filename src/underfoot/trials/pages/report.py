@@ -23,7 +23,7 @@ from underfoot.core.html import embedded, environment, png
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
-from underfoot.core.remark import joined
+from underfoot.core.remark import NOTHING, Message, joined
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
@@ -33,7 +33,7 @@ from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figur
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..study import FolderAnalysis, Table
+    from ..study import FileResult, FolderAnalysis, Table
     from ..study.tables import Column
 
 STORE = ".files"
@@ -178,32 +178,26 @@ def study_parts(analysis: FolderAnalysis) -> dict[str, Any]:
     }
 
 
-def lead_sentence(analysis: FolderAnalysis) -> str:
-    """Return one sentence with what a reader came for: mean, spread, interval and how many."""
+def lead_sentence(analysis: FolderAnalysis) -> Message:
+    """Return what a reader came for: mean, spread, interval and how many."""
     usable = [file for file in analysis.files if file.usable]
     kind = analysis.protocol.kind
     if not usable:
-        return "No file gave usable numbers: see the reasons below."
-    cautions = sum(result.verdict == "caution" for result in usable)
-    of = f"{cautions} of {_counted(len(usable), 'usable files')}"
-    carry = "carries a caution" if cautions == 1 else "carry a caution"
-    tail = f" {of} {carry}." if cautions else ""
+        return Message("No file gave usable numbers: see the reasons below.")
+    cautions, count = sum(result.verdict == "caution" for result in usable), len(usable)
+    tail = NOTHING
+    if cautions:
+        tail = Message(
+            " {cautions} of {count} usable {count:file|files} {cautions:carries|carry} a caution.",
+            cautions=cautions, count=count,
+        )  # fmt: skip
     tables = {table.name: table for table in analysis.study.tables}
     if kind == "human_slip":
-        judged = [result for result in usable if "slip" in result.main]
-        slips = int(sum(result.main["slip"] for result in judged))
-        text = f"{_counted(slips, 'slips')} in {_counted(len(judged), 'trials')}"
-        if judged:
-            text += f" ({100 * slips / len(judged):.0f} %)"
-        near = sum(abs(result.main.get("slip_margin", 1.0)) < 0.05 for result in judged)
-        if near:
-            text += f", {near} of them within 0.05 m/s of the limit"
-        rcof = [result.main["rcof"] for result in usable if "rcof" in result.main]
-        if rcof:
-            text += f"; required friction {min(rcof):.2f} to {max(rcof):.2f}"
-        return text + "." + tail
+        return Message("{slips}.{tail}", slips=_slips(usable), tail=tail)
     loads = [m["load"] for m in analysis.study.curves.get("maps", [])]
-    carried = f" The fluid carries {min(loads):.3g} to {max(loads):.3g} N." if loads else ""
+    if loads:
+        carried = {"low": min(loads), "high": max(loads), "tail": tail}
+        tail = Message(" The fluid carries {low:.3g} to {high:.3g} N.{tail}", **carried)
     table = tables.get("conditions")
     # Floors and shoes on a tester are no sample of one population: no mean over all of them.
     if table is not None and (kind == "gait" or len(table.rows) == 1):
@@ -217,29 +211,57 @@ def lead_sentence(analysis: FolderAnalysis) -> str:
         )
         places = _places(mean)
         label = {"rcof": "Required friction (RCOF)"}.get(mean.quantity, mean.name)
-        average, spread, low, high = (
-            cells.get((mean.quantity, role)) for role in (Role.MEAN, Role.SD, Role.LOW, Role.HIGH)
-        )
-        text = f"{label} {average:.{places}f}"
-        if isinstance(low, float) and isinstance(high, float):
-            text += f", SD {spread:.{places}f}, 95 % {low:.{places}f} to {high:.{places}f}"
-        counted = ", ".join(
+        roles = {"average": Role.MEAN, "spread": Role.SD, "low": Role.LOW, "high": Role.HIGH}
+        ends = {name: cells.get((mean.quantity, role)) for name, role in roles.items()}
+        shown = {name: f"{x:.{places}f}" for name, x in ends.items() if isinstance(x, float)}
+        average, more = shown.pop("average"), NOTHING
+        if "low" in shown and "high" in shown:
+            more = Message(", SD {spread}, 95 % {low} to {high}", **shown)
+        counted = [
             _counted(cell, head.name) for head, cell in row if head.role is Role.COUNT and cell
-        )
-        return f"{text} ({counted}).{carried}{tail}"
+        ]
+        return Message(
+            "{label} {average}{more} ({counted}).{tail}",
+            label=label, average=average, more=more, counted=counted, tail=tail,
+        )  # fmt: skip
     samples = tables.get("samples")
     if samples is not None:
-        return f"{_counted(len(samples.rows), 'samples')}.{tail}"
+        counted = _counted(len(samples.rows), "samples")
+        return Message("{counted}.{tail}", counted=counted, tail=tail)
     cof = [result.main["cof"] for result in usable if "cof" in result.main]
     if cof:
-        text = f"COF {min(cof):.3f} to {max(cof):.3f} in {_counted(len(cof), 'usable runs')}."
-        return text + carried + tail
-    return f"{_counted(len(usable), 'usable tests')}.{tail}"
+        return Message(
+            "COF {low:.3f} to {high:.3f} in {count} usable {count:run|runs}.{tail}",
+            low=min(cof), high=max(cof), count=len(cof), tail=tail,
+        )  # fmt: skip
+    return Message("{count} usable {count:test|tests}.{tail}", count=count, tail=tail)
 
 
-def _counted(number: object, things: str) -> str:
+def _slips(usable: Sequence[FileResult]) -> Message:
+    """Return how many of the trials were slips, how near the limit, at which required friction."""
+    judged = [result for result in usable if "slip" in result.main]
+    share = close = friction = NOTHING
+    slips = int(sum(result.main["slip"] for result in judged))
+    if judged:
+        share = Message(" ({share:.0f} %)", share=100 * slips / len(judged))
+    near = sum(abs(result.main.get("slip_margin", 1.0)) < 0.05 for result in judged)
+    if near:
+        close = Message(", {near} of them within 0.05 m/s of the limit", near=near)
+    rcof = [result.main["rcof"] for result in usable if "rcof" in result.main]
+    if rcof:
+        ends = {"low": min(rcof), "high": max(rcof)}
+        friction = Message("; required friction {low:.2f} to {high:.2f}", **ends)
+    return Message(
+        "{slips} {slips:slip|slips} in {count} {count:trial|trials}{share}{close}{friction}",
+        slips=slips, count=len(judged), share=share, close=close, friction=friction,
+    )  # fmt: skip
+
+
+def _counted(number: object, things: str) -> Message:
     """Return a number with what it counts: 1 file, 2 files."""
-    return f"{number} {things if number != 1 else things[:-1]}"
+    return Message(
+        "{number} {things}", number=number, things=things if number != 1 else things[:-1]
+    )
 
 
 def _places(head: Column) -> int:
@@ -294,7 +316,9 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     filled = [i for i in table.filled() if i not in below]
     notes = list(table.notes)
     if len(table.rows) > limit:
-        notes.append(f"{len(table.rows) - limit} more rows are in the spreadsheet.")
+        notes.append(
+            Message("{count} more rows are in the spreadsheet.", count=len(table.rows) - limit)
+        )
     return {
         "title": table.title,
         "columns": [table.columns[i] for i in filled],

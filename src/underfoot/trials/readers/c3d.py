@@ -243,8 +243,14 @@ def _frames(
     }
     if not told:
         return frames, []
-    listed = ", ".join(f"{place} {count}" for place, count in told.items())
-    return frames, [f"frames are counted in two ways ({listed}): the data hold {frames}, all read"]
+    listed = [Message("{place} {count}", place=place, count=n) for place, n in told.items()]
+    return frames, [
+        Message(
+            "frames are counted in two ways ({listed}): the data hold {frames}, all read",
+            listed=listed,
+            frames=frames,
+        )
+    ]
 
 
 def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tuple[float, float]:
@@ -331,7 +337,12 @@ def _parameters(
     for group, name, error in damaged:
         if names.get(group) in _NEEDED and not name.startswith("DESCRIPTION"):
             raise error
-        notes.append(f"{names.get(group, 'a group')}:{name} is left out, {error.what}")
+        notes.append(
+            Message(
+                "{group}:{name} is left out, {error}",
+                group=names.get(group, "a group"), name=name, error=error.what,
+            )
+        )  # fmt: skip
     return found, notes
 
 
@@ -414,11 +425,18 @@ def read_c3d(draft: Draft) -> Trial:
         if name not in draft.markers:
             draft.marker(name, raw.rotations[:, i, :3, 3] * scale)
     if raw.rotations.shape[1]:
-        draft.notes.append(f"origins of {raw.rotations.shape[1]} segments stand as markers")
+        draft.notes.append(
+            Message("origins of {count} segments stand as markers", count=raw.rotations.shape[1])
+        )
     draft.notes += raw.notes
     left_out = sum(label in computed for label in labels)
     if left_out:
-        draft.notes.append(f"{left_out} points are computed angles, forces or powers: left out")
+        draft.notes.append(
+            Message(
+                "{count} points are computed angles, forces or powers: left out",
+                count=left_out,
+            )
+        )
     draft.events, draft.settings = _events(raw), _settings(raw)
     screen = (raw.texts("POINT", "Y_SCREEN") or [""])[0]
     if re.fullmatch("[+-][XYZxyz]", screen):
@@ -456,7 +474,11 @@ def _unused_plates(raw: C3DFile) -> list[str]:
         int(kind in plates.CHANNELS and bool(corners[12 * i : 12 * i + 12].any()))
         for i, kind in enumerate(kinds)
     )
-    said = f"FORCE_PLATFORM:USED is {used}: {left} more that are described are left out"
+    said = Message(
+        "FORCE_PLATFORM:USED is {used}: {left} more that are described are left out",
+        used=used,
+        left=left,
+    )
     return [said] if left else []
 
 

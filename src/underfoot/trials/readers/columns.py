@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+from underfoot.core.remark import Message
 
 from ..recording.plates import refused_plate
 from ..recording.trial import Trial
@@ -132,18 +133,20 @@ def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
     left = [name for name in sheet.texts if not _is_time(sheet, name)]
     if left:
         names = ", ".join(left[:6])
-        draft.notes.append(f"columns that hold text are left out: {names}")
+        draft.notes.append(Message("columns that hold text are left out: {names}", names=names))
     _clock(draft, sheet)
     for name, (column, unit, scale) in profile.channels.items():
         written, values = unit or sheet.units.get(column, ""), _column(sheet, column)
-        draft.channel(name, values, written, scale=scale, note=f'column "{column}"')
+        draft.channel(
+            name, values, written, scale=scale, note=Message('column "{column}"', column=column)
+        )
     for name, values in sheet.numbers.items():
         if name in draft.channels:
             continue
         written = sheet.units.get(name, "")
         force = force_unit(written) if _folded(name) in _NORMAL | _SHEAR else None
         if force and not si_unit(written):  # a mass, which stands for its weight
-            note = f'in "{written}" in the file'
+            note = Message('in "{written}" in the file', written=written)
             draft.channel(name, values, unit="N", scale=force[1], note=note)
         else:
             draft.channel(name, values, written)
@@ -197,7 +200,7 @@ def _clock(draft: Draft, sheet: Sheet) -> None:
                 remedy='Say rate = "1000 Hz" or time = "..." under [file] in a profile. A table of '
                 "readings, a number a run, needs a protocol of readings: --protocol machine_cof",
             )
-        draft.notes.append(f"sampling rate {draft.rate:g} Hz from the header")
+        draft.notes.append(Message("sampling rate {rate:g} Hz from the header", rate=draft.rate))
         return
     values = _column(sheet, name)
     written = profile.time_unit or sheet.units.get(name, "") or name * (name in _CLOCK_UNITS)
@@ -280,15 +283,19 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
             continue
         unit = units.pop()
         if not unit:
-            draft.notes.append(f"{names}: taken as N")
+            draft.notes.append(Message("{names}: taken as N", names=names))
         label = f"plate {len(plates) + 1}"
         place, length = _pressure_columns(draft, sheet, kinds.get("c", {}), label)
         plates[label] = PlateColumns(
             (x, y, z), unit=unit or "N", centre_of_pressure=place, length_unit=length
         )
         draft.notes.append(
-            f"{label} recognised from {names}, "
-            "taken as the force on the foot: a profile can say otherwise"
+            Message(
+                "{label} recognised from {names}, taken as the force on the foot: a "
+                "profile can say otherwise",
+                label=label,
+                names=names,
+            )
         )
     return plates
 
@@ -303,13 +310,21 @@ def _pressure_columns(
     units = {sheet.units.get(name, "") for name in columns.values()}
     unit = units.pop()
     if units or (unit and (si_unit(unit) or ("",))[0] != "m"):
-        draft.notes.append(f"{label}: the centre of pressure has no one unit of length: left out")
+        draft.notes.append(
+            Message(
+                "{label}: the centre of pressure has no one unit of length: left out", label=label
+            )
+        )
         return None, "m"
     if not unit:
         values = np.abs(np.concatenate([sheet.numbers[name] for name in columns.values()]))
         far = np.isfinite(values).any() and float(np.nanpercentile(values, 90)) > _FAR
         unit = "mm" if far else "m"
-        draft.notes.append(f"{label}: centre of pressure taken as {unit} from its size")
+        draft.notes.append(
+            Message(
+                "{label}: centre of pressure taken as {unit} from its size", label=label, unit=unit
+            )
+        )
     return (x, y, z), unit
 
 

@@ -4,6 +4,8 @@ import re
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.trial import Trial, Vertical
 from .draft import Draft
 from .text import split
@@ -34,7 +36,9 @@ def read_dflow(draft: Draft) -> Trial:
             raise draft.error("the frame numbers do not increase")
         if len(frames) <= frames[-1]:
             count = int(frames[-1]) + 1 - len(frames)
-            draft.notes.append(f"{count} frames are not in the file: they have no numbers")
+            draft.notes.append(
+                Message("{count} frames are not in the file: they have no numbers", count=count)
+            )
             whole = np.full((int(frames[-1]) + 1, numbers.shape[1]), np.nan)
             whole[frames.astype(int)] = numbers
             numbers = whole
@@ -61,5 +65,5 @@ def read_dflow(draft: Draft) -> Trial:
             draft.plate(values, name, centre_of_pressure=place, kind="D-Flow")
     left = sorted({name for (name, kind), t in places.items() if len(t) < 3})
     if left:
-        draft.notes.append(f"without three components, left out: {', '.join(left)}")
+        draft.notes.append(Message("without three components, left out: {left}", left=left))
     return draft.trial("D-Flow text")

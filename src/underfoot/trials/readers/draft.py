@@ -8,6 +8,7 @@ import numpy as np
 
 from underfoot.core import DataError, nearest_match
 from underfoot.core.missing import coded
+from underfoot.core.remark import NOTHING, Message, joined
 from underfoot.core.text import decoded
 
 from ..recording.axes import found_vertical
@@ -106,7 +107,10 @@ class Draft:
             times, count = without_restarts(times)
             if count:
                 self.notes.append(
-                    f"the clock begins anew {count} times: the parts follow each other"
+                    Message(
+                        "the clock begins anew {count} times: the parts follow each other",
+                        count=count,
+                    )
                 )
         self.rate, self.start, self.times = rate_of(times, self.name)
 
@@ -118,12 +122,19 @@ class Draft:
         """
         if not written.isdigit() or int(written) == counted:
             return
-        said = f"{key} is {written}" if key else f"{written} samples are announced"
+        told = Message("{written} samples are announced", written=written)
+        if key:
+            told = Message("{key} is {written}", key=key, written=written)
         less = counted < int(written)
         if less and not rows:
-            raise truncated(f"truncated or damaged: {said}, the file holds {counted}", self.name)
-        more = ": was the file cut short?" if less else ""
-        self.notes.append(f"{said}, the file holds {counted}: all of them are read{more}")
+            raise truncated(f"truncated or damaged: {told}, the file holds {counted}", self.name)
+        more = Message(": was the file cut short?") if less else NOTHING
+        self.notes.append(
+            Message(
+                "{told}, the file holds {counted}: all of them are read{more}",
+                told=told, counted=counted, more=more,
+            )
+        )  # fmt: skip
 
     def channel(
         self,
@@ -139,14 +150,20 @@ class Draft:
         si, factor, offset = in_si(written) if written else (unit, 1.0, 0.0)
         if note is None:
             note = "" if unit else "no unit in the file"
-            note = f'in "{written}" in the file' if written else note
+            note = Message('in "{written}" in the file', written=written) if written else note
         if (scale * factor, offset) != (1.0, 0.0):
             # What was read of a long file is not held twice.
             values = np.multiply(values, scale * factor, out=values if self.file else None)
             values += offset
         if si == "N" and (lost := coded(values, least=1.0)).any():
             values = np.where(lost, np.nan, values)
-            self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
+            self.notes.append(
+                Message(
+                    "{name}: {count} samples that hold a code are left out",
+                    name=name,
+                    count=int(lost.sum()),
+                )
+            )
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:
@@ -165,8 +182,12 @@ class Draft:
         if coded.any():
             force = np.where(coded[:, None], np.nan, force)
             self.notes.append(
-                f"{more['name']}: {int(coded.sum())} samples hold a number that stands for a lost "
-                "one: taken as not measured"
+                Message(
+                    "{name}: {count} samples hold a number that stands for a lost one: "
+                    "taken as not measured",
+                    name=more["name"],
+                    count=int(coded.sum()),
+                )
             )
         self.plates.append(_RawPlate(force, more))
 
@@ -238,32 +259,45 @@ class Draft:
             rate = first.rate / clock.rows_a_frame
             start = first.start + clock.first / first.rate
             self.notes.append(
-                f"markers are held for {clock.rows_a_frame:.3g} rows: cameras at {rate:.4g} Hz"
+                Message(
+                    "markers are held for {rows:.3g} rows: cameras at {rate:.4g} Hz",
+                    rows=clock.rows_a_frame,
+                    rate=rate,
+                )
             )
             markers = {
                 name: Marker(clock.seen(one.positions), rate, start)
                 for name, one in markers.items()
             }
-        seen: dict[str, list[str]] = {}
+        seen: dict[str, list[Message]] = {}
         for name, marker in markers.items():
             lost = unseen(marker.positions, every_repeat=self.every_repeat)
             if not lost:
                 continue
             mask = np.any(list(lost.values()), axis=0)
-            words = []
+            gaps: list[Message] = []
             for kind, where in lost.items():
                 frames = np.flatnonzero(where)
-                times = marker.time[frames[[0, -1]]]
-                words.append(f"{len(frames)} frames ({times[0]:.2f} to {times[1]:.2f} s)")
-                seen.setdefault(kind, []).append(f"{name} {words[-1]}")
-            note = "; ".join(f"{w} {KINDS[k]}" for w, k in zip(words, lost, strict=True))
+                start, end = marker.time[frames[[0, -1]]].tolist()
+                gap = Message(
+                    "{count} frames ({start:.2f} to {end:.2f} s)",
+                    count=len(frames), start=start, end=end,
+                )  # fmt: skip
+                gaps.append(Message("{gap} {kind}", gap=gap, kind=KINDS[kind]))
+                seen.setdefault(kind, []).append(Message("{name} {gap}", name=name, gap=gap))
+            note = joined(gaps)
             positions = np.where(mask[:, None], np.nan, marker.positions)
             markers[name] = replace(marker, positions=positions, note=note)
         for kind, names in seen.items():
-            more = f" and {len(names) - 6} more markers" if len(names) > 6 else ""
+            more = NOTHING
+            if len(names) > 6:
+                more = Message(" and {count} more markers", count=len(names) - 6)
             self.notes.append(
-                f"taken as not seen, they {KINDS[kind]}: {', '.join(names[:6])}{more}"
-            )
+                Message(
+                    "taken as not seen, they {kind}: {markers}{more}",
+                    kind=KINDS[kind], markers=names[:6], more=more,
+                )
+            )  # fmt: skip
         return markers
 
     def _check_lengths(self) -> None:

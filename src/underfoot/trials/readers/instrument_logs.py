@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .draft import Draft
@@ -102,7 +103,7 @@ def read_pcs(draft: Draft) -> tuple[Trial, ...]:
     if not trials:
         raise draft.error("no step holds a table")
     if without:
-        note = f"steps without a table: {', '.join(without)}"
+        note = Message("steps without a table: {without}", without=without)
         trials = [trial.with_notes(note) for trial in trials]
     return tuple(trials)
 
@@ -115,7 +116,10 @@ def _pcs_step(lines: list[str], at: int, stop: int, step: Draft) -> Trial:
     filled = sum(line.count("\t") > 8 and bool(line.strip()) for line in lines[at + 1 : stop])
     if filled > len(rows):
         step.notes.append(
-            f"{filled - len(rows)} rows do not begin with a number (as #REF!) and are left out"
+            Message(
+                "{count} rows do not begin with a number (as #REF!) and are left out",
+                count=filled - len(rows),
+            )
         )
     seen = np.flatnonzero(np.isfinite(numbers).any(axis=0))
     columns = [int(i) for i in seen if labels[i] and i not in ignored]
@@ -248,5 +252,5 @@ def read_fscan(draft: Draft) -> Trial:
     ):
         draft.channel(f"insole, {name}", values, unit=si, note="")
     if saturated:
-        draft.notes.append(f"{saturated} saturated cells have no value")
+        draft.notes.append(Message("{count} saturated cells have no value", count=saturated))
     return draft.trial("F-Scan")

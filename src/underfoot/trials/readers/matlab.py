@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
@@ -53,7 +54,11 @@ def read_matlab(draft: Draft) -> Trial:
     lengths = Counter(len(v) for v in numbers.values())
     longest = max(sorted(lengths), key=lambda n: lengths[n])
     other = [name for name, v in numbers.items() if len(v) != longest]
-    notes = (f"arrays of another length are left out: {', '.join(other[:6])}",) if other else ()
+    notes = (
+        (Message("arrays of another length are left out: {other}", other=other[:6]),)
+        if other
+        else ()
+    )
     columns = {n: np.asarray(v, dtype=float) for n, v in numbers.items() if len(v) == longest}
     sheet = Sheet(draft.name, columns, {}, {}, tuple(header), notes)
     return trial_from_sheet(draft, sheet, "MATLAB")
@@ -151,7 +156,7 @@ def _qualisys(draft: Draft, value: Mapping[str, Any]) -> Trial:
             for key in ("Force", "ForcePlateLocation", "COP")
         )
         if force.ndim != 2 or 3 not in force.shape:
-            draft.notes.append(f"plate {number} holds no forces")
+            draft.notes.append(Message("plate {number} holds no forces", number=number))
             continue
         force = force.T if force.shape[0] == 3 else force
         draft.rate = float(one["Frequency"])

@@ -3,6 +3,8 @@
 import re
 from dataclasses import replace
 
+from underfoot.core.remark import Message
+
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
 from .draft import Draft
@@ -38,5 +40,11 @@ def read_stm603(draft: Draft) -> Trial:
         draft.profile = replace(
             profile, plates={"tester": tester}, vertical=profile.vertical or "z"
         )
-        draft.notes.append(f'friction is "{columns[0]}", normal force "{columns[1]}"')
+        draft.notes.append(
+            Message(
+                'friction is "{friction}", normal force "{normal}"',
+                friction=columns[0],
+                normal=columns[1],
+            )
+        )
     return trial_from_sheet(draft, sheet, "SATRA STM 603")

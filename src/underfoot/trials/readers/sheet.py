@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.numbers_text import NumberForm, one_unit, units_in_cells, without_units
+from underfoot.core.remark import Message
 from underfoot.core.text import decoded
 
 from . import text
@@ -113,7 +114,7 @@ def _without_footer(lines: list[str], first: int, delimiter: str, notes: list[st
         return lines
     words = [line.strip() for line in lines[end:] if line.strip(" \t;,")]
     if words:
-        notes.append(f"below the table, left out: {'; '.join(words)[:80]}")
+        notes.append(Message("below the table, left out: {names}", names="; ".join(words)[:80]))
     return lines[:end]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.numbers_text import NumberForm, any_lost, number_forms
+from underfoot.core.remark import Message
 from underfoot.core.text import cells_of
 from underfoot.core.typed import MINUS
 
@@ -116,7 +117,10 @@ def table(
         uneven = sum(count != max(counts) for count in counts)
         if uneven:
             notes.append(
-                f"{uneven} rows are shorter than the others: the missing cells have no value"
+                Message(
+                    "{count} rows are shorter than the others: the missing cells have no value",
+                    count=uneven,
+                )
             )
     values = measurable(values, notes)
     if not np.isfinite(values).any():
@@ -154,7 +158,11 @@ def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:
     """Return the values with infinite and impossibly large ones (above 1e30) as NaN, and say so."""
     absurd = ~(np.abs(values) < 1e30) & ~np.isnan(values)
     if absurd.any():
-        notes.append(f"{int(absurd.sum())} infinite or impossibly large numbers are left out")
+        notes.append(
+            Message(
+                "{count} infinite or impossibly large numbers are left out", count=int(absurd.sum())
+            )
+        )
         values = np.where(absurd, np.nan, values)
     return values
 
@@ -226,7 +234,9 @@ def unique_names(labels: Sequence[str], kind: str, notes: list[str]) -> list[str
     repeated = [name for name, count in seen.items() if count > 1]
     if repeated:
         shown = ", ".join(repeated[:5]) + (" ..." if len(repeated) > 5 else "")
-        notes.append(f"duplicate {kind} names, numbered #2, #3 ...: {shown}")
+        notes.append(
+            Message("duplicate {kind} names, numbered #2, #3 ...: {shown}", kind=kind, shown=shown)
+        )
     return list(names)
 
 

@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial, Vertical
 from .draft import Draft
@@ -23,7 +24,11 @@ def read_trc(draft: Draft) -> Trial:
     announced = header.get("NumMarkers", "")
     if announced.isdigit() and int(announced) < len(labels):
         draft.notes.append(
-            f"NumMarkers is {announced}, the labels name {len(labels)}: all are read"
+            Message(
+                "NumMarkers is {announced}, the labels name {count}: all are read",
+                announced=announced,
+                count=len(labels),
+            )
         )
     else:
         draft.count(announced, len(labels), "NumMarkers")
@@ -334,7 +339,7 @@ def read_vicon_csv(draft: Draft) -> Trial:
                     metres = draft.length_unit(units[at[0]] or "mm", numbers[:, at])
                     draft.marker(name.rsplit(":", 1)[-1], numbers[:, at] * metres)
         else:
-            draft.notes.append(f"the block of {kinds[start]} was left out")
+            draft.notes.append(Message("the block of {kinds} was left out", kinds=kinds[start]))
     return draft.trial("Vicon CSV")
 
 

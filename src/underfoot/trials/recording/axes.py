@@ -185,9 +185,20 @@ def axes_of(
         return Axes(up, how, _flat(axis_vector(walking, "walking"), up), "given", ramp, path)
     speed = 0.0 if path is None else float(np.linalg.norm(path))
     if path is not None and speed > WALKING_SPEED:
-        return Axes(up, how, path / speed, f"path of the markers ({speed:.2f} m/s)", ramp, path)
-    reason = "no markers" if path is None else f"markers move at {speed:.2f} m/s only"
-    return Axes(up, how, None, f"not found: {reason}", ramp, path)
+        return Axes(
+            up,
+            how,
+            path / speed,
+            Message("path of the markers ({speed:.2f} m/s)", speed=speed),
+            ramp,
+            path,
+        )
+    reason = (
+        "no markers"
+        if path is None
+        else Message("markers move at {speed:.2f} m/s only", speed=speed)
+    )
+    return Axes(up, how, None, Message("not found: {reason}", reason=reason), ramp, path)
 
 
 def marker_velocity(

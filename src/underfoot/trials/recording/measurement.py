@@ -7,10 +7,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from underfoot.core import InputError, display
+from underfoot.core import InputError
 from underfoot.core.deprecation import renamed
 from underfoot.core.presentation import Presentable, Table
-from underfoot.core.remark import NOTHING, Message
+from underfoot.core.remark import NOTHING, Amount, Message
 
 MEAN_OF_STEPS = "mean of the steps"
 """The item of a table that stands for all steps of a file."""
@@ -124,11 +124,11 @@ class Measurement(Presentable):
         """True when there is a value."""
         return self.value is not None
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the number with unit and uncertainty, or why there is none."""
         return (self._number(),)
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return the flags that matter, in words."""
         return tuple(flag.message for flag in self.caution_flags)
 
@@ -144,15 +144,17 @@ class Measurement(Presentable):
         flags = "" if self.value is None else "; ".join(map(str, self.flags))
         return self._number() + (f" [{flags}]" if flags else "")
 
-    def _number(self) -> str:
+    def _number(self) -> Message:
         if self.value is None:
-            return f"{self.name}: not estimated ({self.reason})"
-        text = f"{self.name}: {display(self.value, self.unit)}"
+            return Message("{name}: not estimated ({reason})", name=self.name, reason=self.reason)
+        off = NOTHING
         if self.spread is not None:
-            text += f" (mean of {self.n}, SD {display(self.spread, self.unit, 2)})"
+            spread = Amount(self.spread, self.unit, 2)
+            off = Message(" (mean of {count}, SD {spread})", count=self.n, spread=spread)
         elif self.uncertainty is not None:
-            text += f" ± {display(self.uncertainty, self.unit, 2)}"
-        return text
+            off = Message(" ± {off}", off=Amount(self.uncertainty, self.unit, 2))
+        value = Amount(self.value, self.unit)
+        return Message("{name}: {value}{off}", name=self.name, value=value, off=off)
 
     def table(self) -> Table:
         """Return value, uncertainty, flags and conventions, a row each."""

@@ -122,19 +122,29 @@ class Protocol:
         settings += [(rule.quantity.replace("_", " "), rule) for rule in self.rules]
         memory = [name for name, one in settings if not one.verified]
         assumed = [
-            name + (f" ({one.note})" if one.note else "") for name, one in settings if one.assumed
+            Message("{name} ({note})", name=name, note=one.note) if one.note else name
+            for name, one in settings
+            if one.assumed
         ]
         read: dict[str, list[str]] = {}
         for name, one in settings:
             if one.verified and not one.assumed and one.source not in ("", self.source):
                 read.setdefault(one.source, []).append(name)
-        found = [f"{', '.join(names)}: {source}." for source, names in read.items()]
+        found = [
+            Message("{names}: {source}.", names=names, source=source)
+            for source, names in read.items()
+        ]
         if memory:
             found.append(
-                f"Not verified against the text of {self.source}, which was not at hand: "
-                f"{', '.join(dict.fromkeys(memory))}."
+                Message(
+                    "Not verified against the text of {source}, which was not at hand: {names}.",
+                    source=self.source,
+                    names=dict.fromkeys(memory),
+                )
             )
-        return found + ([f"Assumed: {'; '.join(assumed)}."] if assumed else [])
+        if assumed:
+            found.append(Message("Assumed: {settings:; }.", settings=assumed))
+        return found
 
 
 def protocol(name: str, folders: Iterable[Path | str] = ()) -> Protocol:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -169,6 +170,22 @@ FILTERS = {
     "butterworth-4-one-pass": Message("Butterworth, 4th order, one pass (shifts in time)"),
     "none": Message("no filter"),
 }
+
+
+class _Design(NamedTuple):
+    """Order of one pass, whether it is one alone, whether the cutoff is raised for two."""
+
+    order: int = 4
+    one_pass: bool = False
+    raised: bool = False
+
+
+_DESIGNS = {
+    "butterworth-4-zero-phase": _Design(order=2),
+    "butterworth-4-zero-phase-corrected": _Design(order=2, raised=True),
+    "butterworth-8-zero-phase": _Design(),
+    "butterworth-4-one-pass": _Design(one_pass=True),
+}
 _TWO_PASSES = 0.802  # (sqrt(2) - 1)^(1/4): the cutoff of two 2nd-order passes over that of one
 
 
@@ -219,12 +236,12 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
         )
     from scipy import signal
 
-    order = 2 if low_pass.kind.startswith("butterworth-4-zero") else 4
+    order, one_pass, raised = _DESIGNS[low_pass.kind]
     cutoff = low_pass.cutoff
-    if low_pass.kind.endswith("corrected"):
+    if raised:
         cutoff = min(cutoff / _TWO_PASSES, 0.49 * rate)
     sections = _sections(order, cutoff, rate)
-    if low_pass.kind.endswith("one-pass"):
+    if one_pass:
         rest = signal.sosfilt_zi(sections)
         rest = rest.reshape(rest.shape + (1,) * (values.ndim - 1)) * values[0]
         return signal.sosfilt(sections, values, axis=0, zi=rest)[0]

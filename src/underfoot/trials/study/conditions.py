@@ -14,6 +14,7 @@ from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
 from underfoot.core.numbers_text import NumberForm, number_forms
+from underfoot.core.remark import Message
 from underfoot.core.text import decoded
 
 from ..readers import Profile, read_profile, trial_suffixes
@@ -152,7 +153,10 @@ def study_folder(
                 allowed=", ".join(sorted(members)[:3]) + " ...",
                 nearest=nearest_match(absent[0], members),
             )
-        notes += [f"{file}: in {table.name}, but there is no such file" for file in absent]
+        notes += [
+            Message("{file}: in {table}, but there is no such file", file=file, table=table.name)
+            for file in absent
+        ]
     one_spelling(noted_by_file, merge_spelling)
     recordings = tuple(
         Recording(label, tuple(group), noted)
@@ -195,7 +199,9 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
     for place, below, files in os.walk(folder):
         if REPORT_MARK in files and Path(place) != folder:
             below.clear()
-            notes.append(f"{_label(Path(place), folder)}: holds a report, left aside")
+            notes.append(
+                Message("{place}: holds a report, left aside", place=_label(Path(place), folder))
+            )
             continue
         below[:] = sorted(name for name in below if not name.startswith("."))
         for name in sorted(files):
@@ -205,12 +211,17 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
                 continue
             if _NOT_TRIALS.match(path.stem) and ending not in (".c3d", ".trc"):
                 if not re.match("conditions|edits|truth|synthetic|session", name, re.IGNORECASE):
-                    notes.append(f"{_label(path, folder)}: notes by its name, not a trial")
+                    notes.append(
+                        Message("{path}: notes by its name, not a trial", path=_label(path, folder))
+                    )
             elif ending in suffixes:
                 trials.append(path)
             else:
                 notes.append(
-                    f"{_label(path, folder)}: not a measurement file by its ending, left aside"
+                    Message(
+                        "{path}: not a measurement file by its ending, left aside",
+                        path=_label(path, folder),
+                    )
                 )
     if not trials:
         raise InputError(

@@ -92,7 +92,9 @@ def reliability_findings(
         "trials. SEM: standard error of measurement of one trial; MDC95 = 2.77 SEM: smallest "
         "change of one person's single trial beyond chance."
     )
-    title = f"Reliability of {quantity_name(response)}: intraclass correlation"
+    title = Message(
+        "Reliability of {response}: intraclass correlation", response=quantity_name(response)
+    )
     places = decimals_of(min(float(row[7]) for row in rows))
     shares = ("ICC(1,1)", "95 % low", "95 % high", "ICC(1,k)", "low", "high")
     heads = (
@@ -126,8 +128,12 @@ def agreement_findings(
         rows.append((form, *ends, icc.subjects, len(raters)))
     if rows:
         heads = ("form", "ICC", "95 % low", "95 % high", "SEM", "MDC95", "samples", f"{by}s")
-        title = f"Agreement of {name} over each {by}: intraclass correlation"
-        note = f"Of the means of each sample by {by}. A: absolute agreement; C: consistency."
+        title = Message(
+            "Agreement of {name} over each {by}: intraclass correlation", name=name, by=by
+        )
+        note = Message(
+            "Of the means of each sample by {by}. A: absolute agreement; C: consistency.", by=by
+        )
         findings.append(finding(f"icc_{by}", title, heads, rows, note))
     if len(raters) > 2:
         return findings
@@ -148,13 +154,18 @@ def agreement_findings(
         ("lower limit of agreement", limits.lower, *limits.lower_interval),
         ("upper limit of agreement", limits.upper, *limits.upper_interval),
     ]
-    note = (
-        f"{raters[0]} - {raters[1]}, {limits.pairs} pairs of {limits.subjects} samples; readings "
-        "are paired in their order. Limits: bias -+ 1.96 SD of a single difference; the true value "
-        f"may vary between readings. Differences against means: slope {limits.slope:.2g} "
-        f"(p {limits.slope_p:.2g})."
-    )
-    title = f"Bland-Altman: {name}, {raters[0]} against {raters[1]}"
+    note = Message(
+        "{first} - {second}, {pairs} pairs of {subjects} samples; "
+        "readings are paired in their order. Limits: bias -+ 1.96 SD of a "
+        "single difference; the true value may vary between readings. "
+        "Differences against means: slope {slope:.2g} (p {slope_p:.2g}).",
+        first=raters[0], second=raters[1], pairs=limits.pairs, subjects=limits.subjects,
+        slope=limits.slope, slope_p=limits.slope_p,
+    )  # fmt: skip
+    title = Message(
+        "Bland-Altman: {name}, {first} against {second}",
+        name=name, first=raters[0], second=raters[1],
+    )  # fmt: skip
     caution = (
         (Message("the difference changes with the size: one bias does not describe it"),)
         if limits.slope_p < 0.05
@@ -195,7 +206,10 @@ def equivalence_findings(
             "first", "second", "difference", "90 % low", "90 % high",
             *(Column(test, Role.CHANCE) for test in tests), "single verdict",
         )  # fmt: skip
-        title = f"Equivalence of {quantity_name(response)} by {factor} within {margin:g}"
+        title = Message(
+            "Equivalence of {response} by {factor} within {margin:g}",
+            response=quantity_name(response), factor=factor, margin=margin,
+        )  # fmt: skip
         note = (
             "Two one-sided t tests of persons' means, alpha 0.05. Not lower: the first is shown to "
             "be less than the margin below the second. The margin has to be fixed before the "
@@ -246,7 +260,9 @@ def rank_findings(
             findings.append(_ranked_pairs(response, factor, test.pairs))
     if not rows:
         return []
-    title = f"Rank tests of {quantity_name(response)}: the scatter is not normal"
+    title = Message(
+        "Rank tests of {response}: the scatter is not normal", response=quantity_name(response)
+    )
     normality = Column("p of normality (Shapiro-Wilk)", Role.CHANCE)
     heads = ("factor", "test", "statistic", P_VALUE, "p by", "persons", normality)
     note = "Read beside the tests above, which assume a normal scatter of persons' means."
@@ -258,10 +274,14 @@ _HOW = {"exact": "all orders", "drawn": "100 000 random orders", "large sample":
 
 def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) -> Finding:
     marks = statistics.letters(pairs)
-    listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
-    title = f"Pairs of {quantity_name(response)} by {factor}: rank tests"
+    listed = [Message("{level} {mark}", level=level, mark=mark) for level, mark in marks.items()]
+    title = Message(
+        "Pairs of {response} by {factor}: rank tests",
+        response=quantity_name(response),
+        factor=factor,
+    )
     heads = ("first", "second", "median difference", HOLM_P)
-    note = f"Levels that share a letter do not differ at 0.05: {listed}."
+    note = Message("Levels that share a letter do not differ at 0.05: {listed}.", listed=listed)
     rows = [(pair.first, pair.second, pair.difference, pair.p) for pair in pairs]
     name = f"rank_pairs_{response}_{factor}".replace(" ", "_")
     return finding(name, title, heads, rows, note)
@@ -293,7 +313,7 @@ def share_findings(files: Sequence[FileResult], key: str, person: str) -> list[F
         "Score intervals (Miettinen and Nurminen). Persons who repeat count as many trials as have "
         "the variance between persons."
     )
-    title = f"Shares of slips by {key}: differences of two"
+    title = Message("Shares of slips by {key}: differences of two", key=key)
     name = f"shares_{key}".replace(" ", "_")
     return [finding(name, title, heads, rows, note)]
 
@@ -311,7 +331,10 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     both = statistics.corrected_p(p), statistics.corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
     heads = ("outcome", "term", P_VALUE, HOLM_P, Column("p (Benjamini-Hochberg)", Role.CHANCE))
-    note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
+    note = Message(
+        "{count} tests of one study: Holm holds the chance of any false one at 5 %.",
+        count=len(rows),
+    )
     title = "Several outcomes: p corrected for their number"
     return [finding("multiplicity", title, heads, rows, note)]
 
@@ -334,14 +357,16 @@ def prediction_finding(
         ("calibration slope", told.calibration_slope, None, None),
         ("calibration intercept", told.calibration_intercept, None, None),
     ]
-    note = (
-        f"{area.persons} persons. Area: chance that a slip has the worse number (0.5: none); "
-        "interval with persons as units (Obuchowski). Brier: mean squared error of the predicted "
-        "risk, interval by bootstrap of persons. Calibration: slope 1, intercept 0 is right."
+    note = Message(
+        "{persons} persons. Area: chance that a slip has the worse number "
+        "(0.5: none); interval with persons as units (Obuchowski). Brier: "
+        "mean squared error of the predicted risk, interval by bootstrap of "
+        "persons. Calibration: slope 1, intercept 0 is right.",
+        persons=area.persons,
     )
     worse = (Message("the prediction is no better than the share of slips alone"),)
     caution = worse if told.brier >= told.constant else ()
-    title = f"Prediction of slips from {quantity_name(name)}"
+    title = Message("Prediction of slips from {name}", name=quantity_name(name))
     heads = ("", *plain_columns("value", "95 % low", "95 % high", decimals=3))
     return finding(f"prediction_{name}", title, heads, rows, note, caution)
 
@@ -378,12 +403,15 @@ def curve_findings(
                 continue
             percent = PERCENT[known]
             beyond = [
-                f"{percent[c.start]:.0f} to {percent[c.stop]:.0f} % "
-                f"(p of its length {p_text(c.p)}, of its peak {p_text(c.p_peak)})"
+                Message(
+                    "{start:.0f} to {stop:.0f} % (p of its length {p}, of its peak {p_peak})",
+                    start=percent[c.start], stop=percent[c.stop], p=p_text(c.p),
+                    p_peak=p_text(c.p_peak),
+                )
                 for c in test.clusters
-            ]
+            ]  # fmt: skip
             wholes.append(test.p)
-            where = ", ".join(beyond) or "nowhere"
+            where = Message("{beyond}", beyond=beyond) if beyond else "nowhere"
             still = ", ".join(f"{percent[i]:.0f} %" for i in test.still)
             rows.append([first, second, len(both), test.threshold, where, test.p, None, still])
         if not rows:
@@ -395,7 +423,9 @@ def curve_findings(
             "differs at (stance)", Column("p of the curve", Role.CHANCE), HOLM_P,
             "left out: no scatter at",
         )  # fmt: skip
-        title = f"Shear / normal force over stance by {factor}: paired curves (SPM)"
+        title = Message(
+            "Shear / normal force over stance by {factor}: paired curves (SPM)", factor=factor
+        )
         note = (
             "Paired t of persons' mean curves at each instant; one threshold for the whole curve "
             "(random field theory, two-sided, 5 %). p of the curve is that of its highest peak."

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import unknown_name
+from underfoot.core.remark import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,11 @@ class ClassScheme:
 
     def standing(self) -> str:
         """Return the rule with its edition and what was read of it."""
-        read = f"read at {self.source}" if self.source else "from memory, not verified"
+        read = (
+            Message("read at {source}", source=self.source)
+            if self.source
+            else "from memory, not verified"
+        )
         return f"{self.rule} ({read})"
 
 

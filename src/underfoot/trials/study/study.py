@@ -52,12 +52,12 @@ def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
     """
     usable = [file for file in files if file.usable]
     if not usable:
-        return Study(notes=("no usable file",))
+        return Study(notes=(Message("no usable file"),))
     try:
         return _STUDIES[protocol.kind](usable, protocol)
     except UnderfootError as error:
         # The numbers of the files are worth having even when they don't fit together.
-        return Study(notes=(f"no result over all files: {error.what}",))
+        return Study(notes=(Message("no result over all files: {error}", error=error.what),))
 
 
 def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]:
@@ -76,7 +76,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             fit = stribeck_fit(speed, cof)
             simplex = stribeck_fit(speed, cof, method="nelder_mead")
         except UnderfootError as error:
-            notes.append(f"{label}: not fitted ({error.what})")
+            notes.append(Message("{label}: not fitted ({error})", label=label, error=error.what))
             continue
         fitted = (fit.boundary, fit.tau, fit.asymptote)
         cells = (cell for p in fitted for cell in (p.value, p.low, p.high, p.remark))
@@ -103,7 +103,11 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     )  # fmt: skip
     title = "COF = asymptote + (COF_BL - asymptote) exp(-speed / tau), Eq. 17"
     explained = (
-        f"Fitted by {FIT_METHODS['separable']}; beside it {FIT_METHODS['nelder_mead']}.",
+        Message(
+            "Fitted by {separable}; beside it {nelder_mead}.",
+            separable=FIT_METHODS["separable"],
+            nelder_mead=FIT_METHODS["nelder_mead"],
+        ),
         "Intervals are profile likelihoods; a dash means that the profile does not close.",
         "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
     )
@@ -146,7 +150,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             row = (*numbers.values(), len(cof))
             made.append(Table.of("master_curve", title, heads, [row], note))
         except UnderfootError as error:
-            notes.append(f"no master curve: {error.what}")
+            notes.append(Message("no master curve: {error}", error=error.what))
     return Study(tuple(made), tuple(findings), curves, tuple(notes))
 
 
@@ -171,7 +175,12 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
                 fluid = str(f.conditions.get("fluid", ""))
                 by_fluid.setdefault(fluid, []).append(f.main["friction_force"])
         if dry not in by_fluid or blocked not in by_fluid:
-            notes.append(f"{' on '.join(pair)}: needs fluid {dry} and fluid {blocked}")
+            notes.append(
+                Message(
+                    "{pair: on }: needs fluid {dry} and fluid {blocked}",
+                    pair=pair, dry=dry, blocked=blocked,
+                )
+            )  # fmt: skip
             continue
         others = {k: v for k, v in by_fluid.items() if k not in (dry, blocked)}
         split = friction_split(by_fluid[dry], by_fluid[blocked], others)
@@ -188,7 +197,10 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             ("dry", split.dry),
             ("hysteresis", split.hysteresis),
             ("adhesion", split.adhesion),
-            *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
+            *(
+                (Message("adhesion with {fluid}", fluid=k), m)
+                for k, m in split.lubricated_adhesion.items()
+            ),
         ):
             rows.append((*pair, name, m.value, m.uncertainty, m.n, joined(m.flags)))
         for fluid, m in split.lubricated_adhesion.items():
@@ -198,7 +210,10 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
     title = "Adhesion and hysteresis, Eq. 22 to 25"
     flags = Column("flags", Role.LONG)
     heads = (*condition_columns(keys), "part", "force (N)", "standard error (N)", "n", flags)
-    note = f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked."
+    note = Message(
+        "Hysteresis is the friction with {blocked}: all adhesion is taken as blocked.",
+        blocked=blocked,
+    )
     made = [Table.of("friction_split", title, heads, rows, note)]
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
@@ -206,9 +221,12 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         fit = alpha_beta(fluids, dry_adhesions, wet)
         heads = ("fluid", "alpha (N)", "SE", "beta", "SE", "n")
         lines = [(r.fluid, r.alpha, r.alpha_error, r.beta, r.beta_error, r.n) for r in fit.fluids]
-        note = (
-            f"R^2 {fit.model.r_squared:.3f}, adjusted {fit.model.adjusted_r_squared:.3f}; "
-            f"mean absolute residual {fit.mean_absolute_residual:.3g} N."
+        note = Message(
+            "R^2 {r_squared:.3f}, adjusted {adjusted:.3f}; mean "
+            "absolute residual {residual:.3g} N.",
+            r_squared=fit.model.r_squared,
+            adjusted=fit.model.adjusted_r_squared,
+            residual=fit.mean_absolute_residual,
         )
         title = "Adhesion a fluid leaves, Eq. 26"
         made.append(Table.of("alpha_beta", title, heads, lines, note))
@@ -216,7 +234,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         drawn = [(r.fluid, r.alpha, r.beta) for r in fit.fluids]
         curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
     except (UnderfootError, ValueError) as error:
-        notes.append(f"Eq. 26 was not fitted: {getattr(error, 'what', error)}")
+        notes.append(Message("Eq. 26 was not fitted: {error}", error=getattr(error, "what", error)))
     if parts["lubricated_adhesion"]:
         made.append(_range_over_fluids(keys[0], parts["lubricated_adhesion"]))
     for name, readings in parts.items():
@@ -272,7 +290,7 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         try:
             mapped = pressure_map(scans, spacing=spacing, inlet_diameter=inlet)
         except UnderfootError as error:
-            notes.append(f"{label}: no map ({error.what})")
+            notes.append(Message("{label}: no map ({error})", label=label, error=error.what))
             continue
         load, change = mapped.load, mapped.half_spacing_change
         place = (1e3 * (p.value or 0.0) for p in (mapped.peak_along, mapped.peak_lateral))
@@ -360,7 +378,9 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     table = condition_table(with_rcof, tuple(factors), numbers, person=person)
     if table and numbers_noted:
         listed = ", ".join(numbers_noted)
-        words = f"Measured numbers are no levels and are not compared: {listed}."
+        words = Message(
+            "Measured numbers are no levels and are not compared: {listed}.", listed=listed
+        )
         table = replace(table, notes=(*table.notes, words))
     made = [table] if table else []
     if len(factors) > 1:
@@ -387,7 +407,7 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
 
 
 MODULI = tuple(
-    f"{time}-time {what}"
+    Message("{time}-time {what}", time=time, what=what)
     for what in ("stiffness", "modulus", "Young's modulus")
     for time in ("short", "long")
 )
@@ -435,13 +455,24 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
             "Of equal readings SD, interval and u are not resolved: they scatter by less than the "
             "resolution of a reading."
         )
-    notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
+    notes += [
+        Message("Classes: {scheme}. {standing}.", scheme=s.title, standing=s.standing())
+        for s in schemes.values()
+    ]
     places = max((tables.decimals_of(m.uncertainty) for m in samples if m.uncertainty), default=2)
     numbers = (*tables.number_columns(quantity, places), Column("u", decimals=places))
     heads: list[Column | str] = ["file", *condition_columns(keys), "readings", *numbers]
     heads += plain_columns("COF from PTV", "u of COF", decimals=3) if quantity == "ptv" else ()
     heads += ("class", "2 u reaches") if schemes else ()
-    made = [Table.of("samples", f"Samples, {quantity_name(quantity)}", heads, rows, *notes)]
+    made = [
+        Table.of(
+            "samples",
+            Message("Samples, {quantity}", quantity=quantity_name(quantity)),
+            heads,
+            rows,
+            *notes,
+        )
+    ]
     if quantity == "angle":
         made += _walkers(files, keys, places, protocol.number("board_share", "1", 1.0))
     made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
@@ -511,8 +542,11 @@ def _walkers(
     heads = (*condition_columns(others), "walkers", *numbers, *classes)
     notes = (
         "The class of a sample is that of the mean angle of its walkers, two of them.",
-        f"Angles are corrected by {100 * share:.0f} % of what each walker reads off on the "
-        "calibration boards, between boards by straight lines."
+        Message(
+            "Angles are corrected by {share:.0f} % of what each walker reads off "
+            "on the calibration boards, between boards by straight lines.",
+            share=100 * share,
+        )
         if corrected
         else "Angles are as read: no calibration boards of all walkers (a column standard angle).",
     )
@@ -546,7 +580,11 @@ def _lowest(
     classes = ("class", "2 u reaches", "directions measured")
     heads = (*condition_columns(others), "directions", "lowest", *numbers, *classes)
     note = "The class of a sample is that of its lowest direction."
-    return [Table.of("lowest", f"Samples, lowest direction, {name}", heads, rows, note)]
+    return [
+        Table.of(
+            "lowest", Message("Samples, lowest direction, {name}", name=name), heads, rows, note
+        )
+    ]
 
 
 _UNRESOLVED = (
@@ -575,12 +613,16 @@ def _precision(
              spread.reproducibility, spread.repeatability_limit, spread.reproducibility_limit)
         )  # fmt: skip
         tests += [
-            f"{', '.join(level) or 'all'}: {test.name}, {by} {test.laboratory}, {test.verdict} "
-            f"({test.statistic:.3f}; 5 % {test.critical_5_percent:.3f}, 1 % "
-            f"{test.critical_1_percent:.3f})"
+            Message(
+                "{level}: {test}, {by} {laboratory}, {verdict} ({statistic:.3f}; 5 % {five:.3f}, "
+                "1 % {one_percent:.3f})",
+                level=level or "all", test=test.name, by=by, laboratory=test.laboratory,
+                verdict=test.verdict, statistic=test.statistic, five=test.critical_5_percent,
+                one_percent=test.critical_1_percent,
+            )
             for test in spread.outliers
             if test.verdict != "correct"
-        ]
+        ]  # fmt: skip
     if not rows:
         return []
     places = max((tables.decimals_of(row[-3]) for row in rows if row[-3]), default=2)
@@ -589,14 +631,18 @@ def _precision(
     things = {"laboratory": "laboratories"}.get(by, by + "s")
     heads = (*condition_columns(others), things, "readings", *numbers)
     notes = (
-        f"Repeatability s_r and reproducibility s_R over each {by} (ISO 5725-2); nothing left out.",
+        Message(
+            "Repeatability s_r and reproducibility s_R over each {by} (ISO "
+            "5725-2); nothing left out.",
+            by=by,
+        ),
         *(
             tests
             or (("Cochran's and Grubbs' tests name no straggler or outlier.",) if tried else ())
         ),
         *((_UNRESOLVED,) if any(None in row[-4:] for row in rows) else ()),
     )
-    title = f"Repeatability and reproducibility by {by}"
+    title = Message("Repeatability and reproducibility by {by}", by=by)
     return [Table.of(f"precision_{by}", title, heads, rows, *notes)]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.presentation import p_text
-from underfoot.core.remark import Message, Remark
+from underfoot.core.remark import Message, Remark, together
 from underfoot.core.units import plain_number
 
 from .. import statistics
@@ -70,7 +70,7 @@ def comparison_findings(
     factors, confounded = statistics.told_apart(factors, persons, last=_LAST)
     repeated = reliability_findings(response, values, factors, persons)
     if not factors and (left or confounded):
-        title = f"Comparisons of {quantity_name(response)}"
+        title = Message("Comparisons of {response}", response=quantity_name(response))
         nothing = [
             Message("{confounded}: nothing is left to compare", confounded=each.message)
             for each in confounded
@@ -92,7 +92,7 @@ def comparison_findings(
             lambda terms: statistics.analysis_of_variance(values, factors, terms, name=name),
         )
     except UnderfootError as error:
-        title = f"Analysis of variance of {name}"
+        title = Message("Analysis of variance of {name}", name=name)
         first, *rest = [*findings, not_done(f"anova_{response}", title, error)]
         return [_with_left_out(first, left, confounded), *rest, *repeated]
     if model is None and not warning and not table.model.dependent:
@@ -136,7 +136,9 @@ def _mixed(
     persons: Sequence[str],
 ) -> tuple[list[Finding], statistics.MixedModel | None]:
     name = quantity_name(response)
-    title = f"Mixed model of {name}: persons, and how each reacts, at random (REML)"
+    title = Message(
+        "Mixed model of {name}: persons, and how each reacts, at random (REML)", name=name
+    )
     key = f"mixed_{response}"
     try:
         model = _crossed(
@@ -145,17 +147,18 @@ def _mixed(
         )
     except UnderfootError as error:
         return [not_done(key, title, error)], None
-    spreads = ", ".join(
-        f"{what} {plain_number(float(np.sqrt(max(variance, 0.0))))}"
+    spreads = [
+        Message("{what} {sd}", what=what, sd=plain_number(float(np.sqrt(max(variance, 0.0)))))
         for what, variance in model.variances.items()
         if np.isfinite(variance)
-    )
-    note = (
-        f"{model.persons} persons, {model.trials} trials; standard deviations: {spreads}. F tests, "
-        "type III, each against how differently persons react to the factor, degrees of freedom "
-        "after Kenward and Roger."
-    )
-    note += _power_note(model, factors)
+    ]
+    note = Message(
+        "{persons} persons, {trials} trials; standard deviations: {spreads}. "
+        "F tests, type III, each against how differently persons react to "
+        "the factor, degrees of freedom after Kenward and Roger.",
+        persons=model.persons, trials=model.trials, spreads=spreads,
+    )  # fmt: skip
+    note = together([note, *_power_note(model, factors)])
     heads = ("term", "df", "df of error", "F", P_VALUE)
     rows = [(row.term, row.df, row.error_df, row.f, row.p) for row in model.tests]
     files = model_files(key, title, model, response, values, factors, persons)
@@ -165,7 +168,7 @@ def _mixed(
         repeated = statistics.repeated_measures(values, factors, persons)
     except UnderfootError:
         return [mixed], model
-    title = f"Repeated-measures analysis of variance of {name}, means of persons"
+    title = Message("Repeated-measures analysis of variance of {name}, means of persons", name=name)
     heads = (*heads, "epsilon", Column("p (Greenhouse-Geisser)", Role.CHANCE))
     corrected = zip(repeated.rows, repeated.epsilon, repeated.p_corrected, strict=True)
     rows = [(row.term, row.df, row.error_df, row.f, row.p, *more) for row, *more in corrected]
@@ -176,7 +179,9 @@ def _mixed(
     return [finding(f"repeated_{response}", title, heads, rows, note), mixed], model
 
 
-def _power_note(model: statistics.MixedModel, factors: Mapping[str, Sequence[str]]) -> str:
+def _power_note(
+    model: statistics.MixedModel, factors: Mapping[str, Sequence[str]]
+) -> list[Message]:
     """Return the difference that so many persons find, by the error of each factor within them."""
     found, half = [], []
     for factor in (name for name in factors if name in model.within):
@@ -186,14 +191,24 @@ def _power_note(model: statistics.MixedModel, factors: Mapping[str, Sequence[str
         count = statistics.persons_needed(
             lambda n, d=least / 2, sd=spread: statistics.power("paired", n, difference=d, sd=sd)
         )
-        found.append(f"{plain_number(least, 2)} between two levels of {factor}")
+        found.append(
+            Message(
+                "{least} between two levels of {factor}",
+                least=plain_number(least, 2),
+                factor=factor,
+            )
+        )
         half.append(str(count))
     if not found:
-        return ""
-    return (
-        f" So many persons find a difference of {', '.join(found)} with 80 % power (paired t); "
-        f"half of it would take {', '.join(dict.fromkeys(half))}."
-    )
+        return []
+    return [
+        Message(
+            "So many persons find a difference of {names} with 80 % power "
+            "(paired t); half of it would take {half}.",
+            names=found,
+            half=dict.fromkeys(half),
+        )
+    ]
 
 
 def _tukey(
@@ -209,7 +224,10 @@ def _tukey(
     for factor, levels in factors.items():
         if len(set(levels)) < 3 and not mixed:
             continue
-        title = f"Tukey's comparisons of {quantity_name(response)} by {factor} ({by})"
+        title = Message(
+            "Tukey's comparisons of {response} by {factor} ({by})",
+            response=quantity_name(response), factor=factor, by=by,
+        )  # fmt: skip
         name = f"tukey_{response}_{factor}".replace(" ", "_")
         try:
             comparisons = statistics.tukey_hsd(model, factor)
@@ -223,14 +241,22 @@ def _tukey(
              *effect_cells(drawn, c.first, c.second))
             for c in comparisons
         )  # fmt: skip
-        listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
-        note = f"Levels that share a letter do not differ at 0.05: {listed}. "
-        note += (
-            "Hedges' g of the persons who have both levels (difference over the SD of their "
-            "differences), else over the pooled SD; its interval is exact and holds one comparison."
-            if any(row[-3] is not None for row in rows)
-            else "Hedges' g is not estimated: so few values have no SD that can be trusted."
+        listed = [
+            Message("{level} {mark}", level=level, mark=mark) for level, mark in marks.items()
+        ]
+        effect = Message(
+            "Hedges' g is not estimated: so few values have no SD that can be trusted."
         )
+        if any(row[-3] is not None for row in rows):
+            effect = Message(
+                "Hedges' g of the persons who have both levels (difference over the SD of their "
+                "differences), else over the pooled SD; its interval is exact and holds one "
+                "comparison."
+            )
+        alike = Message(
+            "Levels that share a letter do not differ at 0.05: {listed}.", listed=listed
+        )
+        note = together([alike, effect])
         places = decimals_of(min(c.standard_error for c in comparisons))
         heads = (
             "first", "second",
@@ -315,11 +341,9 @@ def varying(
             Remark(
                 name,
                 "{response} is known {known}: the effect of {name} is not estimated",
-                response=quantity_name(response),
-                known=known,
-                name=name,
+                response=quantity_name(response), known=known, name=name,
             )
-        )
+        )  # fmt: skip
     return compared, left
 
 
@@ -337,24 +361,30 @@ def _fisher(files: Sequence[FileResult], key: str, person: str) -> Finding:
     counts: dict[str, list[int]] = {}
     for f in having:
         counts.setdefault(str(f.conditions[key]), [0, 0])[f.main["slip"] != 1.0] += 1
-    title = f"Slips by {key}: Fisher's exact test"
+    title = Message("Slips by {key}: Fisher's exact test", key=key)
     name = f"fisher_{key}"
     try:
         exact = statistics.fisher_exact(list(counts.values()))
     except UnderfootError as error:
         return not_done(name, title, error)
     rows = [(level, slips, none, slips / (slips + none)) for level, (slips, none) in counts.items()]
-    note = f"Two-sided exact p {p_text(exact.p)}, by enumeration of all tables with these margins."
+    counted = {"p": p_text(exact.p)}
+    note = Message(
+        "Two-sided exact p {p}, by enumeration of all tables with these margins.", **counted
+    )
     if exact.p_error is not None:
-        note = (
-            f"Two-sided p {p_text(exact.p)} ± {plain_number(exact.p_error, 1)} (standard error) "
-            "from 100 000 random tables with these margins: counting all would take too long."
-        )
+        note = Message(
+            "Two-sided p {p} ± {error} (standard error) from 100 000 random tables with these "
+            "margins: counting all would take too long.",
+            **counted, error=plain_number(exact.p_error, 1),
+        )  # fmt: skip
     if exact.odds_ratio is not None and exact.low is not None and exact.high is not None:
-        note += (
-            f" Odds ratio {plain_number(exact.odds_ratio)} (conditional estimate; 95 % "
-            f"{plain_number(exact.low)} to {plain_number(exact.high)})."
-        )
+        ratio = Message(
+            "Odds ratio {ratio} (conditional estimate; 95 % {low} to {high}).",
+            ratio=plain_number(exact.odds_ratio), low=plain_number(exact.low),
+            high=plain_number(exact.high),
+        )  # fmt: skip
+        note = together([note, ratio])
     warning = statistics.independence_warning(persons_of(having, person))
     heads = (*condition_columns([key]), "slips", "no slips", "share")
     return finding(name, title, heads, rows, note, warning)
@@ -393,7 +423,10 @@ def _t_tests(
             (*row, next(corrected) if kind == "welch" else None)
             for row, kind in zip(rows, kinds, strict=True)
         ]
-        title = f"t tests of {levels[0]} against {levels[1]} ({key})"
+        title = Message(
+            "t tests of {first} against {second} ({key})",
+            first=levels[0], second=levels[1], key=key,
+        )  # fmt: skip
         heads = ("quantity", "test", "difference (SI)", "t", "df", P_VALUE, HOLM_P)
         findings.insert(0, finding(f"t_{key}", title, heads, rows))
     return findings
@@ -409,7 +442,7 @@ def _logistic(
             continue
         y = [int(f.main["slip"]) for f in having]
         x = [f.main[name] for f in having]
-        title = f"Logistic regression of slip on {quantity_name(name)}"
+        title = Message("Logistic regression of slip on {name}", name=quantity_name(name))
         rows: list[tuple[Cell, ...]] = []
         cautions: list[Message] = []
         best: statistics.LogisticFit | statistics.ClusteredFit | None = None

@@ -395,7 +395,12 @@ def condition_table(
         len({str(m.conditions.get(person, m.file)) for m in results}) < 2
         for results in groups.values()
     ):
-        notes.append(f"Of one of the {unit} alone SD and interval are not estimated: no scatter.")
+        notes.append(
+            Message(
+                "Of one of the {unit} alone SD and interval are not estimated: no scatter.",
+                unit=unit,
+            )
+        )
     if not person and len(usable) > 1:
         notes.append(
             "No condition names the persons or samples: every file counts as one. Where files "

@@ -135,11 +135,12 @@ class RequiredFriction(Presentable):
         number = self.measurement.reason[:60] if value is None else f"RCOF {value:.3f}"
         return f"<RequiredFriction {self.stance.label}: {number}, {self.verdict}>"
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the step's RCOF or why it has none."""
-        return (f"{self.stance.label}: {self.verdict}.", *self.measurement.headline())
+        verdict = Message("{step}: {verdict}.", step=self.stance.label, verdict=self.verdict)
+        return verdict, *self.measurement.headline()
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return the flags of the number that matter, in words."""
         return self.measurement.cautions()
 
@@ -154,7 +155,7 @@ class RequiredFriction(Presentable):
             ("peak force (N)", stance.peak),
             ("peak of the ratio (s after contact)", self.peak_time - stance.contact),
         ]
-        return Table(f"RCOF, {stance.label}", ("", ""), [*rows, *table.rows])
+        return Table(Message("RCOF, {step}", step=stance.label), ("", ""), [*rows, *table.rows])
 
 
 @of_walkway
@@ -334,13 +335,9 @@ def _uncertainty(
     parts = Message(
         "baseline {baseline:.4f}, readings of the filter's name {filtering:.4f}, plate {plate:.4f} "
         "(gain {gain:g} %, crosstalk {crosstalk:g} %, {source})",
-        baseline=baseline,
-        filtering=filtering,
-        plate=plate,
-        gain=100 * accuracy.gain,
-        crosstalk=100 * accuracy.crosstalk,
-        source=accuracy.source,
-    )
+        baseline=baseline, filtering=filtering, plate=plate, gain=100 * accuracy.gain,
+        crosstalk=100 * accuracy.crosstalk, source=accuracy.source,
+    )  # fmt: skip
     return math.hypot(baseline, filtering, plate), parts
 
 
