@@ -208,10 +208,9 @@ def slope_words(case: Case) -> Message:
         return NOTHING
     return Message(
         "{slope} down: people who need {level:.2f} on the level need {needed:.2f} here",
-        slope=Amount(case.floor.slope, "rad"),
-        level=case.risk.rcof_mean,
+        slope=Amount(case.floor.slope, "rad"), level=case.risk.rcof_mean,
         needed=required_friction(case).mean,
-    )
+    )  # fmt: skip
 
 
 def slip_probability(
@@ -265,10 +264,9 @@ def regime(share: float) -> dict[str, str]:
         else Message("{name} lubrication", name=name),
         "regime_rule": Message(
             "by load share: below {low:g} % boundary, above {high:g} % full film",
-            low=100 * low,
-            high=100 * high,
+            low=100 * low, high=100 * high,
         ),
-    }
+    }  # fmt: skip
 
 
 def overload_words(overload: Sequence[Breach]) -> Message:
@@ -293,9 +291,8 @@ def no_result_words(contact: SoleContact, overload: Sequence[Breach]) -> Message
         return Message(
             "lugs crushed: {share:.0%} of the load rests on pressures above the modulus of the "
             "rubber; {where}. More land, less load or a harder compound",
-            share=overload[0].high,
-            where=where,
-        )
+            share=overload[0].high, where=where,
+        )  # fmt: skip
     if share > SHARE_LIMITS[1]:
         return Message("the sole floats and tips from one film to another: {where}", where=where)
     return Message(

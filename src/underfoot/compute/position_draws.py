@@ -234,9 +234,8 @@ class TreadPositions:
                 "{count} of {all} positions of the tread did not converge. Most such positions "
                 "float: COF may be lower and the load on the film higher than the means over the "
                 "others.",
-                count=count,
-                all=count + len(self.places),
-            )
+                count=count, all=count + len(self.places),
+            )  # fmt: skip
         told |= self._bevel_label()
         if len(self.places) == 1:
             alone = Message(
@@ -254,10 +253,9 @@ class TreadPositions:
             told["shoe_angle"] = Message(
                 "{up} deg toe up, one standard deviation of it, moves COF by {cof} and the load "
                 "on the film by {film}",
-                up=Amount(math.degrees(ANGLE_DEVIATION)),
-                cof=Amount(self.by_angle["cof"]),
+                up=Amount(math.degrees(ANGLE_DEVIATION)), cof=Amount(self.by_angle["cof"]),
                 film=Amount(self.by_angle["fluid_load"], "N"),
-            )
+            )  # fmt: skip
         average = Message(
             "COF {range}, load on the film {loads} over {count} positions of the tread. Numbers "
             "are means over them; maps, histories and drainage show the position that the case "

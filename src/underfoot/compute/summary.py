@@ -20,7 +20,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.remark import NOTHING, Message, Remark, subjects
-from underfoot.shoe.lug_drainage import MATTERS, across_text
+from underfoot.shoe.lug_drainage import MATTERS, TO_SIDES, across_text
 
 FILM_MATTERS = 0.05
 """Share of the load carried by the film above which drainage can raise the friction."""
@@ -357,15 +357,6 @@ def table(scalars: Mapping[str, SourcedValue], labels: Mapping[str, str]) -> Tab
         if name == "cof_viscous" and "regime" in labels:
             rows.append(("Lubrication regime", labels["regime"], labels.get("regime_rule", "")))
     return Table("Results", ("Quantity", "Value", "Remark"), rows)
-
-
-TO_SIDES = (
-    Message("to the front"),
-    Message("to the rear"),
-    Message("to the left"),
-    Message("to the right"),
-)
-"""Where fluid goes, by the number in ``SIDES``."""
 
 
 def drainage_table(fields: Fields) -> Table:

@@ -490,20 +490,18 @@ class PairContactLaw(UncertainInputs):
                     Remark(
                         f"{part}.roughness",
                         "not given; the friction is drawn over Rq = {low:.2g} to {high:.2g} um",
-                        low=1e6 * low,
-                        high=1e6 * high,
+                        low=1e6 * low, high=1e6 * high,
                     )
-                )
+                )  # fmt: skip
         low, high = self.pair.loss_tangent
         if self.pair.hysteresis is None and high > low:
             words.append(
                 Remark(
                     "shoe.material.loss_tangent",
                     "not given; the hysteresis is drawn over {low:g} to {high:g}",
-                    low=low,
-                    high=high,
+                    low=low, high=high,
                 )
-            )
+            )  # fmt: skip
         elif self.pair.hysteresis is None:
             words.append(
                 Remark(
@@ -515,10 +513,9 @@ class PairContactLaw(UncertainInputs):
                 Remark(
                     "friction.pair",
                     "hysteresis COF {cof:.3f} from {origin}",
-                    cof=self.pair.hysteresis,
-                    origin=self.pair.hysteresis_origin,
+                    cof=self.pair.hysteresis, origin=self.pair.hysteresis_origin,
                 )
-            )
+            )  # fmt: skip
         return tuple(words)
 
     @property

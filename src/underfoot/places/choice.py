@@ -204,29 +204,26 @@ class Choice(Presentable):
             lines = [
                 Message(
                     "Which of the {count} shoes is best can't be told: {told}.",
-                    count=count,
-                    told=told,
+                    count=count, told=told,
                 )
-            ]
+            ]  # fmt: skip
         if unlikely := [each.shoe.name for each in self.shoes if self._chance(each) < UNLIKELY]:
             lines.append(
                 Message(
                     "Hardly the best (chance below {limit:.0f} %): {shoes}.",
-                    limit=100 * UNLIKELY,
-                    shoes=unlikely,
+                    limit=100 * UNLIKELY, shoes=unlikely,
                 )
-            )
+            )  # fmt: skip
         most = self.levers[0] if self.levers else None
         if most is not None and most.left[1] < 1 and most.fewer > 0.5 + TOSS_UP:
             lines.append(
                 Message(
                     "Most is gained by {change}: it leaves {share} of the slips of today, fewer "
                     "with a probability of {chance}.",
-                    change=most.name,
-                    share=_share(most.left),
+                    change=most.name, share=_share(most.left),
                     chance=drawn_probability_text(most.fewer),
                 )
-            )
+            )  # fmt: skip
         else:
             lines.append(Message("No change that was tried surely leaves fewer slips."))
         if self.measurements and self.measurements[0].changes >= 0.05:
@@ -234,10 +231,9 @@ class Choice(Presentable):
             lines.append(
                 Message(
                     "Measure first: {name}; it changes the choice with a chance of {chance}.",
-                    name=one.name,
-                    chance=_of_bins(one.changes),
+                    name=one.name, chance=_of_bins(one.changes),
                 )
-            )
+            )  # fmt: skip
         return tuple(lines)
 
     def cautions(self) -> tuple[Message, ...]:
@@ -710,9 +706,8 @@ def _cleaning(
         }
         name = Message(
             "{fluids} washed off with {washed}, the floor left wet",
-            fluids=[*map(fluid_name, oily)],
-            washed=WASHED,
-        )
+            fluids=[*map(fluid_name, oily)], washed=WASHED,
+        )  # fmt: skip
         after, before = (_sum(_slips(place, joint, each)) for each in (cells, new))
         levers.append(_lever(name, after, before))
     return levers

@@ -487,10 +487,9 @@ class MachinePrediction(Presentable):
             lines.append(
                 Message(
                     "The floor has no roughness: it was drawn over Rq {low:.2g} to {high:.2g} um.",
-                    low=low,
-                    high=high,
+                    low=low, high=high,
                 )
-            )
+            )  # fmt: skip
         if self.machine.learned is None:
             lines.append(Message("No reading of this machine stands behind the prediction."))
         unsure = [

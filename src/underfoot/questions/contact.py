@@ -73,9 +73,8 @@ class RoughContact(Presentable):
         contact = self.contact
         return Message(
             "{pressure}, {speed}",
-            pressure=Amount(contact.nominal_pressure, "Pa"),
-            speed=Amount(contact.speed, "m/s"),
-        )
+            pressure=Amount(contact.nominal_pressure, "Pa"), speed=Amount(contact.speed, "m/s"),
+        )  # fmt: skip
 
     @property
     def answer(self) -> Message:
@@ -83,9 +82,8 @@ class RoughContact(Presentable):
         return Message(
             "Real contact {contact:.3g} %, hysteresis COF {cof_hysteresis:.3g} at {at}",
             contact=100.0 * self.contact.real_contact_fraction_corrected,
-            cof_hysteresis=self.contact.cof_hysteresis,
-            at=self._at,
-        )
+            cof_hysteresis=self.contact.cof_hysteresis, at=self._at,
+        )  # fmt: skip
 
     def headline(self) -> tuple[Message, ...]:
         if not self.usable:
@@ -279,9 +277,8 @@ def solved(
         (contact,) = contacts_on_card(*given)
         cost = Message(
             "contact solved on {card}, {time:.1f} s",
-            card=card(),
-            time=time.perf_counter() - began,
-        )
+            card=card(), time=time.perf_counter() - began,
+        )  # fmt: skip
         contact = replace(contact, notes=(*contact.notes, cost))
     if not contact.status.usable:
         return contact, FlowFactors(np.nan, np.nan, np.nan, np.nan, np.nan)
@@ -347,11 +344,10 @@ def _from_profile(
     note = Message(
         "the levelled profile has an rms height of {rms}, this surface "
         "{surface}: it keeps waves from {shortest} to {longest}",
-        rms=Amount(float(np.std(flat.heights)), "m"),
-        surface=Amount(random.rms_height, "m"),
+        rms=Amount(float(np.std(flat.heights)), "m"), surface=Amount(random.rms_height, "m"),
         shortest=Amount(2.0 * np.pi / part.reliable[1], "m"),
         longest=Amount(2.0 * np.pi / low, "m"),
-    )
+    )  # fmt: skip
     return replace(random, processing=(*random.processing, note))
 
 

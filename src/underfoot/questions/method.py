@@ -147,10 +147,9 @@ class MethodPrediction(Presentable):
                 Message(
                     "{unsure} of {count} settings are not verified against the printed method or "
                     "depart from it; see the table.",
-                    unsure=len(unsure),
-                    count=len(self.requirements),
+                    unsure=len(unsure), count=len(self.requirements),
                 )
-            )
+            )  # fmt: skip
         if models := subjects(self._breaches()):
             reasons.append(summary.beyond_tests(models))
         return tuple(reasons)

@@ -133,11 +133,10 @@ class RiskAssessment(Presentable):
         rare = probability < RARE and not is_wide(slip.interval)
         sentence = Message(
             "Slip probability {slip}{extrapolated}{often} at an available COF of {cof}.",
-            slip=value_text("slip_probability", slip),
-            cof=value_text("cof", scalars["cof"]),
+            slip=value_text("slip_probability", slip), cof=value_text("cof", scalars["cof"]),
             extrapolated=Message(", extrapolated") if slip.note else NOTHING,
             often=Message(", {odds},", odds=odds(probability)) if rare else NOTHING,
-        )
+        )  # fmt: skip
         target = percent(self.target)
         enough = Message(
             "Friction is sufficient for a slip probability below {target}.", target=target
@@ -152,10 +151,9 @@ class RiskAssessment(Presentable):
                 if self.missing_friction is None
                 else Message(
                     "A slip probability of {target} needs a COF higher by {missing:.2f}.",
-                    target=target,
-                    missing=self.missing_friction,
+                    target=target, missing=self.missing_friction,
                 )
-            )
+            )  # fmt: skip
         return sentence, self.limit.sentence(), enough
 
     def cautions(self) -> tuple[str, ...]:
@@ -164,12 +162,11 @@ class RiskAssessment(Presentable):
             Message(
                 "Another model has {probability} for the same friction and people ({name}): "
                 "{assumption:small}",
-                probability=probability_text(risk.probability),
-                name=risk.name,
+                probability=probability_text(risk.probability), name=risk.name,
                 assumption=risk.assumption,
             )
             for risk in self.apart
-        ]
+        ]  # fmt: skip
         return (
             *cautions(
                 *(outcome.status, outcome.scalars, outcome.breaches, outcome.assumptions),

@@ -184,16 +184,14 @@ class Sensitivity(Presentable):
             return (
                 Message(
                     "No result: {status}. {remedy}",
-                    status=self.nominal.status,
-                    remedy=self.nominal.remedy,
+                    status=self.nominal.status, remedy=self.nominal.remedy,
                 ),
-            )
+            )  # fmt: skip
         band = self.band("cof")
         sentences = [
             Message(
-                "COF {value:.3f} ± {deviation:.3f} (friction law ± {law:.3f}, "
-                "assumed inputs ± {inputs:.3f}); over all variants {lowest:.3f} to "
-                "{highest:.3f}.",
+                "COF {value:.3f} ± {deviation:.3f} (friction law ± {law:.3f}, assumed inputs ± "
+                "{inputs:.3f}); over all variants {lowest:.3f} to {highest:.3f}.",
                 value=band.value, deviation=band.deviation, law=band.law, inputs=band.inputs,
                 lowest=band.lowest, highest=band.highest,
             )

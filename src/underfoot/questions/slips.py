@@ -143,10 +143,9 @@ class SlipPopulation(Presentable):
                 Message(
                     "Inlets of {inlet:.3g} mm read at most {seen} of the film's highest "
                     "pressure: a low reading does not show that there is no film.",
-                    inlet=1e3 * study.array.inlet_diameter,
-                    seen=percent(seen),
+                    inlet=1e3 * study.array.inlet_diameter, seen=percent(seen),
                 )
-            )
+            )  # fmt: skip
         if study.by_friction is None and len(study.subjects) > 1:
             reasons.append(
                 Message(
@@ -159,10 +158,9 @@ class SlipPopulation(Presentable):
                 Message(
                     "Slips that could not be solved and are left out: {failed} of {count} full "
                     "runs.",
-                    failed=study.failed,
-                    count=study.failed + len(study.full_runs),
+                    failed=study.failed, count=study.failed + len(study.full_runs),
                 )
-            )
+            )  # fmt: skip
         return tuple(reasons)
 
     def _other_model(self) -> tuple[Message, ...]:
@@ -171,14 +169,12 @@ class SlipPopulation(Presentable):
             return ()
         return (
             Message(
-                "run and risk answer {chance} for these people on this floor "
-                "({model}): a curve fitted to counted slips, with the spread of "
-                "film, tread and grid; here it is that of the contact's friction "
-                "alone.",
-                chance=value_text("slip_probability", self.predicted),
-                model=self.model,
+                "run and risk answer {chance} for these people on this floor ({model}): a curve "
+                "fitted to counted slips, with the spread of film, tread and grid; here it is "
+                "that of the contact's friction alone.",
+                chance=value_text("slip_probability", self.predicted), model=self.model,
             ),
-        )
+        )  # fmt: skip
 
     def table(self) -> Table:
         study = self.study
@@ -235,9 +231,8 @@ class SlipPopulation(Presentable):
                     text = Message("below 0.01 m/s")
                 remark = Message(
                     "{values: / } {unit}; without marker",
-                    values=[f"{value:g}" for value in values],
-                    unit=unit,
-                )
+                    values=[f"{value:g}" for value in values], unit=unit,
+                )  # fmt: skip
                 rows.append((Message("Peak speed by {label}", label=label), text, remark))
         return Table("Population", ("Quantity", "Value", "Remark"), rows)
 
@@ -254,10 +249,9 @@ class SlipPopulation(Presentable):
             ),
             Message(
                 "a slipping foot takes on {low:.2g} to {high:.2g} of the dry step's load (assumed)",
-                low=low,
-                high=high,
+                low=low, high=high,
             ),
-        ]
+        ]  # fmt: skip
         if any(spread.assumed for spread in (people.mass, people.rcof, people.heel_speed)):
             lines.append(
                 Message(

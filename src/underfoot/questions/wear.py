@@ -147,10 +147,9 @@ class WearSeries(Presentable):
             sentences.append(
                 Message(
                     "The last state has lost {volume}: {life}.",
-                    volume=volume,
-                    life=walks[-1].text if measured else life,
+                    volume=volume, life=walks[-1].text if measured else life,
                 )
-            )
+            )  # fmt: skip
         return tuple(sentences)
 
     def _cof(self) -> Message | None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import percent, quantity_text
+from underfoot.core.remark import NOTHING, Message
 from underfoot.core.sparse import factorization
 
 from ._kernels.regions import Labels, draining, pieces
@@ -34,6 +35,13 @@ MIDDLE = 1e-3
 TOP = 0.99
 """Of a lug's highest fluid pressure: it peaks in the middle of what bears more."""
 SIDES = ("front", "rear", "left", "right")
+TO_SIDES = (
+    Message("to the front"),
+    Message("to the rear"),
+    Message("to the left"),
+    Message("to the right"),
+)
+"""Where fluid goes, by the number in ``SIDES``."""
 """Left and right as seen from above, looking forward."""
 
 
@@ -63,26 +71,30 @@ class LugDrainage:
     groove_side: NDArray[np.intp]
     relief: Array
 
-    def advice(self) -> str:
+    def advice(self) -> Message:
         """Return which lug drains worst and to which side to open it; empty where all bear little.
 
         Parts more slender than high bend over: where the way is no longer than the lug is high, no
         cut is advised.
         """
         if self.share[0] < MATTERS:
-            return ""
+            return NOTHING
         way = self.way[0]
-        advice = "no longer than the lug is high, leave it"
+        advice = Message("no longer than the lug is high, leave it")
         if way > self.height[0]:
-            advice = (
-                f"open it to the {SIDES[self.groove_side[0]]}, a groove of "
-                f"{quantity_text(self.groove[0], 'm')} relieves most"
-            )
-        place = f"{quantity_text(self.x[0], 'm')} from the rear, {across_text(self.y[0])}"
-        every = quantity_text(self.load[0] / self.share[0], "N")
-        load = f"{quantity_text(self.load[0], 'N')} of film, {percent(self.share[0])} of {every}"
-        way_out = f"{quantity_text(way, 'm')} to go to the {SIDES[self.side[0]]}"
-        return f"the lug {place}, carries {load}; its fluid has {way_out}: {advice}"
+            groove = quantity_text(self.groove[0], "m")
+            advice = Message(
+                "open it {to}, a groove of {groove} relieves most",
+                to=TO_SIDES[self.groove_side[0]], groove=groove,
+            )  # fmt: skip
+        return Message(
+            "the lug {x} from the rear, {y}, carries {load} of film, {share} of {every}; its fluid "
+            "has {way} to go {to}: {advice}",
+            x=quantity_text(self.x[0], "m"), y=across_text(self.y[0]),
+            load=quantity_text(self.load[0], "N"), share=percent(self.share[0]),
+            every=quantity_text(self.load[0] / self.share[0], "N"), way=quantity_text(way, "m"),
+            to=TO_SIDES[self.side[0]], advice=advice,
+        )  # fmt: skip
 
     def fields(self) -> dict[str, tuple[str, Any, dict[str, str]]]:
         """Return the variables of a data set."""
@@ -104,11 +116,11 @@ class LugDrainage:
         }
 
 
-def across_text(y: float) -> str:
+def across_text(y: float) -> Message:
     """Return how far to the left (y, m) a place lies."""
     if abs(y) < MIDDLE:
-        return "in the middle"
-    return f"{quantity_text(abs(y), 'm')} to the {'left' if y >= 0 else 'right'}"
+        return Message("in the middle")
+    return Message("{way} {to}", way=quantity_text(abs(y), "m"), to=TO_SIDES[2 if y >= 0 else 3])
 
 
 def lug_drainage(sole: SoleMap, fluid_pressure: Array, film_thickness: Array) -> LugDrainage | None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from underfoot.core import InputError, Range
 from underfoot.core.arrays import Array
+from underfoot.core.remark import NOTHING, Message
 from underfoot.shoe.geometry import SoleMap
 
 AVERAGING_AREA = 10e-6
@@ -44,15 +45,16 @@ class PeakPressure:
     at_edge: bool
 
     @property
-    def remark(self) -> str:
+    def remark(self) -> Message:
         """What to say beside the highest pressure; empty where it can be trusted."""
         if not self.at_edge:
-            return ""
-        return (
-            f"the highest pressure of contact and fluid together, {self.highest / 1e3:.0f} kPa, "
-            "lies at the edge of a lug or of the sole and grows on a finer grid; its mean over "
-            f"{self.area * 1e6:.0f} mm2 is {self.mean / 1e3:.0f} kPa"
-        )
+            return NOTHING
+        return Message(
+            "the highest pressure of contact and fluid together, {highest:.0f} kPa, lies at the "
+            "edge of a lug or of the sole and grows on a finer grid; its mean over {area:.0f} mm2 "
+            "is {mean:.0f} kPa",
+            highest=self.highest / 1e3, area=self.area * 1e6, mean=self.mean / 1e3,
+        )  # fmt: skip
 
 
 def peak_pressure(

@@ -41,6 +41,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import percent
+from underfoot.core.remark import NOTHING, Message
 from underfoot.friction import FrictionLaw, FrictionParts
 from underfoot.friction.two_states import TwoStateLaw, between_states
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
@@ -145,15 +146,17 @@ class LugFriction:
         ratio = self.edges.map(self.suction / np.maximum(self.factor, 1e-9), 0.0)
         return float((solid * ratio).sum() / max(solid.sum(), 1e-30))
 
-    def summary(self) -> str:
+    def summary(self) -> Message:
         """Return what the edges do in one sentence."""
         weight = self.load / max(self.load.sum(), 1e-30)
         pull, wiped = (float(weight @ each) for each in (self.suction, self.wiped))
-        return (
-            f"suction behind the edges of {np.count_nonzero(self.load)} lugs adds "
-            f"{percent(pull)} of their load"
-            + (f"; {percent(wiped)} of it is wiped nearly dry" if wiped > 0.005 else "")
-        )
+        dry = NOTHING
+        if wiped > 0.005:
+            dry = Message("; {share} of it is wiped nearly dry", share=percent(wiped))
+        return Message(
+            "suction behind the edges of {count} lugs adds {share} of their load{dry}",
+            count=int(np.count_nonzero(self.load)), share=percent(pull), dry=dry,
+        )  # fmt: skip
 
 
 def lug_edges(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from underfoot.core.presentation import quantity_text
+from underfoot.core.remark import Message
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 from underfoot.shoe.slits import Slits
@@ -50,18 +51,23 @@ def loaded_slits(
     )
 
 
-def slit_words(slits: Slits, *, giving: bool) -> str:
+def slit_words(slits: Slits, *, giving: bool) -> Message:
     """Return in one sentence how much of sipes was computed and what they change.
 
     ``giving``: whether the compliance knows them, or only the film.
     """
     width = float(np.average(slits.width, weights=slits.length.sum(axis=0)))
     left = max(width - slits.closing, 0.0)
-    pressed = f"{quantity_text(width, 'm')} wide, pressed to {quantity_text(left, 'm')}"
+    wide = {"width": quantity_text(width, "m"), "left": quantity_text(left, "m")}
+    pressed = Message("{width} wide, pressed to {left}", **wide)
     if not slits.drained.any():
-        pressed = f"{quantity_text(width, 'm')} wide, {quantity_text(left, 'm')} under load: shut"
-    length = quantity_text(slits.whole_length, "m")
-    return (
-        f"{slits.count} sipes finer than the grid, {length} in all, computed as slits: {pressed}; "
-        + (f"the lugs give way {slits.further_give:.0%} more" if giving else "they only drain")
-    )
+        pressed = Message("{width} wide, {left} under load: shut", **wide)
+    effect = Message("they only drain")
+    if giving:
+        effect = Message("the lugs give way {share:.0%} more", share=slits.further_give)
+    return Message(
+        "{count} sipes finer than the grid, {length} in all, computed as slits: {pressed}; "
+        "{effect}",
+        count=slits.count, length=quantity_text(slits.whole_length, "m"), pressed=pressed,
+        effect=effect,
+    )  # fmt: skip

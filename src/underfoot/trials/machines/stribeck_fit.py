@@ -205,10 +205,9 @@ def stribeck_fit(
         warnings.append(
             Message(
                 "R^2 {r_squared:.2f} is below {moderate}: COF_BL is the mean COF",
-                r_squared=r_squared,
-                moderate=MODERATE,
+                r_squared=r_squared, moderate=MODERATE,
             )
-        )
+        )  # fmt: skip
         mean = float(y.mean())
         error = float(y.std(ddof=1) / np.sqrt(len(y)))
         parameters = (
@@ -229,10 +228,9 @@ def stribeck_fit(
             warnings.append(
                 Message(
                     "tau {tau:.3g} m/s exceeds the largest speed {fastest:.3g} m/s",
-                    tau=tau,
-                    fastest=v.max(),
+                    tau=tau, fastest=v.max(),
                 )
-            )
+            )  # fmt: skip
     raw = start, tau, asymptote
     quality = r_squared, rss, len(y), method, verdict
     return StribeckFit(*parameters, *quality, v, y, raw, tuple(warnings))

@@ -247,10 +247,9 @@ def _frames(
     return frames, [
         Message(
             "frames are counted in two ways ({listed}): the data hold {frames}, all read",
-            listed=listed,
-            frames=frames,
+            listed=listed, frames=frames,
         )
-    ]
+    ]  # fmt: skip
 
 
 def _rates(frame_rate: float, per_frame: int, shell: C3DFile, where: str) -> tuple[float, float]:
@@ -476,9 +475,8 @@ def _unused_plates(raw: C3DFile) -> list[str]:
     )
     said = Message(
         "FORCE_PLATFORM:USED is {used}: {left} more that are described are left out",
-        used=used,
-        left=left,
-    )
+        used=used, left=left,
+    )  # fmt: skip
     return [said] if left else []
 
 

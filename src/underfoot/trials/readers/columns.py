@@ -293,10 +293,9 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
             Message(
                 "{label} recognised from {names}, taken as the force on the foot: a "
                 "profile can say otherwise",
-                label=label,
-                names=names,
+                label=label, names=names,
             )
-        )
+        )  # fmt: skip
     return plates
 
 

@@ -160,10 +160,9 @@ class Draft:
             self.notes.append(
                 Message(
                     "{name}: {count} samples that hold a code are left out",
-                    name=name,
-                    count=int(lost.sum()),
+                    name=name, count=int(lost.sum()),
                 )
-            )
+            )  # fmt: skip
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:
@@ -185,10 +184,9 @@ class Draft:
                 Message(
                     "{name}: {count} samples hold a number that stands for a lost one: "
                     "taken as not measured",
-                    name=more["name"],
-                    count=int(coded.sum()),
+                    name=more["name"], count=int(coded.sum()),
                 )
-            )
+            )  # fmt: skip
         self.plates.append(_RawPlate(force, more))
 
     def length_unit(self, written: str, places: np.ndarray, of: str = "the markers") -> float:
@@ -261,10 +259,9 @@ class Draft:
             self.notes.append(
                 Message(
                     "markers are held for {rows:.3g} rows: cameras at {rate:.4g} Hz",
-                    rows=clock.rows_a_frame,
-                    rate=rate,
+                    rows=clock.rows_a_frame, rate=rate,
                 )
-            )
+            )  # fmt: skip
             markers = {
                 name: Marker(clock.seen(one.positions), rate, start)
                 for name, one in markers.items()

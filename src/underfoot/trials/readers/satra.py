@@ -43,8 +43,7 @@ def read_stm603(draft: Draft) -> Trial:
         draft.notes.append(
             Message(
                 'friction is "{friction}", normal force "{normal}"',
-                friction=columns[0],
-                normal=columns[1],
+                friction=columns[0], normal=columns[1],
             )
-        )
+        )  # fmt: skip
     return trial_from_sheet(draft, sheet, "SATRA STM 603")

@@ -26,10 +26,9 @@ def read_trc(draft: Draft) -> Trial:
         draft.notes.append(
             Message(
                 "NumMarkers is {announced}, the labels name {count}: all are read",
-                announced=announced,
-                count=len(labels),
+                announced=announced, count=len(labels),
             )
-        )
+        )  # fmt: skip
     else:
         draft.count(announced, len(labels), "NumMarkers")
     candidates = ((i, split(lines[i], "\t")) for i in range(4, min(len(lines), 12)))

@@ -63,9 +63,8 @@ class Rule:
         return Message(
             "{quantity} {value}; rule: {rule}",
             quantity=self.quantity.replace("_", " "),
-            value=Amount(value, QUANTITIES[self.quantity]),
-            rule=self.statement(),
-        )
+            value=Amount(value, QUANTITIES[self.quantity]), rule=self.statement(),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,10 +137,9 @@ class Protocol:
             found.append(
                 Message(
                     "Not verified against the text of {source}, which was not at hand: {names}.",
-                    source=self.source,
-                    names=dict.fromkeys(memory),
+                    source=self.source, names=dict.fromkeys(memory),
                 )
-            )
+            )  # fmt: skip
         if assumed:
             found.append(Message("Assumed: {settings:; }.", settings=assumed))
         return found

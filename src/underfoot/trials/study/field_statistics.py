@@ -155,10 +155,9 @@ def agreement_findings(
         ("upper limit of agreement", limits.upper, *limits.upper_interval),
     ]
     note = Message(
-        "{first} - {second}, {pairs} pairs of {subjects} samples; "
-        "readings are paired in their order. Limits: bias -+ 1.96 SD of a "
-        "single difference; the true value may vary between readings. "
-        "Differences against means: slope {slope:.2g} (p {slope_p:.2g}).",
+        "{first} - {second}, {pairs} pairs of {subjects} samples; readings are paired in their "
+        "order. Limits: bias -+ 1.96 SD of a single difference; the true value may vary between "
+        "readings. Differences against means: slope {slope:.2g} (p {slope_p:.2g}).",
         first=raters[0], second=raters[1], pairs=limits.pairs, subjects=limits.subjects,
         slope=limits.slope, slope_p=limits.slope_p,
     )  # fmt: skip
@@ -277,9 +276,8 @@ def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) 
     listed = [Message("{level} {mark}", level=level, mark=mark) for level, mark in marks.items()]
     title = Message(
         "Pairs of {response} by {factor}: rank tests",
-        response=quantity_name(response),
-        factor=factor,
-    )
+        response=quantity_name(response), factor=factor,
+    )  # fmt: skip
     heads = ("first", "second", "median difference", HOLM_P)
     note = Message("Levels that share a letter do not differ at 0.05: {listed}.", listed=listed)
     rows = [(pair.first, pair.second, pair.difference, pair.p) for pair in pairs]
@@ -358,10 +356,9 @@ def prediction_finding(
         ("calibration intercept", told.calibration_intercept, None, None),
     ]
     note = Message(
-        "{persons} persons. Area: chance that a slip has the worse number "
-        "(0.5: none); interval with persons as units (Obuchowski). Brier: "
-        "mean squared error of the predicted risk, interval by bootstrap of "
-        "persons. Calibration: slope 1, intercept 0 is right.",
+        "{persons} persons. Area: chance that a slip has the worse number (0.5: none); interval "
+        "with persons as units (Obuchowski). Brier: mean squared error of the predicted risk, "
+        "interval by bootstrap of persons. Calibration: slope 1, intercept 0 is right.",
         persons=area.persons,
     )
     worse = (Message("the prediction is no better than the share of slips alone"),)

@@ -105,12 +105,11 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
     explained = (
         Message(
             "Fitted by {separable}; beside it {nelder_mead}.",
-            separable=FIT_METHODS["separable"],
-            nelder_mead=FIT_METHODS["nelder_mead"],
+            separable=FIT_METHODS["separable"], nelder_mead=FIT_METHODS["nelder_mead"],
         ),
         "Intervals are profile likelihoods; a dash means that the profile does not close.",
         "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
-    )
+    )  # fmt: skip
     made = [Table.of("stribeck", title, heads, rows, *explained)]
     findings: list[Finding] = []
     compared = protocol.texts("compare") or keys[:1]
@@ -122,9 +121,8 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         if lost and tests:
             text = Message(
                 "{lost} of {count} series left out: not identified, or no good fit",
-                lost=lost,
-                count=len(values),
-            )
+                lost=lost, count=len(values),
+            )  # fmt: skip
             tests[0] = replace(tests[0], cautions=(*tests[0].cautions, text))
         findings += tests
     curves: dict[str, Any] = {"fits": fits}
@@ -224,10 +222,9 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         note = Message(
             "R^2 {r_squared:.3f}, adjusted {adjusted:.3f}; mean "
             "absolute residual {residual:.3g} N.",
-            r_squared=fit.model.r_squared,
-            adjusted=fit.model.adjusted_r_squared,
+            r_squared=fit.model.r_squared, adjusted=fit.model.adjusted_r_squared,
             residual=fit.mean_absolute_residual,
-        )
+        )  # fmt: skip
         title = "Adhesion a fluid leaves, Eq. 26"
         made.append(Table.of("alpha_beta", title, heads, lines, note))
         findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]

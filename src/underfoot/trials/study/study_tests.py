@@ -194,10 +194,9 @@ def _power_note(
         found.append(
             Message(
                 "{least} between two levels of {factor}",
-                least=plain_number(least, 2),
-                factor=factor,
+                least=plain_number(least, 2), factor=factor,
             )
-        )
+        )  # fmt: skip
         half.append(str(count))
     if not found:
         return []
@@ -205,10 +204,9 @@ def _power_note(
         Message(
             "So many persons find a difference of {names} with 80 % power "
             "(paired t); half of it would take {half}.",
-            names=found,
-            half=dict.fromkeys(half),
+            names=found, half=dict.fromkeys(half),
         )
-    ]
+    ]  # fmt: skip
 
 
 def _tukey(

@@ -203,9 +203,8 @@ def required_friction(
             text = Message(
                 "the heel slides at {peak:.2f} m/s over {way:.0f} mm: the ratio is available "
                 "friction (ACOF), not required",
-                peak=slip.peak_speed.value or 0.0,
-                way=1e3 * (slip.distance.value or 0.0),
-            )
+                peak=slip.peak_speed.value or 0.0, way=1e3 * (slip.distance.value or 0.0),
+            )  # fmt: skip
             return without(text)
     gate = definition.gate
     if definition.gate_body_weight is not None:
@@ -296,12 +295,10 @@ def _tilt_flags(slope: float | None, ramp: Ramp) -> tuple[Flag, ...]:
     if slope is None or abs(slope - stated) <= _TILT:
         return ()
     text = Message(
-        "the plate's corners slope by {slope:.1f} deg along the walk and "
-        "its forces are taken as on a slope of {stated:.1f} deg: check the "
-        "angle of the ramp",
-        slope=math.degrees(slope),
-        stated=math.degrees(stated),
-    )
+        "the plate's corners slope by {slope:.1f} deg along the walk and its forces are taken as "
+        "on a slope of {stated:.1f} deg: check the angle of the ramp",
+        slope=math.degrees(slope), stated=math.degrees(stated),
+    )  # fmt: skip
     return (Flag("plate slope", text, True, abs(slope - stated), _TILT, "rad"),)
 
 
