@@ -41,7 +41,7 @@ class SoleView(ui.element):
 def title(heading: str, level: int = 1) -> ui.element:
     """Return a heading."""
     with ui.element(f"h{level}") as made:
-        ui.label(heading)
+        told(heading)
     return made
 
 
@@ -96,12 +96,12 @@ def table(
     with ui.element("div").classes("wide") as made, ui.element("table"):
         if shown["title"]:
             with ui.element("caption"):
-                ui.label(shown["title"])
+                told(shown["title"])
         if any(shown["columns"]):
             with ui.element("thead"), ui.element("tr"):
                 for name in shown["columns"]:
                     with ui.element("th").props('scope="col"'):
-                        ui.label(name)
+                        told(name)
         with ui.element("tbody"):
             for place, row in enumerate(shown["rows"]):
                 with ui.element("tr") as line:

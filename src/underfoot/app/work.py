@@ -24,6 +24,7 @@ from underfoot.compute.summary import friction_limit
 from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields
 from underfoot.core.presentation import Presentable, quantity_text
+from underfoot.core.remark import stored_form
 from underfoot.questions.comparison import Comparison, compare
 from underfoot.questions.order import Verdict
 from underfoot.questions.risk import risk_assessment
@@ -144,7 +145,9 @@ def worn(path: str, folder: str, pair: str, *, progress: Progress) -> None:
     case, worn_shoe = Case.load(path), worn_pair(pair)
     mode = wear_mode(None, case)
     series = wear_series(case, mode=mode, band=False, pair=worn_shoe, progress=progress)
-    further = {"shown.json": write_text(json.dumps({**presented(series), "hash": case.hash}))}
+    further = {
+        "shown.json": write_text(json.dumps(stored_form({**presented(series), "hash": case.hash})))
+    }
     put_language(write_report(series, folder, overwrite=True, further=further).page)
 
 

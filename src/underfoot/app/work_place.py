@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 from underfoot.core import Progress
+from underfoot.core.remark import stored_form
 from underfoot.places.choice import chosen
 from underfoot.places.place import read_place
 from underfoot.report import write_report
@@ -28,5 +29,5 @@ def chosen_shoe(file: str, folder: str, *, progress: Progress) -> None:
     slips_figure(choice).savefig(picture, format="png", dpi=150)
     address = "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode()
     shown = {**presented(choice), "picture": address}
-    further = {"shown.json": write_text(json.dumps(shown))}
+    further = {"shown.json": write_text(json.dumps(stored_form(shown)))}
     put_language(write_report(choice, folder, overwrite=True, further=further).page)

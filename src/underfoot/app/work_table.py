@@ -14,7 +14,12 @@ from underfoot.compute.result import Result
 from underfoot.core import Progress, SourcedValue
 from underfoot.core.errors import UnderfootError, error_text
 from underfoot.core.presentation import value_text
-from underfoot.questions.comparison import differences, interval_95, with_short_names
+from underfoot.questions.comparison import (
+    compared_values,
+    differences,
+    interval_95,
+    with_short_names,
+)
 from underfoot.report.thumbnail import thumbnail
 from underfoot.trials.pages.report import csv_text, write_spreadsheet
 from underfoot.trials.study.tables import Table
@@ -34,8 +39,11 @@ Entries = Sequence[Sequence[str]]
 
 @dataclass(frozen=True, slots=True)
 class _Inputs:
+    """What a case holds: ``values`` with how sure they are, as text, and numbers for sorting."""
+
     hash: str
     texts: dict[str, str]
+    values: dict[str, Any]
     numbers: dict[str, float]
     problem: str = ""
     files: tuple[str, ...] = ()
@@ -57,9 +65,10 @@ def rows(entries: Entries, *, progress: Progress) -> dict[str, Any]:
     last two. Inputs and numbers stand in SI for sorting, with ``_text`` as people read them.
     """
     known = [(name, *_known(case, folder)) for name, case, folder in entries]
-    differing = differences([inputs.texts for _, inputs, _ in known if not inputs.problem])
-    paths = [row[0] for row in differing]
-    shown = [row[0] for row in with_short_names(differing)]
+    cases = [inputs for _, inputs, _ in known if not inputs.problem]
+    paths = [row[0] for row in differences([inputs.values for inputs in cases])]
+    texts = [(path, *(inputs.texts.get(path, "-") for inputs in cases)) for path in paths]
+    shown = [row[0] for row in with_short_names(texts)]
     table = [_row(name, inputs, outcome, paths) for name, inputs, outcome in known]
     return {"inputs": [(path, _unit(path)) for path in shown], "rows": table}
 
@@ -160,14 +169,14 @@ def _inputs(path: Path) -> _Inputs:
         texts = {path: text for path, text, _ in case.rows()}
         values = {path: case.value(path) for path in texts}
     except UnderfootError as error:
-        return _Inputs("", {}, {}, error_text(error))
+        return _Inputs("", {}, {}, {}, error_text(error))
     numbers: dict[str, float] = {
         path: value
         for path, value in values.items()
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
     files = tuple(str(values[path]) for path in values if path.endswith(".file"))
-    return _Inputs(case.hash, texts, numbers, files=files)
+    return _Inputs(case.hash, texts, compared_values(case), numbers, files=files)
 
 
 def _outcome(path: Path) -> _Outcome | None:

@@ -128,7 +128,9 @@ def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[
     giving = "compliance" not in parts.objects and case.compliance.cut
     peak = peak_pressure(sole, contact.total_pressure, cell_load=contact.cell_load)
     remarks = {
-        "lug_edges": "" if lugs is None else lugs.summary() + chamfer_remark(case),
+        "lug_edges": NOTHING
+        if lugs is None
+        else Message("{edges}{chamfer}", edges=lugs.summary(), chamfer=chamfer_remark(case)),
         "drainage": "",
         "sipes": ""
         if slits is None or not slits.length.any()
@@ -186,8 +188,10 @@ def _last_instant(case: Case) -> Message:
     return Message("{parts}", parts=parts)
 
 
-def chamfer_remark(case: Case) -> str:
-    """Return what the chamfer of lugs counts as for the film at their edges; "" without one."""
+def chamfer_remark(case: Case) -> Message:
+    """Return what the chamfer of lugs counts as for the film at their edges, if there is one."""
     if not case.value("shoe.tread.edge_chamfer"):
-        return ""
-    return "; chamfered edges count as sharp ones, 0.1 mm round (assumed: no source for their film)"
+        return NOTHING
+    return Message(
+        "; chamfered edges count as sharp ones, 0.1 mm round (assumed: no source for their film)"
+    )

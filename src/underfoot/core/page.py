@@ -68,6 +68,7 @@ def page(
         .get_template("page.html")
         .render(
             shown=shown,
+            title=str(shown.heading()),
             headline=shown.headline(),
             cautions=shown.cautions(),
             script=script,

@@ -15,6 +15,7 @@ from underfoot.core import InputError
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.progress import time_text
+from underfoot.core.remark import NOTHING, Message
 
 from .computing import status_bytes
 from .cost import StudyCost, study_cost
@@ -111,61 +112,88 @@ class StudyCheck(Presentable):
         """Return the name of the study."""
         return self.plan.name
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return the number of cases and their cost."""
         states, draws = len(self.plan.states), len(self.plan.draws)
-        per = f" x {states} conditions" * (states > 1) + f" x {draws} draws" * (draws > 1)
+        by_state = by_draw = NOTHING
+        if states > 1:
+            by_state = Message(" x {count} conditions", count=states)
+        if draws > 1:
+            by_draw = Message(" x {count} draws", count=draws)
         low, high = map(time_text, self.seconds)
-        cost = f"{low} to {high} of one processor"
+        cost = Message("{low} to {high} of one processor", low=low, high=high)
         if self.cost:
-            range_ = f"95 %: {low} to {high}, by {self.cost.cases} finished cases"
-            cost = f"{time_text(self.cpu_seconds)} of one processor ({range_})"
-        least, most = map(time_text, self.again_seconds)
-        again = (
-            f"The best {self.plan.method.again} and the start are then run again on the "
-            f"{self.plan.method.again_on} grid: {self.again} cases at most, "
-            f"about {least} to {most} of one processor."
-        )
-        bad = sum(self.infeasible.values())
-        share = f"{bad} of {self.built} cases of the first designs can't be built"
-        return (
-            f"{self.designs} designs{per}: {self.cases} cases at most, about {cost}.",
-            *[again] * bool(self.again),
-            f"{share[0].upper()}{share[1:]}."
-            if bad
-            else f"All {self.built} cases tried can be built.",
-            *self._where(),
-        )
+            cost = Message(
+                "{time} of one processor (95 %: {low} to {high}, by {count} finished cases)",
+                time=time_text(self.cpu_seconds), low=low, high=high, count=self.cost.cases,
+            )  # fmt: skip
+        sentences = [
+            Message(
+                "{designs} designs{states}{draws}: {cases} cases at most, about {cost}.",
+                designs=self.designs, states=by_state, draws=by_draw, cases=self.cases, cost=cost,
+            )
+        ]  # fmt: skip
+        if self.again:
+            least, most = map(time_text, self.again_seconds)
+            sentences.append(
+                Message(
+                    "The best {best} and the start are then run again on the {grid} grid: {cases} "
+                    "cases at most, about {low} to {high} of one processor.",
+                    best=self.plan.method.again, grid=self.plan.method.again_on, cases=self.again,
+                    low=least, high=most,
+                )
+            )  # fmt: skip
+        if bad := sum(self.infeasible.values()):
+            counts = {"bad": bad, "count": self.built}
+            sentences.append(
+                Message("{bad} of {count} cases of the first designs can't be built.", **counts)
+            )
+        else:
+            sentences.append(Message("All {count} cases tried can be built.", count=self.built))
+        return *sentences, *self._where()
 
-    def _where(self) -> tuple[str, ...]:
+    def _where(self) -> tuple[Message, ...]:
         """Return what the study takes here, and which engine fits."""
-        workers = f"{self.workers} worker" + "s" * (self.workers > 1)
-        left = f"{self.cases - self.ended} open cases" if self.ended else "All of it"
-        here = f"{left} on this machine, {workers} of {size_text(self.memory)}: "
-        here += f"about {time_text(self.seconds_left)}"
+        left, disk = Message("All of it"), NOTHING
+        if self.ended:
+            left = Message("{count} open cases", count=self.cases - self.ended)
         if self.cost:
-            here += f", {size_text(self.cases * self.cost.disk)} of disk"
+            disk = Message(", {disk} of disk", disk=size_text(self.cases * self.cost.disk))
+        here = Message(
+            "{left} on this machine, {workers} {workers:worker|workers} of {memory}: about "
+            "{time}{disk}.",
+            left=left, workers=self.workers, memory=size_text(self.memory),
+            time=time_text(self.seconds_left), disk=disk,
+        )  # fmt: skip
         if self.tasks == 1:
-            return (f"{here}.",)
-        took = time_text(self.seconds_left * self.workers / self.tasks)
-        array = (
-            f"An array job of {self.tasks} tasks takes about {took}: underfoot study work in each"
-        )
+            return (here,)
         case = self.cpu_seconds / self.cases
-        dask = f"a Dask cluster keeps up to {max(1, round(DASK_RATE * case))} workers busy"
-        return (f"{here}.", f"{array}; {dask}.")
+        array = Message(
+            "An array job of {tasks} tasks takes about {time}: underfoot study work in each; a "
+            "Dask cluster keeps up to {workers} workers busy.",
+            tasks=self.tasks, time=time_text(self.seconds_left * self.workers / self.tasks),
+            workers=max(1, round(DASK_RATE * case)),
+        )  # fmt: skip
+        return here, array
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what reading the file decided, and what this machine lacks."""
         texts = list(self.plan.remarks)
         if not self.cost:
-            texts.append("The cost is a guess by the size of the grid until a case has ended.")
+            texts.append(
+                Message("The cost is a guess by the size of the grid until a case has ended.")
+            )
         elif self.cases * self.cost.disk > self.machine.disk:
             need, free = (size_text(x) for x in (self.cases * self.cost.disk, self.machine.disk))
-            texts.append(f"The disk has {free} free, the study takes {need}.")
+            texts.append(
+                Message("The disk has {free} free, the study takes {need}.", free=free, need=need)
+            )
         if self.machine.memory and self.memory > self.machine.memory:
             free = size_text(self.machine.memory)
-            texts.append(f"A worker takes {size_text(self.memory)}, and {free} are free.")
+            needed = size_text(self.memory)
+            texts.append(
+                Message("A worker takes {needed}, and {free} are free.", needed=needed, free=free)
+            )
         return tuple(texts)
 
     def table(self) -> Table:
@@ -180,7 +208,7 @@ class StudyCheck(Presentable):
         rows += [("follows", each.path, f"{each.times:g} x {each.of}") for each in plan.follow]
         for each in plan.uncertain:
             ends = [value_text(each.path, each.value(share)) for share in (0.025, 0.975)]
-            rows.append(("uncertain", each.path, f"{' to '.join(ends)} (95 %)"))
+            rows.append(("uncertain", each.path, Message("{ends: to } (95 %)", ends=ends)))
         rows += [("condition", state.label, "") for state in plan.states if state.label]
         rows += [("maximise", str(goal), "") for goal in plan.maximise]
         rows += [("minimise", str(goal), "") for goal in plan.minimise]
@@ -192,8 +220,14 @@ class StudyCheck(Presentable):
         reasons = sorted(self.infeasible.items(), key=lambda one: -one[1])
         lost = self.cost.failures if self.cost else {}
         return {
-            "Can't be built": [f"{count} x {reason}" for reason, count in reasons],
-            "Without numbers among the finished": [f"{n} x {text}" for text, n in lost.items()],
+            "Can't be built": [
+                Message("{count} x {reason}", count=count, reason=reason)
+                for reason, count in reasons
+            ],
+            "Without numbers among the finished": [
+                Message("{count} x {reason}", count=count, reason=reason)
+                for reason, count in lost.items()
+            ],
         }
 
     def to_dict(self) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from underfoot.case.section import Section
 from underfoot.compute.positions import position_count, treaded
 from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .goals import AnyGoal, Condition, Goal, Requirement
 from .inputs import Distribution, Follow, Input
@@ -110,7 +111,7 @@ class StudyPlan:
     minimise: tuple[AnyGoal, ...]
     require: tuple[Requirement, ...]
     method: Method
-    remarks: tuple[str, ...]
+    remarks: tuple[Message, ...]
     text: str
     readings: tuple[Reading, ...] = ()
     fixed: Mapping[str, Any] = field(default_factory=dict)

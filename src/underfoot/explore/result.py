@@ -21,6 +21,7 @@ from underfoot.case import unit_at
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import Presentable, Table, quantity_text
+from underfoot.core.remark import NOTHING, Message, joined
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
@@ -330,13 +331,13 @@ class StudyResult(Presentable):
             shared={r.law for records in both for r in records} == {"pair"},
         )
 
-    def above_start(self) -> str:
+    def above_start(self) -> Message:
         """Return in a sentence whether a design run again has a higher COF than the start.
 
         In every condition, with ``DECIDED`` of the draws; empty where the start was not run.
         """
         if self.start is None:
-            return ""
+            return NOTHING
         chances = {}
         for design, ok in zip(self.again, self.allowed(self.again), strict=True):
             each = [
@@ -346,18 +347,25 @@ class StudyResult(Presentable):
             if known and len(known) == len(each):
                 chances[design.number] = min(known)
         if not chances:
-            return "Whether a design has a higher COF than the start is not estimated."
+            return Message("Whether a design has a higher COF than the start is not estimated.")
         number = max(chances, key=chances.__getitem__)
         labels = [state.label for state in self.plan.states if state.label]
-        where = f" in each condition ({'; '.join(labels)})" if labels else ""
-        errors = "the errors of the tread model and of the runs are in the draws"
+        where = NOTHING
+        if labels:
+            where = Message(" in each condition ({labels:; })", labels=labels)
+        values = {"number": number, "share": of_100(chances[number]), "where": where}
         if chances[number] >= DECIDED:
-            text = f"Design {number} has a higher COF than the start in {of_100(chances[number])}"
-            return f"{text} draws{where}; {errors}."
-        return (
-            f"No design has a higher COF than the start in {of_100(DECIDED)} draws{where}: at most "
-            f"in {of_100(chances[number])} (design {number}); {errors}."
-        )
+            return Message(
+                "Design {number} has a higher COF than the start in {share} draws{where}; the "
+                "errors of the tread model and of the runs are in the draws.",
+                **values,
+            )
+        return Message(
+            "No design has a higher COF than the start in {decided} draws{where}: at most in "
+            "{share} (design {number}); the errors of the tread model and of the runs are in the "
+            "draws.",
+            **values, decided=of_100(DECIDED),
+        )  # fmt: skip
 
     # --- how it is shown ---
 
@@ -380,31 +388,49 @@ class StudyResult(Presentable):
         known = {key: self.records[key].ending for key in keys.keys() & self.records.keys()}
         return Counter(str(known.get(key, Ending.OPEN)) for key in keys)
 
-    def ended_text(self, left: int, of: str = "cases") -> str:
+    def ended_text(self, left: int, of: Message | None = None) -> Message:
         """Return how many cases ended and how, where ``left`` are open; ``of`` names the cases."""
         ended = {name: n for name, n in self.endings.items() if name != Ending.OPEN}
-        done, parts = sum(ended.values()), [f"{n} {name}" for name, n in ended.items()]
-        return f"{done} of {done + left} {of} ended: {', '.join(parts) or 'none'}"
+        done = sum(ended.values())
+        parts = [Message("{count} {name}", count=n, name=name) for name, n in ended.items()]
+        return Message(
+            "{done} of {all} {cases} ended: {parts}",
+            done=done, all=done + left, cases=of or Message("cases"),
+            parts=parts or Message("none"),
+        )  # fmt: skip
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return how far it is, and the best design."""
-        of = f"cases of {len(self.designs)} designs"
-        sentences = [f"{self.ended_text(self.endings[Ending.OPEN], of)}."]
+        of = Message("cases of {count} designs", count=len(self.designs))
+        ended = self.ended_text(self.endings[Ending.OPEN], of)
+        sentences = [Message("{ended}.", ended=ended)]
         if self.plan.goals and self.usable:
             best = self.best(2)
             if not best:
-                sentences.append(f"No design meets every requirement: {self._unmet_text()}.")
+                unmet = self._unmet_text()
+                sentences.append(
+                    Message("No design meets every requirement: {unmet}.", unmet=unmet)
+                )
             elif len(self.plan.goals) == 1:
-                sentences.append(f"Best: design {best[0].number}, {self._goals_text(best[0])}.")
+                goals = {"number": best[0].number, "goals": self._goals_text(best[0])}
+                sentences.append(Message("Best: design {number}, {goals}.", **goals))
                 if len(best) > 1 and (chance := self.higher_cof(best[0], best[1])) is not None:
                     sentences.append(
-                        f"Its COF is higher than that of design {best[1].number} in "
-                        f"{of_100(chance)} draws that both share."
+                        Message(
+                            "Its COF is higher than that of design {number} in {share} draws that "
+                            "both share.",
+                            number=best[1].number,
+                            share=of_100(chance),
+                        )
                     )
             else:
                 sentences.append(
-                    f"The front has {len(self.front)} designs, each run in full: from "
-                    f"{self._goals_text(self.front[0])} to {self._goals_text(self.front[-1])}."
+                    Message(
+                        "The front has {count} designs, each run in full: from {first} to {last}.",
+                        count=len(self.front),
+                        first=self._goals_text(self.front[0]),
+                        last=self._goals_text(self.front[-1]),
+                    )
                 )
             sentences += filter(None, [self.above_start()])
         return tuple(sentences)
@@ -414,7 +440,7 @@ class StudyResult(Presentable):
         """Versions of the program that computed the cases."""
         return {record.program for record in self.records.values()} - {""}
 
-    def _unmet_text(self) -> str:
+    def _unmet_text(self) -> Message:
         """Return which requirements no design meets, and how near one comes."""
         designs = [design for design in self.all_designs if design.point and design.usable]
         texts = []
@@ -423,25 +449,40 @@ class StudyResult(Presentable):
             nearest = int(np.argmax(margins))
             if margins[nearest] < 0:
                 value = quantity_text(each.bound + each.sense * margins[nearest], each.goal.unit)
-                texts.append(f"{each} is {value} at best (design {designs[nearest].number})")
-        return "; ".join(texts) or "some meet each, none meets all"
+                texts.append(
+                    Message(
+                        "{requirement} is {value} at best (design {number})",
+                        requirement=str(each), value=value, number=designs[nearest].number,
+                    )
+                )  # fmt: skip
+        return joined(texts) if texts else Message("some meet each, none meets all")
 
     @property
-    def lost_text(self) -> str:
+    def lost_text(self) -> Message:
         """How many cases have no numbers, and where to look why."""
         lost = self.endings.total() - self.endings[Ending.COMPUTED] - self.endings[Ending.OPEN]
-        have = "1 case has" if lost == 1 else f"{lost} cases have"
-        return f"{have} no numbers: underfoot study status tells why." if lost else ""
+        if not lost:
+            return NOTHING
+        return Message(
+            "{count} {count:case has|cases have} no numbers: underfoot study status tells why.",
+            count=lost,
+        )
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what keeps the numbers from being taken as they are."""
         reasons = list(self.plan.remarks)
         programs = self.programs
         if set(programs) - {program()}:
-            mixed = f"Cases of {len(programs)} versions of the program are mixed"
-            older = "The cases were computed by another version of the program"
-            advice = "run the study in a new folder to have all by this one"
-            reasons.append(f"{mixed if len(programs) > 1 else older}: {advice}.")
+            older = Message(
+                "The cases were computed by another version of the program: run the study in a new "
+                "folder to have all by this one."
+            )
+            mixed = Message(
+                "Cases of {count} versions of the program are mixed: run the study in a new folder "
+                "to have all by this one.",
+                count=len(programs),
+            )
+            reasons.append(mixed if len(programs) > 1 else older)
         reasons += filter(None, [self.lost_text])
         same = 0
         if self.jobs and not self.jobs[-1].point and not self.plan.again_is_the_same:
@@ -449,12 +490,18 @@ class StudyResult(Presentable):
             same = sum(design.records.key in first for design in self.again)
         if same:
             reasons.append(
-                f"{same} of the {len(self.again)} best designs were not run again: on the same "
-                "grid a sole without lugs, or one position of a tread, gives the same run. The "
-                "best may be the luckiest: check it with a smaller numerics.grid_spacing."
+                Message(
+                    "{same} of the {count} best designs were not run again: on the same grid a "
+                    "sole without lugs, or one position of a tread, gives the same run. The best "
+                    "may be the luckiest: check it with a smaller numerics.grid_spacing.",
+                    same=same,
+                    count=len(self.again),
+                )
             )
         if self.plan.method.quick and self.plan.method.again_on != "standard":
-            reasons.append("Coarse grid: use the order of designs; check a chosen one in full.")
+            reasons.append(
+                Message("Coarse grid: use the order of designs; check a chosen one in full.")
+            )
         return tuple(reasons)
 
     def table(self) -> Table:
@@ -557,12 +604,15 @@ class StudyResult(Presentable):
         table = table.assign_coords({"condition": labels, **inputs})
         return table.assign(ending=table["ending"].astype(str)).assign_attrs(title=plan.name)
 
-    def _goals_text(self, design: Design) -> str:
+    def _goals_text(self, design: Design) -> list[Message]:
         means, deviations = self.believed([design], self.plan.goals)
-        return ", ".join(
-            f"{goal.phrase} {_goal_text(mean, deviation, goal.unit)}"
+        return [
+            Message(
+                "{phrase} {value}",
+                phrase=goal.phrase, value=_goal_text(mean, deviation, goal.unit),
+            )
             for goal, mean, deviation in zip(self.plan.goals, means[0], deviations[0], strict=True)
-        )
+        ]  # fmt: skip
 
 
 def of_100(share: float) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.core.presentation import Table
 from underfoot.core.progress import time_text
+from underfoot.core.remark import NOTHING, Message
 
 from .record import Ending
 from .records import Records
@@ -110,27 +111,35 @@ class StudyStatus(StudyResult):
         """Versions of the program that computed the cases."""
         return self.scan.programs
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return how far it is, how fast, and when it ends."""
         count, seconds = self.working, self.seconds_left
-        at_work = f"{count} worker{'s' * (count > 1)} at work" if count else "Nobody works on it"
-        rate = f"{at_work}; {self.per_minute:.3g} cases a minute, workers {self.busy:.0%} busy"
-        if not self.per_minute:
-            rate = at_work
-        left = "" if seconds is None else f", about {time_text(seconds)} left"
-        return (f"{self.ended_text(self.cases_left)}.", f"{rate}{left}.")
+        at_work = Message("Nobody works on it")
+        if count:
+            at_work = Message("{count} {count:worker|workers} at work", count=count)
+        rate = left = NOTHING
+        if self.per_minute:
+            numbers = {"rate": self.per_minute, "busy": self.busy}
+            rate = Message("; {rate:.3g} cases a minute, workers {busy:.0%} busy", **numbers)
+        if seconds is not None:
+            left = Message(", about {time} left", time=time_text(seconds))
+        return (
+            Message("{ended}.", ended=self.ended_text(self.cases_left)),
+            Message("{at_work}{rate}{left}.", at_work=at_work, rate=rate, left=left),
+        )
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what keeps the numbers from being taken as they are."""
         texts = super().cautions()
         if self.clock_went_back:
-            texts = (*texts, "The clock was set back as it ran: rates and times are not known.")
+            back = Message("The clock was set back as it ran: rates and times are not known.")
+            texts = (*texts, back)
         return texts
 
     @property
-    def lost_text(self) -> str:
+    def lost_text(self) -> Message:
         """Nothing: the remarks tell why."""
-        return ""
+        return NOTHING
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return why cases have no numbers, the most frequent reason first."""
@@ -138,10 +147,15 @@ class StudyStatus(StudyResult):
         reasons = Counter(
             self.records[key].reason for key in bad[:: max(1, -(-len(bad) // MOST_REASONS))]
         )
-        title = "Without numbers"
+        title = Message("Without numbers")
         if len(bad) > reasons.total():
-            title += f" ({reasons.total()} of {len(bad)}, evenly taken)"
-        return {title: [f"{n} x {text}" for text, n in reasons.most_common()]}
+            taken = {"count": reasons.total(), "all": len(bad)}
+            title = Message("Without numbers ({count} of {all}, evenly taken)", **taken)
+        lines = [
+            Message("{count} x {reason}", count=count, reason=reason)
+            for reason, count in reasons.most_common()
+        ]
+        return {title: lines}
 
     def table(self) -> Table:
         """Return how many cases ended in each way."""

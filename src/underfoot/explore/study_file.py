@@ -19,6 +19,7 @@ from underfoot.case.errors import placed, translated
 from underfoot.compute.positions import run_cost
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, catalogue_folders
+from underfoot.core.remark import Message
 from underfoot.core.units import spread_to_si
 from underfoot.shoe.geometry import CELLS_REFUSED
 
@@ -170,11 +171,11 @@ def read_plan(
     reader.refuse_many("vary" if grid else "method", "cases", cases, cost)
     reader.end()
     if plan.goals and method.again_on and plan.again_is_the_same:
-        remark = (
+        remark = Message(
             "The best designs are not run again: on the same grid a sole without lugs, or one "
-            "position of a tread, gives the same run. Take "
+            "position of a tread, gives the same run. Take {setting}.",
+            setting='front_grid = "standard"' if method.quick else 'grid = "quick"',
         )
-        remark += 'front_grid = "standard".' if method.quick else 'grid = "quick".'
         return replace(plan, remarks=(*remarks, remark))
     return plan
 

@@ -376,11 +376,13 @@ def check_paths(paths: Sequence[Path]) -> None:
 def case_differences(cases: Sequence[Case]) -> list[tuple[str, ...]]:
     """Return (path, value in each case) of the inputs in which the cases are not all alike."""
     texts = [{path: value for path, value, _ in case.rows()} for case in cases]
-    values = [
-        {path: (value, case.origins[path].uncertainty) for path, value in case.named_values("")}
-        for case in cases
-    ]
-    return [(path, *(text.get(path, "-") for text in texts)) for path, *_ in differences(values)]
+    paths = [path for path, *_ in differences([compared_values(case) for case in cases])]
+    return [(path, *(text.get(path, "-") for text in texts)) for path in paths]
+
+
+def compared_values(case: Case) -> dict[str, Any]:
+    """Return by path what is compared of a case: values (SI) and how sure they are."""
+    return {path: (value, case.origins[path].uncertainty) for path, value in case.named_values("")}
 
 
 def differences(tables: Sequence[Mapping[str, Any]]) -> list[tuple[Any, ...]]:

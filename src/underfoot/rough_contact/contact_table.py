@@ -44,7 +44,6 @@ _TEXTS = ("description", "key", "notes", "out_of_range")
 ROOM = "contact_table-4"
 """Of the cache; raised when the numbers or the form of a part change."""
 _REFINEMENT = 8
-BELONG = ": contact fraction and hysteresis belong to this shortest wave"
 SEALED = 1e-6
 """Flow factor of a contact without an open path on its grid (assumed): waves below the shortest one
 leak, and a film solver needs a way for every cell."""
@@ -155,14 +154,13 @@ class ContactTable(Presentable):
             store.store(keys[missing[index]], column)
             done += 1
             progress("contact table", done / len(parts))
-        about = [_about(surfaces), *([RESTING] if shoe_surfaces is not None else [])]
+        about = [_about(surfaces, finer), *([RESTING] if shoe_surfaces is not None else [])]
         slow = {slow_transform(surface.heights.shape) for surface in surfaces} - {None}
         about += sorted(map(str, slow))
         if accelerated:
             took = time.perf_counter() - began
-            about.append(f"{len(rest) * p.size} contacts on {card()}, {took:.1f} s")
-        if finer is not None:
-            about = [f"{about[0].replace(BELONG, '')}; in it {finer.notes[0]}", *about[1:]]
+            cost = {"count": len(rest) * p.size, "card": card(), "time": took}
+            about.append(Message("{count} contacts on {card}, {time:.1f} s", **cost))
         finished = [column for column in columns if column is not None]
         return _table(about, p, v, finished, keys, description)
 
@@ -575,9 +573,19 @@ def _table(
     notes = about + remarks
     dropped = int((~usable).sum())
     if dropped:
-        notes.append(f"{dropped} of {usable.size} solutions did not converge and were left out")
+        notes.append(
+            Message(
+                "{dropped} of {count} solutions did not converge and were left out",
+                dropped=dropped, count=usable.size,
+            )
+        )  # fmt: skip
     notes += [
-        f"no solution at {p[n]:.3g} Pa and {v[row]:.3g} m/s: interpolated between its neighbours"
+        Message(
+            "no solution at {pressure:.3g} Pa and {speed:.3g} m/s: interpolated between its "
+            "neighbours",
+            pressure=p[n],
+            speed=v[row],
+        )
         for row, n in np.argwhere(holes)
     ]
     return ContactTable(
@@ -615,14 +623,19 @@ def _holes(
     return holes
 
 
-def _about(surfaces: Sequence[Any]) -> str:
+def _about(surfaces: Sequence[Any], finer: ContactTable | None) -> Message:
     first = surfaces[0]
     shortest = [s.resolution if s.resolution is not None else 2.0 * s.spacing for s in surfaces]
     nx, ny = first.heights.shape
-    spacing, wave = (core.display(length, "m") for length in (first.spacing, max(shortest)))
-    return (
-        f"{len(surfaces)} surface(s) of {nx} x {ny} points, spacing {spacing}, shortest wave {wave}"
-        f"{BELONG}"
+    several = Message(
+        "{count} surface(s) of {nx} x {ny} points, spacing {spacing}, shortest wave {wave}",
+        count=len(surfaces), nx=nx, ny=ny, spacing=Amount(first.spacing, "m"),
+        wave=Amount(max(shortest), "m"),
+    )  # fmt: skip
+    if finer is not None:
+        return Message("{several}; in it {fine}", several=several, fine=finer.notes[0])
+    return Message(
+        "{several}: contact fraction and hysteresis belong to this shortest wave", several=several
     )
 
 

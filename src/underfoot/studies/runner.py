@@ -17,6 +17,7 @@ from underfoot.core.pool import in_processes
 from underfoot.core.presentation import Presentable
 from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
+from underfoot.core.remark import Message, Remark
 
 from .figure import Figure
 from .statements import Study, studies, study, study_module
@@ -103,7 +104,7 @@ class StudyResult(Presentable):
                 columns,
                 [
                     (
-                        f"{s.text} ({s.place})",
+                        Message("{text} ({place})", text=s.text, place=s.place),
                         s.printed,
                         judgement.ours,
                         str(judgement.verdict),
@@ -121,26 +122,39 @@ class StudyResult(Presentable):
         return (*verdicts, *computed)
 
     def heading(self) -> str:
-        return f"{self.study.title} ({self.study.source})"
+        return Message("{title} ({source})", title=self.study.title, source=self.study.source)
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         verdicts = counts(self.judgements)
-        parts = [f"{number} {verdict}" for verdict, number in verdicts.items() if number]
+        parts = [
+            Message("{count} {verdict}", count=count, verdict=verdict)
+            for verdict, count in verdicts.items()
+            if count
+        ]
         if not parts:
-            return (f"Failed: {self.error}",) if self.error else ()
-        return (f"Of {sum(verdicts.values())} independent statements: {', '.join(parts)}.",)
+            return (Message("Failed: {error}", error=self.error),) if self.error else ()
+        count = sum(verdicts.values())
+        return (Message("Of {count} independent statements: {parts}.", count=count, parts=parts),)
 
-    def cautions(self) -> tuple[str, ...]:
-        text = "One coarse grid (--quick): what that can be off by is part of each tolerance."
-        return (text,) if self.quick else ()
+    def cautions(self) -> tuple[Message, ...]:
+        if not self.quick:
+            return ()
+        return (
+            Message(
+                "One coarse grid (--quick): what that can be off by is part of each tolerance."
+            ),
+        )
 
     def remarks(self) -> dict[str, Sequence[str]]:
         return {
             "Conclusions": self.computed.conclusions,
             "Method": (*self.study.notes, *self.computed.notes),
             "Assumptions": (*self.study.assumptions, *self.computed.assumptions),
-            "Not taken as printed": [f"{a}: {b} -> {c}: {d}" for a, b, c, d in self.study.errata],
-            "Verdicts": [f"{verdict}: {verdict.rule}" for verdict in Verdict],
+            "Not taken as printed": [
+                Message("{place}: {printed} -> {meant}: {why}", place=a, printed=b, meant=c, why=d)
+                for a, b, c, d in self.study.errata
+            ],
+            "Verdicts": [Remark(str(each), "{rule}", rule=each.rule) for each in Verdict],
         }
 
     @property

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError, SourcedValue, display
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table, percent
+from underfoot.core.remark import NOTHING, Amount, Message
 
 from .filter import holds, short_waves, within_cutoffs
 from .heights import HeightMap, Profile, shortest_derivable_wavelength
@@ -75,8 +76,8 @@ class Scan(Presentable):
     hurst: SourcedValue
     roll_off: float | None
     ends: tuple[float, float]
-    notes: tuple[str, ...]
-    doubts: tuple[str, ...] = ()
+    notes: tuple[Message, ...]
+    doubts: tuple[Message, ...] = ()
     """What a scan shorter than the usual cut-off lacks, and what looks like no roughness."""
     texture: Texture | None = None
     """Texture of a map behind the cut-off; None of a profile."""
@@ -112,25 +113,30 @@ class Scan(Presentable):
         """
         return None if self.directions is None else self.directions.at(np.asarray(wavenumber))
 
-    def headline(self) -> tuple[str, ...]:
+    def headline(self) -> tuple[Message, ...]:
         """Return Rq, Ra and the waves behind them."""
-        rq, waves = self.values["rq"], [display(wave, "m") for wave in self.waves]
-        numbers = (
-            f"Rq {display(rq.value or 0.0, 'm')}, Ra {display(self.values['ra'].value or 0.0, 'm')}"
-            f" after a cut-off of {display(self.cutoff, 'm')}; waves from {waves[1]} to {waves[0]} "
+        rq, waves = self.values["rq"], [Amount(wave, "m") for wave in self.waves]
+        numbers = Message(
+            "Rq {rq}, Ra {ra} after a cut-off of {cutoff}; waves from {shortest} to {longest} "
             "were measured.",
-        )
+            rq=Amount(rq.value or 0.0, "m"), ra=Amount(self.values["ra"].value or 0.0, "m"),
+            cutoff=Amount(self.cutoff, "m"), shortest=waves[1], longest=waves[0],
+        )  # fmt: skip
         if self.texture is None or not self.texture.has_lay:
-            return numbers
-        return (
-            *numbers,
-            f"The surface has a lay ({self.texture}): Ra, Rz, Rt are across it, Rq is of the map."
-            if len(self.texture.lays) == 1
-            else f"The surface has crossed lays ({self.texture}): Ra, Rz, Rt are of lines at "
-            f"{math.degrees(self.texture.across):.0f}°, between them, Rq is of the map.",
+            return (numbers,)
+        lay = Message(
+            "The surface has a lay ({texture}): Ra, Rz, Rt are across it, Rq is of the map.",
+            texture=str(self.texture),
         )
+        if len(self.texture.lays) > 1:
+            lay = Message(
+                "The surface has crossed lays ({texture}): Ra, Rz, Rt are of lines at "
+                "{angle:.0f}°, between them, Rq is of the map.",
+                texture=str(self.texture), angle=math.degrees(self.texture.across),
+            )  # fmt: skip
+        return numbers, lay
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return why the heights are none of a floor or sole, and which waves they lack."""
         return (*height_cautions(self.values["rq"].value or 0.0), *self.doubts)
 
@@ -201,18 +207,22 @@ class Scan(Presentable):
         return {"spectrum": Table("", ("wavelength m", "wave number rad/m", "density m^4"), rows)}
 
 
-def unlikely_height(rq: float) -> str:
-    """Return why an Rq (m) is none of a floor or sole; "" for a likely one."""
+def unlikely_height(rq: float) -> Message:
+    """Return why an Rq (m) is none of a floor or sole; nothing for a likely one."""
+    value = Amount(rq, "m")
     if rq < NO_FLOOR:
-        smoothest = "the smoothest steel floor has 90 nm"
-        return f"an Rq of {display(rq, 'm')} is no floor and no sole ({smoothest})"
-    return f"an Rq of {display(rq, 'm')} is no roughness" if rq > NO_ROUGHNESS else ""
+        return Message(
+            "an Rq of {rq} is no floor and no sole (the smoothest steel floor has 90 nm)", rq=value
+        )
+    return Message("an Rq of {rq} is no roughness", rq=value) if rq > NO_ROUGHNESS else NOTHING
 
 
-def height_cautions(rq: float) -> tuple[str, ...]:
+def height_cautions(rq: float) -> tuple[Message, ...]:
     """Return the question that an unlikely Rq (m) asks; nothing of a likely one."""
     unlikely = unlikely_height(rq)
-    return (f"{unlikely}: is the unit of the heights right?",) if unlikely else ()
+    if not unlikely:
+        return ()
+    return (Message("{unlikely}: is the unit of the heights right?", unlikely=unlikely),)
 
 
 def read_scan(
@@ -242,7 +252,7 @@ def read_scan(
     units = {"length_unit": length_unit, "height_unit": height_unit, "spacing": spacing}
     given = {name: value for name, value in units.items() if value is not None}
     surface, flat = without_spikes(read_surface(path, fill_missing=True, **given))
-    notes: list[str] = []
+    notes: list[Message] = []
     lines, found, lay, areal = lines_along_axes(surface, LINES), None, None, None
     resolved = shortest_derivable_wavelength(lines[0])
     longest = max(line.length for line in lines)
@@ -260,8 +270,12 @@ def read_scan(
                 areal = within_cutoffs(flat, shortest, chosen).rms_height
         elif len(set(surface.spacings)) > 1:
             finer = "xy"[int(np.argmin(surface.spacings))]
-            sides = " by ".join(display(side, "m") for side in surface.spacings)
-            notes.append(f"cells of {sides}: numbers are of lines along {finer}, which shows more")
+            notes.append(
+                Message(
+                    "cells of {sides: by }: numbers are of lines along {finer}, which shows more",
+                    sides=[display(side, "m") for side in surface.spacings], finer=finer,
+                )
+            )  # fmt: skip
     cutoff, lines = chosen, [line for line in lines if holds(line.length, chosen)]
     level = [flat] if isinstance(flat, Profile) else [levelled(line) for line in lines]
     values, sections, uneven = _numbers(
@@ -271,9 +285,11 @@ def read_scan(
         source = f"ISO 25178-2 (Sq), cut-off {display(cutoff, 'm')}"
         values["rq"] = replace(values["rq"], value=areal, source=source)
     if sections < SECTIONS:
-        notes.append(f"{sections} sections of {display(cutoff, 'm')} where a standard takes five")
+        taken = {"count": sections, "length": Amount(cutoff, "m")}
+        notes.append(Message("{count} sections of {length} where a standard takes five", **taken))
     if resolved.wavelength > SHORT_CUTOFF:
-        notes.append(f"waves below {display(resolved.wavelength, 'm')} not seen: {resolved.reason}")
+        unseen = {"wave": Amount(resolved.wavelength, "m"), "reason": resolved.reason}
+        notes.append(Message("waves below {wave} not seen: {reason}", **unseen))
     doubts = tuple(filter(None, [short, uneven, _held(surface)]))
     if doubts:
         said = "; ".join(doubts)
@@ -315,7 +331,9 @@ def read_scan(
     )
 
 
-def _cutoff(length: float, resolved: float, given: float | None, where: str) -> tuple[float, str]:
+def _cutoff(
+    length: float, resolved: float, given: float | None, where: str
+) -> tuple[float, Message]:
     """Return the cut-off (m) that lines hold, and what a short scan lacks.
 
     ``length``: of the longest line (m); ``resolved``: its shortest wave (m).
@@ -329,7 +347,7 @@ def _cutoff(length: float, resolved: float, given: float | None, where: str) -> 
                 remedy="Measure a longer part, or leave the cut-off out to take the longest that "
                 "fits",
             )
-        return given, ""
+        return given, NOTHING
     fitting = [cutoff for cutoff in CUTOFFS if holds(length, cutoff) and cutoff >= 4 * resolved]
     if not fitting:
         raise DataError(
@@ -341,12 +359,12 @@ def _cutoff(length: float, resolved: float, given: float | None, where: str) -> 
             remedy="Measure a longer part, or with a smaller spacing",
         )
     if fitting[0] == CUTOFFS[0]:
-        return fitting[0], ""
-    return fitting[0], (
-        f"shorter than the usual cut-off of {display(CUTOFFS[0], 'm')}: waves beyond "
-        f"{display(fitting[0], 'm')} are not in Ra and Rq, which are too low. Measure 4.8 mm "
-        "or more"
-    )
+        return fitting[0], NOTHING
+    return fitting[0], Message(
+        "shorter than the usual cut-off of {usual}: waves beyond {cutoff} are not in Ra and Rq, "
+        "which are too low. Measure 4.8 mm or more",
+        usual=Amount(CUTOFFS[0], "m"), cutoff=Amount(fitting[0], "m"),
+    )  # fmt: skip
 
 
 def _numbers(
@@ -408,28 +426,29 @@ def _numbers(
     return values, count, _uneven(np.array(pieces))
 
 
-def _uneven(sections: np.ndarray) -> str:
-    """Return what sections that carry most of the roughness ask; "" of ones that are alike.
+def _uneven(sections: np.ndarray) -> Message:
+    """Return what sections that carry most of the roughness ask; nothing of ones that are alike.
 
     ``sections``: Rq of each, (n,), m. A joint, an edge or a scratch makes one far rougher than the
     others; of sections of one surface the root mean square stays near the median.
     """
     usual, whole = float(np.median(sections)), float(np.sqrt(np.mean(sections**2)))
     if len(sections) < 3 or whole <= UNEVEN * usual:
-        return ""
-    numbers = [display(one, "m") for one in (float(sections.max()), usual)]
-    return (
-        f"few sections carry the roughness: Rq of the roughest is {numbers[0]}, of the middle one "
-        f"{numbers[1]}. A joint, an edge or damage? Cut it off, or measure beside it"
-    )
+        return NOTHING
+    return Message(
+        "few sections carry the roughness: Rq of the roughest is {roughest}, of the middle one "
+        "{middle}. A joint, an edge or damage? Cut it off, or measure beside it",
+        roughest=Amount(float(sections.max()), "m"), middle=Amount(usual, "m"),
+    )  # fmt: skip
 
 
-def _held(surface: Profile | HeightMap) -> str:
-    """Return what many equal heights ask; "" where no number stands out."""
+def _held(surface: Profile | HeightMap) -> Message:
+    """Return what many equal heights ask; nothing where no number stands out."""
     share, height = held_level(surface.heights)
     if not share:
-        return ""
-    return (
-        f"{percent(share)} of the heights are one number, {display(height, 'm')}: missing ones, or "
-        "the end of the range? Leave them empty in the file, or measure again"
-    )
+        return NOTHING
+    return Message(
+        "{share} of the heights are one number, {height}: missing ones, or the end of the range? "
+        "Leave them empty in the file, or measure again",
+        share=percent(share), height=Amount(height, "m"),
+    )  # fmt: skip

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from nicegui import ui
 
+from underfoot.core.remark import from_stored
+
 from ..components import drop_zone, interruption, sentences, table, task_line, title
 from ..jobs import Task
 from ..session import Session
@@ -81,7 +83,7 @@ class _Place:
                 return
             if file.exists() and file.stat().st_mtime > stored.stat().st_mtime:
                 ui.label(self.text("start.changed")).classes("caution")
-            shown = json.loads(stored.read_text(encoding="utf-8"))
+            shown = from_stored(json.loads(stored.read_text(encoding="utf-8")))
             title(shown["heading"])
             sentences(shown["headline"], "lead")
             sentences(shown["cautions"], "soft")

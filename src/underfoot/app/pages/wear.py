@@ -9,6 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from underfoot.core import InputError
+from underfoot.core.remark import from_stored
 from underfoot.core.units import to_si
 
 from ..components import interruption, refilled, sentences, table, task_line
@@ -68,7 +69,7 @@ def _stored(session: Session, name: str) -> dict[str, Any] | None:
     """Return what was computed of the present case; None where there is nothing."""
     file = session.project.inside("studies", f"{name}, wear", "shown.json")
     try:
-        shown = json.loads(file.read_text(encoding="utf-8"))
+        shown = from_stored(json.loads(file.read_text(encoding="utf-8")))
         return shown if shown["hash"] == session.project.case(name).hash else None
     except (OSError, ValueError, KeyError):
         return None
