@@ -62,7 +62,7 @@ def test_a_test_method_tells_one_spread_and_nothing_of_slips():
     cof = SourcedValue(0.093, "1", uncertainty=0.138, note="law")
     names = ("tile", "tile", "tile", "glycerine")
     condition = Condition(*names, cof, 0.02, 0.38, None, None, None, _Outcome())
-    assert "COF 0.093 (95 %: 0.02 to 0.38; law)" in str(condition)
+    assert "COF 0.093 (95 %: 0.02 to 0.38; law)" in condition.sentence
     assert [each.about for each in condition.breaches] == ["gent_1958"]
 
 

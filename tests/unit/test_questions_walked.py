@@ -41,8 +41,8 @@ def test_a_measured_pair_sets_the_distance():
 
 
 def test_ranges_have_one_figure():
-    assert str(Walked((1234.0, 87654.0), (0.0321, 2.6))) == "1 to 90 km, 0.03 to 3 months"
-    assert str(Walked((0.0, 0.0), (0.0, 0.0))) == "0 km, 0 months"
+    assert Walked((1234.0, 87654.0), (0.0321, 2.6)).text == "1 to 90 km, 0.03 to 3 months"
+    assert Walked((0.0, 0.0), (0.0, 0.0)).text == "0 km, 0 months"
 
 
 def test_a_pair_is_read_from_text():
