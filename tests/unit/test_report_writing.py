@@ -13,7 +13,14 @@ import typer
 
 from underfoot.cli.output import finish
 from underfoot.core import InputError, SourcedValue
-from underfoot.core.presentation import Presentable, Table, percent, quantity_text, value_text
+from underfoot.core.presentation import (
+    Part,
+    Presentable,
+    Table,
+    percent,
+    quantity_text,
+    value_text,
+)
 from underfoot.report import figures, plot, write_report
 from underfoot.report.writing import WRITTEN_IN_PART, json_text, write_folder, write_text
 
@@ -30,7 +37,7 @@ class Answer(Presentable):
 
     def table(self):
         return Table(
-            "Numbers", ("Quantity", "Value"), [("answer", "42"), ("  of it", float("nan"))]
+            "Numbers", ("Quantity", "Value"), [("answer", "42"), (Part("of it"), float("nan"))]
         )
 
     def remarks(self):

@@ -71,6 +71,11 @@ class Part(Message):
         """What the cell says, without blanks."""
         return self.values["label"]
 
+    def __html__(self) -> str:
+        """Return the label as an element; where it stands, the page says by its style."""
+        label = self.label
+        return label.__html__() if isinstance(label, Message) else escape(label)
+
 
 @dataclass(frozen=True, slots=True)
 class Table:
