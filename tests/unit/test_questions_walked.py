@@ -35,7 +35,7 @@ def test_a_measured_pair_sets_the_distance():
     found = walker.walked(500e-9, VOLUMES, LOST)
     assert found.distance == pytest.approx((600e3, 600e3))
     assert found.months[0] == pytest.approx(600e3 / 0.75 / 18000 / DAYS_A_MONTH)
-    assert str(found).startswith("600 km, ")
+    assert found.text.startswith("600 km, ")
     with pytest.raises(InputError, match="--to"):
         Walker(1e-10, WornPair(2.5e-3, 3e5)).walked(1e-7, VOLUMES, LOST)
 

@@ -316,10 +316,15 @@ def read_scan(
     hurst, roll_off, ends = power_law(measured, spectrum)
     if lay is not None:
         notes.append(
-            "the spectrum is the mean over directions; hysteresis counts sliding along x of the map"
+            Message(
+                "the spectrum is the mean over directions; hysteresis counts sliding along x of "
+                "the map"
+            )
         )
     if isinstance(surface, Profile):
-        notes.append("one direction measured: the spectrum counts as that of every direction")
+        notes.append(
+            Message("one direction measured: the spectrum counts as that of every direction")
+        )
     if rises := spectrum.levelled_rises:
         notes.append(rises_text(rises))
     return Scan(
@@ -374,7 +379,7 @@ def _numbers(
     short: float,
     lay: Texture | None,
     surface: Profile | HeightMap,
-) -> tuple[dict[str, SourcedValue], int, str]:
+) -> tuple[dict[str, SourcedValue], int, Message]:
     """Return the numbers over all lines, which hold the cut-off, and the sections of a line.
 
     The last is a doubt, where few sections carry most of the roughness.

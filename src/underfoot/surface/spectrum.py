@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import digamma
 
 from underfoot.core import InputError, SourcedValue
+from underfoot.core.remark import Message
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Heights, check_heights, shortest_reliable_wavelength
@@ -247,10 +248,12 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     return IsotropicSpectrum(q, density, area, (float(q[0]), float(q[-1])), notes, changed)
 
 
-def rises_text(levelled: float) -> str:
+def rises_text(levelled: float) -> Message:
     """Return by how much rises were levelled; ``levelled`` is the largest relative change."""
-    most = f"up to {100 * levelled:.0f} %" if levelled < 10.0 else "more than tenfold"
-    return f"rises of the profile spectrum levelled (by {most})"
+    if levelled < 10.0:
+        most = 100 * levelled
+        return Message("rises of the profile spectrum levelled (by up to {most:.0f} %)", most=most)
+    return Message("rises of the profile spectrum levelled (by more than tenfold)")
 
 
 def averaged(

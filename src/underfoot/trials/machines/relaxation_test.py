@@ -74,11 +74,9 @@ def relaxation_reading(
     if len(f) != len(d) or len(f) < 20:
         raise DataError("force and displacement must have the same 20 samples or more", where=where)
     finite = np.isfinite(f) & np.isfinite(d)
-    notes = (
-        []
-        if finite.all()
-        else [Message("{count} samples without a number left out", count=int((~finite).sum()))]
-    )
+    notes: list[Message] = []
+    if lost := int((~finite).sum()):
+        notes.append(Message("{count} samples without a number left out", count=lost))
     f, d, t = f[finite], d[finite], t[finite]
     if len(f) < 20:
         raise DataError("fewer than 20 samples with numbers", where=where)
@@ -86,7 +84,7 @@ def relaxation_reading(
     rest = float(np.median(f[:first]))
     if rest - f.min() > f.max() - rest:
         f = -f
-        notes.append("force turned: compression positive")
+        notes.append(Message("force turned: compression positive"))
     peak_guess = int(np.argmax(f))
     zero = float(np.median(f[:first]))
     if f[peak_guess] - zero < 10 * float(np.std(f[:first])) or f[peak_guess] <= zero:

@@ -112,7 +112,7 @@ class Protocol:
             [[r.quantity, r.low, r.high, r.severity] for r in self.rules],
         )
 
-    def standing(self) -> list[str]:
+    def standing(self) -> list[Message]:
         """Return what the source does not stand behind: not verified, or assumed; a sentence each.
 
         Values with a source of their own are verified against it, and it is named.
