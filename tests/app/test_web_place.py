@@ -53,7 +53,7 @@ def test_a_place_is_dropped_stopped_computed_shown_again_and_refused(tmp_path):
         stored = app.folder / "places" / "hall"
         assert (stored / "report.html").exists()
         shown = json.loads((stored / "shown.json").read_text())
-        assert any("best" in line for line in shown["headline"])
+        assert any("best" in line["text"] for line in shown["headline"])
         page.goto(app.base + "place?place=hall")
         page.get_by_text("treaded is best").wait_for()  # from the folder
         page.emulate_media(media="print")
