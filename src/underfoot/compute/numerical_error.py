@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, Progress, SourcedValue, display, silent
-from underfoot.core.remark import NOTHING, Amount, Message, joined
+from underfoot.core.remark import NOTHING, Amount, Message, join_lines
 from underfoot.friction import SampledCof
 from underfoot.friction.propagation import normal_draws
 from underfoot.sole_contact.solver import SoleContact
@@ -19,14 +19,14 @@ from .position_draws import (
     COF_PARTS,
     LOADS,
     ON_CONTACT,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     log_film_odds,
 )
 from .positions import CLOSEST, RATES, remembers
 from .prepare import Prepared
-from .sensors import scanned
+from .sensors import scan_reading
 from .sole import RESOLVED, cells_along, tread_on_sole
 from .solve import Solution, solved_at
 
@@ -83,7 +83,7 @@ class NumericalErrors:
         for name in self.grid:
             value, error = values[name], self.deviation(name)
             note = Message("numerical error {error}", error=_error(error, value))
-            note = joined([value.note, note]) if value.note else note
+            note = join_lines([value.note, note]) if value.note else note
             change: dict[str, Any] = {"note": note, "numerical": error}
             if name != "cof" and value.value is not None:
                 known, ends = value.uncertainty or 0.0, value.interval
@@ -256,10 +256,10 @@ def _compared(
 ) -> NumericalErrors | str:
     """Return the differences of ``numbers`` to the quick grid, and by its steps in time."""
     spacing = parts.case.numerics.quick_grid_spacing
-    here, contact = solved_at(parts, Place(), spacing, progress=progress)
+    here, contact = solved_at(parts, TreadPlace(), spacing, progress=progress)
     contacts = [contact]
     if parts.viscosity is not None:  # a dry contact has no memory
-        contacts.append(solved_at(parts, Place(finer=2), spacing, progress=progress)[1])
+        contacts.append(solved_at(parts, TreadPlace(finer=2), spacing, progress=progress)[1])
     cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
         return Message("not estimated: a march on {cells} did not converge", cells=cells)
@@ -281,7 +281,7 @@ def _cells(parts: Prepared, columns: int) -> Message:
 
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, parts.case.motion.speed)
-    sensor = scanned(parts.case, parts.sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(parts.case, parts.sole, contact, viscosity=parts.viscosity)
     return readings(contact, friction.cof.value or 0.0, sensor)
 
 

@@ -21,15 +21,15 @@ from underfoot.case import unit_at
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.presentation import Presentable, Table, quantity_text
-from underfoot.core.remark import NOTHING, Message, joined
+from underfoot.core.remark import NOTHING, Message, join_lines
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
-from .jobs import Jobs
+from .jobs import BatchJobs
 from .plan import StudyPlan
-from .record import Ending, Job, Record, program
+from .record import CaseJob, Ending, Record, program
 from .records import Records
-from .surrogate import FEWEST, Surrogate, fitted
+from .surrogate import FEWEST, Surrogate, fit_surrogate
 
 if TYPE_CHECKING:
     import xarray
@@ -129,7 +129,7 @@ class StudyResult(Presentable):
     kind: ClassVar[str] = "study"
 
     plan: StudyPlan
-    jobs: Sequence[Job]
+    jobs: Sequence[CaseJob]
     records: Mapping[str, Record]
     sessions: Sequence[Mapping[str, Any]] = ()
 
@@ -140,7 +140,7 @@ class StudyResult(Presentable):
         """Return the name of the study."""
         return self.plan.name
 
-    def record(self, job: Job) -> Record:
+    def record(self, job: CaseJob) -> Record:
         """Return what came of a job; where nothing did yet, that it is open."""
         return self.records.get(job.key) or Record(job.key, Ending.OPEN)
 
@@ -148,7 +148,7 @@ class StudyResult(Presentable):
     def all_designs(self) -> list[Design]:
         """Every design by number, after its first run the second."""
         keys: dict[tuple[int, int], dict[tuple[int, int], str]] = {}
-        first: dict[tuple[int, int], Job] = {}
+        first: dict[tuple[int, int], CaseJob] = {}
         for job in self.jobs:
             run = job.design, job.batch
             keys.setdefault(run, {})[job.condition, job.draw] = job.key
@@ -156,7 +156,7 @@ class StudyResult(Presentable):
         return self._designs_of(first.values(), keys)
 
     def _designs_of(
-        self, jobs: Iterable[Job], keys: Mapping[tuple[int, int], Mapping[tuple[int, int], str]]
+        self, jobs: Iterable[CaseJob], keys: Mapping[tuple[int, int], Mapping[tuple[int, int], str]]
     ) -> list[Design]:
         """Return the designs of a job each; ``keys`` are those of all, by (design, batch)."""
         first = {(job.design, job.batch): job for job in jobs}
@@ -234,7 +234,7 @@ class StudyResult(Presentable):
             errors = np.array([goal.error(run.records, self.plan.states) for run in runs])
             finer = np.array([run.again for run in runs], dtype=bool)
             own = points, self.values(runs, [goal])[:, 0], errors, finer
-            self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
+            self._fitted[goal] = fit_surrogate(str(goal), goal.unit, dimensions, *own)
         return self._fitted[goal]
 
     @cached_property
@@ -377,7 +377,9 @@ class StudyResult(Presentable):
     @property
     def keys(self) -> Sequence[str]:
         """Keys of the cases that were set so far, in order."""
-        return self.jobs.keys if isinstance(self.jobs, Jobs) else [job.key for job in self.jobs]
+        return (
+            self.jobs.keys if isinstance(self.jobs, BatchJobs) else [job.key for job in self.jobs]
+        )
 
     @cached_property
     def endings(self) -> Counter[str]:
@@ -455,7 +457,7 @@ class StudyResult(Presentable):
                         requirement=str(each), value=value, number=designs[nearest].number,
                     )
                 )  # fmt: skip
-        return joined(texts) if texts else Message("some meet each, none meets all")
+        return join_lines(texts) if texts else Message("some meet each, none meets all")
 
     @property
     def lost_text(self) -> Message:

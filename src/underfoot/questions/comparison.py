@@ -18,11 +18,11 @@ from underfoot.core import InputError, Progress, SourcedValue, nearest_match, si
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Part, Presentable, Table, drawn_probability_text, value_text
 from underfoot.core.progress import part
-from underfoot.core.remark import Message, Remark, joined, subjects
+from underfoot.core.remark import Message, Remark, join_lines, subjects
 from underfoot.slip import slip_chances
 
-from .order import SEEN, Order, Verdict, order_of_draws, order_of_values
-from .separation import MOVES, Separation, of_conditions, of_reading
+from .order import SEEN, Order, OrderVerdict, order_of_draws, order_of_values
+from .separation import MOVES, SeparatingStep, of_conditions, of_reading
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
@@ -63,7 +63,7 @@ class ComparedQuantity:
     @property
     def different(self) -> tuple[str, ...]:
         """Letters of the results of which an order against the first is stated."""
-        told = (Verdict.HIGHER, Verdict.LOWER)
+        told = (OrderVerdict.HIGHER, OrderVerdict.LOWER)
         return tuple(letter for letter, order in self.orders.items() if order.verdict in told)
 
 
@@ -83,7 +83,7 @@ class Comparison(Presentable):
     differences: tuple[tuple[str, ...], ...]
     reasons: tuple[Message, ...]
     order: Order | None = None
-    separations: tuple[Separation, ...] = ()
+    separations: tuple[SeparatingStep, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Comparison of {len(self.results)} results: {self.headline()[0]:.120}>"
@@ -129,7 +129,7 @@ class Comparison(Presentable):
                 ),
             )  # fmt: skip
         both["chance"] = _chance(first.better_than_next)
-        if self.order.verdict is Verdict.EQUAL:
+        if self.order.verdict is OrderVerdict.EQUAL:
             return (
                 Message(
                     "{better} and {other} are equal for every purpose: COF {apart} apart "
@@ -139,7 +139,7 @@ class Comparison(Presentable):
                 ),
                 self._different(),
             )  # fmt: skip
-        if self.order.verdict is not Verdict.HIGHER:
+        if self.order.verdict is not OrderVerdict.HIGHER:
             return (
                 Message(
                     "Whether {better} or {other} has more friction is open: COF {apart} apart "
@@ -184,7 +184,7 @@ class Comparison(Presentable):
         rows = []
         for quantity in self.quantities:
             texts = ["" if v is None else value_text(quantity.name, v) for v in quantity.values]
-            remark = joined(
+            remark = join_lines(
                 _order_text(order, letter if len(self.results) > 2 else "")
                 for letter, order in quantity.orders.items()
             )
@@ -326,7 +326,7 @@ def compare(
     if ranking:
         top = [LETTERS.index(rank.letter) for rank in ranking[:2]]
         order = order_of(results[top[0]], results[top[1]])
-        if order is not None and order.verdict is Verdict.OPEN:
+        if order is not None and order.verdict is OrderVerdict.OPEN:
             separations = _separations(
                 [results[k] for k in top], [cases[k] for k in top], separate, progress
             )
@@ -343,7 +343,7 @@ def compare(
 
 def _separations(
     results: Sequence[Result], cases: Sequence[Case], separate: bool, progress: Progress
-) -> tuple[Separation, ...]:
+) -> tuple[SeparatingStep, ...]:
     """Return what would tell two results apart, the surest first."""
     separations = of_conditions(*cases, progress=progress) if separate else []
     drawn = _shared_draws(*results)
@@ -482,10 +482,10 @@ def _order_in(name: str, results: Sequence[Result], cases: Sequence[Case], at: i
 def _order_text(order: Order, letter: str) -> Message:
     """Return what is said of an order, with its probability where one is stated."""
     chance = {
-        Verdict.HIGHER: order.higher,
-        Verdict.LOWER: 1 - order.higher,
-        Verdict.EQUAL: order.within,
-        Verdict.OPEN: None,
+        OrderVerdict.HIGHER: order.higher,
+        OrderVerdict.LOWER: 1 - order.higher,
+        OrderVerdict.EQUAL: order.within,
+        OrderVerdict.OPEN: None,
     }[order.verdict]
     text = Message("not decided")
     if chance is not None:

@@ -3,14 +3,22 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 
-from underfoot.core.remark import NOTHING, Message, Remark, joined, kind_of, of_several, together
+from underfoot.core.remark import (
+    NOTHING,
+    Message,
+    Remark,
+    join_lines,
+    kind_of,
+    of_several,
+    together,
+)
 
 from ..recording.measurement import MEAN_OF_STEPS
 from ..recording.protocols import KINDS, Protocol
 from ..recording.signals import CONTACT_FORCE
 from .file_result import CAUTION, REFUSED, FileResult
 from .steps import protocol_ramp
-from .study import Study
+from .study import TrialStudy
 
 _PLUS_MINUS = Message(
     "On screen ± is the standard uncertainty of a number (of a mean: its standard error). Tables "
@@ -19,7 +27,7 @@ _PLUS_MINUS = Message(
 
 
 def methods_paragraphs(
-    files: Sequence[FileResult], protocol: Protocol, study: Study, version: str
+    files: Sequence[FileResult], protocol: Protocol, study: TrialStudy, version: str
 ) -> list[Message]:
     """Return paragraphs that say which files were used, how numbers were taken, which tests."""
     counts = Counter(file.verdict for file in files)
@@ -276,7 +284,7 @@ def _choices(key: str, made: Sequence[tuple[str, Mapping[str, Message]]]) -> Mes
             named = Message(": {files}", files=files)
         counts = {"count": len(members), "all": len(made), "named": named}
         parts.append(Message("{choice} ({count} of {all}{named})", choice=ranges[kind], **counts))
-    return joined(parts)
+    return join_lines(parts)
 
 
 def _sentence(name: str, choices: Mapping[str, Message]) -> Message | None:
