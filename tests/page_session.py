@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from nicegui import ui
+from nicegui.events import handle_event
 from nicegui.testing.user_simulation import user_simulation
 
 from underfoot.app.jobs import Jobs
@@ -25,6 +26,9 @@ class Here:
     async def ask(self, function, *args, units, language, **options):
         module, _, name = function.partition(":")
         return getattr(import_module(module), name)(*args, progress=lambda *_: None, **options)
+
+    def stop(self):
+        """Nothing that is asked here can be stopped."""
 
 
 def session_of(folder, language="en", **query):
@@ -49,7 +53,7 @@ def shown(build, look):
 
 async def until(holds):
     """Wait until something holds, for 20 s at most."""
-    for _ in range(400):
+    for _ in range(40):
         if holds():
             return
         await asyncio.sleep(0.05)
@@ -81,7 +85,7 @@ def press(element, kind="click", args=None):
     for each in list(element._event_listeners.values()):
         if each.type == kind:
             given = SimpleNamespace(sender=element, client=element.client, args=args or {})
-            cast(Any, each.handler)(given)
+            handle_event(each.handler, cast(Any, given))
 
 
 def button(elements, text):
