@@ -59,12 +59,20 @@ def test_an_imposed_motion_carries_the_film_of_the_equations():
         load_at(time), zero, zero, zero, angle_at(time), zero, zero, Status.CONVERGED, "given",
     )  # fmt: skip
     fluid, friction = sole().carried_at(motion)
+    given = time, load_at(time), zero, angle_at(time), speed, 1.0, speed, 8.0, 0.0
+    assert sole()._carried(*given)[0] == pytest.approx(speed, abs=0)
 
     def rate(t, film):
         return [state(film[0], 0.3 + 0.8 * math.sin(20 * t) ** 2, load_at(t), angle_at(t))[0]]
 
     exact = solve_ivp(
-        rate, (0, 0.2), [CONSTANTS["start_film"]], t_eval=time, rtol=1e-9, atol=1e-12, method="LSODA"
+        rate,
+        (0, 0.2),
+        [CONSTANTS["start_film"]],
+        t_eval=time,
+        rtol=1e-9,
+        atol=1e-12,
+        method="LSODA",
     )
     for k in range(100, time.size, 100):
         _, wanted, carried = state(exact.y[0, k], speed[k], load_at(time[k]), angle_at(time[k]))
