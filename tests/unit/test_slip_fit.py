@@ -162,7 +162,7 @@ def test_edges_of_lugs_raise_the_friction_of_a_fit_and_a_dry_one_needs_none(monk
     assert fit.sole.cofs == pytest.approx(
         2 * (0.2 / (1 + np.maximum(fit.sole.speeds, 1e-3)) + 0.05)
     )
-    assert {pressure for pressure, _ in asked} == {pytest.approx(500 / AREA[0])} or len(asked) > 9
+    assert [pressure for pressure, _ in asked] == pytest.approx([500 / AREA[0]] * len(asked))
     assert min(speed for _, speed in asked) == 1e-3
     assert fit.at_bound == ()
     assert math.isnan(fit.held_out.speed)
