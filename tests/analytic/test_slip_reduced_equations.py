@@ -1,4 +1,4 @@
-"""The reduced slip against its equations, each constant at a value that tells, by another solver."""
+"""The reduced slip against its equations by another solver, each constant at a telling value."""
 
 import math
 
@@ -120,7 +120,10 @@ def test_a_foot_that_is_set_free_moves_and_carries_as_the_equations_say():
 )  # fmt: skip
 def test_a_motion_beyond_a_quarter_of_the_fitted_range_is_refused(name, scale, refused):
     time = np.linspace(0, 0.1, 11)
-    zero, person = np.zeros(11), walker(GaitHistory("n", np.arange(5.0), *np.ones((2, 5))), 0.2)
+    zero, person = (
+        np.zeros(11),
+        walker(GaitHistory("n", np.arange(5.0), np.ones(5), np.ones(5)), 0.2),
+    )
 
     def motion(**changes):
         given = {"normal": 500 * np.linspace(0.1, 1, 11), "speed": np.linspace(0.1, 2, 11),

@@ -182,7 +182,7 @@ def test_an_empty_field_of_the_catalogue_shows_its_value_again(session):
 
 def test_a_design_keeps_what_is_chosen_and_a_new_pattern_brings_what_it_needs(session, monkeypatch):
     monkeypatch.setattr(session, "go", lambda *_, **__: None)
-    made = design._Design(session, "a")
+    made: Any = design._Design(session, "a")
     case = session.project.case("a")
     patterned = made._patterned("waves")
     lacks = {f"shoe.tread.{key}" for key in design.usual_tread("waves")
@@ -199,7 +199,7 @@ def test_a_design_keeps_what_is_chosen_and_a_new_pattern_brings_what_it_needs(se
         "shoe.tread.sipes.spacing": f"{1e3 * (along + channel):.4g} mm",
     }
     filled = []
-    made.fill = lambda: filled.append(1)  # type: ignore[method-assign]
+    made.fill = lambda: filled.append(1)
     made.change({"motion.speed": "0.6 m/s"})
     assert session.project.case("a").value("motion.speed") == pytest.approx(0.6)
     assert filled == [1]
@@ -409,7 +409,8 @@ def test_files_of_soles_are_listed_by_name_the_newest_revision_first(session):
         (known,) = (each for each in elements if isinstance(each, ui.select))
         return known.options
 
-    options = shown(lambda: sole_file.build(session, "a", Any, lambda: None), look)
+    view: Any = None
+    options: Any = shown(lambda: sole_file.build(session, "a", view, lambda: None), look)
     latest = session.text("sole_file.revision", file="heel, revision 2.stl", count=2)
     assert list(options.items()) == [
         ("Arch.step", "Arch.step"), ("heel, revision 2.stl", latest), ("heel.stl", "heel.stl"),

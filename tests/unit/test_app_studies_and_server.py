@@ -438,7 +438,7 @@ def test_every_page_stands_in_a_frame_that_leads_to_the_others(session):
                  if isinstance(each, ui.link) and "tab" in each.classes}  # fmt: skip
         return links
 
-    broken = SimpleNamespace(
+    broken: Any = SimpleNamespace(
         **{name: getattr(page, name) for name in ("door", "route", "title")}, build=None
     )
     links = shown(lambda: frame.framed(session, page), look)
@@ -704,7 +704,7 @@ def test_a_design_has_the_sole_and_the_file_of_its_job(monkeypatch):
     monkeypatch.setattr(work_studies, "designed_surface", lambda case: "surface")
     monkeypatch.setattr(work_studies, "viewer_scene", lambda *given: given)
     monkeypatch.setattr(work_studies, "scene_section", lambda scene: scene)
-    told = work_studies.design("f", "d", 4, progress=silent)
+    told: Any = work_studies.design("f", "d", 4, progress=silent)
     assert json.loads(told["case"]) == {"x": 4, "name": "mine, design 4"}
     ((drawn,), surfaces) = told["html"]
     assert (drawn.name, drawn.data) == ("mine, design 4", ("sole", 4))

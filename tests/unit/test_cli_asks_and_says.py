@@ -365,7 +365,8 @@ def test_settings_of_a_study_are_those_that_differ_from_the_usual_ones(changes, 
     if settings:
         with pytest.raises(InputError, match="no such setting"):
             studies._settings("g4", **(usual | changes))
-    for wrong in ({"series": "x"}, {"control": "x"}):
+    wrongs: tuple[dict[str, Any], ...] = ({"series": "x"}, {"control": "x"})
+    for wrong in wrongs:
         with pytest.raises(InputError):
             studies._settings("g1", **(usual | wrong))
 
@@ -408,7 +409,7 @@ def test_a_sole_of_options_is_that_of_its_lengths(monkeypatch):
     said = []
     monkeypatch.setattr(outsole_make, "say", said.append)
 
-    def made(pattern="grid", pitch=None, sipes=None, whole=False, settings=None, **lengths):
+    def made(pattern="grid", pitch=None, sipes=None, whole=False, settings=None, **lengths) -> Any:
         return outsole_make._from_options(
             pattern, given | lengths, pitch, sipes, whole, settings
         )  # fmt: skip
@@ -431,10 +432,11 @@ def test_a_sole_of_options_is_that_of_its_lengths(monkeypatch):
     assert "--channel" in said[0]
     assert "--lug " not in said[0]
     assert "--depth" not in said[0]
-    for wrong in (
+    refused: tuple[dict[str, Any], ...] = (
         {"lug": "6 mm", "pitch": "6 mm"}, {"lug": "6 mm", "pitch": "9 mm", "channel": "3 mm"},
         {"sipes": "1 mm, 2 mm"}, {"pattern": "gird"},
-    ):  # fmt: skip
+    )  # fmt: skip
+    for wrong in refused:
         with pytest.raises(InputError):
             made(**wrong)
 

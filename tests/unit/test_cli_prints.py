@@ -127,7 +127,7 @@ def test_an_answer_is_written_where_that_is_asked_with_what_goes_with_it(
 
     monkeypatch.setattr(report, "write_report", write)
     folder = None if out is None else tmp_path / out
-    more = {"further": lambda told, path: {"of": (told, path)}} if further else {}
+    more: dict[str, Any] = {"further": lambda told, path: {"of": (told, path)}} if further else {}
     output.answer("title", lambda _: result, out=folder, overwrite=True, **more)
     kept = {"further": {"of": (result, folder)}} if further else {}
     assert wrote == ([((result, folder), {"overwrite": True, **kept})] if out else [])

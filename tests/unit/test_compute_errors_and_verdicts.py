@@ -84,8 +84,9 @@ def sampled(count=4000):
     parts = {"adhesion": 0.2 + 0.01 * rng.normal(size=count), "hysteresis": np.full(count, 0.05),
              "viscous": np.full(count, 0.02)}  # fmt: skip
     law: Any = None
+    whole = np.sum(list(parts.values()), axis=0)
     return SampledCof(
-        cof=sum(parts.values()), contact=np.full(count, 0.5), share={"a": 0.75, "b": 0.25},
+        cof=whole, contact=np.full(count, 0.5), share={"a": 0.75, "b": 0.25},
         seed=3, left_out=(), confidence=0.95, law=law, **parts,
     )  # fmt: skip
 
@@ -367,7 +368,7 @@ def test_numbers_of_a_film_are_as_unsure_as_its_load():
                         "peak_fluid_pressure": np.full(odds.size, math.log(1.5)),
                         "fluid_load": np.full(odds.size, math.log(1.1))}}  # fmt: skip
     more = numbers.with_film_spread(values, odds, None, heavier)
-    assert more["fluid_load"].interval[1] > film.interval[1]
+    assert max(more["fluid_load"].interval or ()) > max(film.interval or ())
     assert more["peak_fluid_pressure"].interval == pytest.approx(
         (2e5 * min(1.0, 1.5 / 1.1 * 1.2 * low / 100), 2e5 * 1.5 / 1.1 * 1.2 * high / 100)
     )

@@ -148,7 +148,7 @@ def test_levels_are_of_land_channels_and_what_a_wall_parts():
     assert np.unique(levels[:6]).size == np.unique(levels[6:]).size == 1
     assert levels[0, 0] != levels[-1, 0]
     assert parted.is_land[levels].all()
-    assert (parted.steep[inner].any(axis=1).nonzero()[0] == [5, 6]).all()
+    assert np.flatnonzero(parted.steep[inner].any(axis=1)).tolist() == [5, 6]
     gentle = grid_of(np.where(np.arange(12)[:, None] < 6, 0.0, 1.9) * np.ones((12, 6)))
     assert np.unique(gentle.level[inner]).size == 1
 

@@ -85,7 +85,9 @@ def test_few_sensors_are_inlets_and_many_are_tracks(count, inlet):
     circles = [each for each in axes.patches if isinstance(each, Circle)]
     if count > 12:
         assert not circles
-        tracks = [segment for each in axes.collections for segment in each.get_segments()]
+        tracks = [
+            segment for each in cast(Any, axes.collections) for segment in each.get_segments()
+        ]
         assert [tuple(track[:, 0]) for track in tracks] == [(-4, -4), (6, 6)]
         assert np.ptp([track[:, 1] for track in tracks]) == pytest.approx(30)
     else:
@@ -384,7 +386,9 @@ def test_parts_of_a_tread_have_their_colours_and_heights_are_written_in_millimet
     heights, _, parts = (axes for axes in figure.axes if axes.get_xlim()[1] > 5)
     known = 1e3 * surface.height[surface.inside]
     assert heights.collections[0].get_clim() == pytest.approx((known.min(), known.max()))
-    values = np.ma.masked_invalid(parts.collections[0].get_array()).reshape(surface.height.shape)
+    values = np.ma.masked_invalid(np.asarray(parts.collections[0].get_array())).reshape(
+        surface.height.shape
+    )
     assert (values[surface.land & ~outsole.largest_patch(surface)] == 0).all()
     assert (values[outsole.largest_patch(surface)] == 3).all()
     assert values.count() == surface.inside.sum()
@@ -483,10 +487,13 @@ def test_the_cost_of_a_study_is_that_of_what_ended_and_of_what_is_left(monkeypat
                                                   Ending.FAILED: 1}  # fmt: skip
 
     class Shown(live_study.LiveStudy):
-        cases_left, seconds_left = 5, 60.0
-        running_seconds = 40.0  # type: ignore[assignment]
-        scan = fake(case={"cpu_seconds": np.array([10.0, np.nan, 30.0])})  # type: ignore
+        pass
 
+    scan = fake(case={"cpu_seconds": np.array([10.0, np.nan, 30.0])})
+    for name, known_of in (
+        ("cases_left", 5), ("seconds_left", 60.0), ("running_seconds", 40.0), ("scan", scan),
+    ):  # fmt: skip
+        setattr(Shown, name, known_of)
     made = object.__new__(Shown)
     object.__setattr__(made, "endings", endings)
     object.__setattr__(made, "cost", cost)
@@ -575,7 +582,7 @@ def test_a_way_along_a_drawn_line_passes_its_corners_in_their_order():
 def test_sides_of_a_body_reach_its_top_and_walls_stand_on_the_lower_level():
     flat = np.zeros((6, 6))
     sole = DrawnSole(np.arange(6.0), np.arange(6.0), 1.0, flat, None, flat == 0,
-                     (slice(0, 6),) * 2, (slice(0, 6),) * 2)  # fmt: skip
+                     (slice(0, 6), slice(0, 6)), (slice(0, 6), slice(0, 6)))  # fmt: skip
     points = np.array([[0, 0, 0], [4, 0, 0], [0, 0, 3], [4, 0, 3]], float)
     empty = np.empty((0, 3), np.int64)
     mesh = SurfaceMesh(points, np.array([True, True, False, False]), empty,

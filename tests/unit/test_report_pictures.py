@@ -133,7 +133,7 @@ def test_a_wet_slip_has_four_forces_and_the_speeds_of_the_walkers_behind_its_own
     assert xy(own)[1] == pytest.approx(2 * motion.time)
     assert np.unique(limit.get_ydata()) == pytest.approx([0.2])
     assert ends_of(speeds.collections[0])[1] == pytest.approx(4.8 * 0.2)  # the 95 % quantile
-    low = speeds.collections[0].get_paths()[0].vertices
+    low = np.asarray(speeds.collections[0].get_paths()[0].vertices)
     assert low[low[:, 0] == 200, 1].min() == pytest.approx(1.2 * 0.2)
     few, _ = a_slip(monkeypatch, walkers=4)
     assert not slips.slip_figure(few).subfigs[1].axes[0].collections
@@ -344,7 +344,10 @@ def test_curves_of_fluids_are_drawn_over_speed_and_over_its_product_with_viscosi
         assert axes.get_xscale() == "log"
         assert axes.get_ylim()[0] == 0
     assert over_speed.get_legend() is None
-    assert [t.get_text() for t in over_product.get_legend().get_texts()] == ["fluid 0", "fluid 1"]
+    assert [t.get_text() for t in cast(Any, over_product.get_legend()).get_texts()] == [
+        "fluid 0",
+        "fluid 1",
+    ]
     assert "pair 1" in over_product.get_title()
     assert "pair 0" not in over_product.get_title()
     for axes, curve in ((first, curves[0]), (second, curves[1])):
@@ -374,7 +377,7 @@ def test_every_mark_of_a_figure_is_drawn_at_its_numbers():
     panels = [Panel([layer], f"x {name}", f"y {name}", name) for name, layer in marks.items()]
     figure = drawn(FigureData(panels, "All of them", columns=4, size=(2.0, 1.5)))
     assert figure.get_size_inches() == pytest.approx((8.0, 1.5 * 3 + 0.5))
-    axes = dict(zip(marks, figure.axes, strict=False))
+    axes: dict[str, Any] = dict(zip(marks, figure.axes, strict=False))
     assert [each.get_visible() for each in figure.axes] == [True] * len(marks) + [False] * 2
     for name, each in axes.items():
         assert (each.get_xlabel(), each.get_title()) == (f"x {name}", name)
@@ -456,7 +459,7 @@ def test_effects_stand_in_their_order_with_their_intervals():
     made = Effects("cof", "1", "sobol", paths=("a", "b", "c"), basis="runs", **arrays)
     (axes,) = design_study.effects_figure(made).axes
     assert [text.get_text() for text in axes.get_yticklabels()] == ["a", "c", "b"]
-    bars = [each for each in axes.containers if each.get_label() in ("ST", "S1")]
+    bars: Any = [each for each in axes.containers if each.get_label() in ("ST", "S1")]
     for container, name, up in zip(bars, ("total", "main"), (0.2, -0.2), strict=True):
         assert [bar.get_width() for bar in container] == sorted(numbers[name])
         middles = [bar.get_y() + bar.get_height() / 2 for bar in container]
@@ -479,7 +482,7 @@ def test_shoes_of_a_place_stand_by_their_chance_to_be_the_best():
     labels = [text.get_text() for text in axes.get_yticklabels()]
     assert labels == ["b (10 %)", "c (20 %)", "a (70 %)"]
     assert xy(axes.lines[0]) == (pytest.approx([0, 30, 10]), pytest.approx([0, 1, 2]))
-    reach = [(low[0], high[0]) for low, high in axes.collections[0].get_segments()]
+    reach = [(low[0], high[0]) for low, high in cast(Any, axes.collections[0]).get_segments()]
     assert reach == [pytest.approx(ends) for ends in ((30, 60), (20, 40), (5, 20))]
     assert axes.get_xlim() == (0, 100)
     assert axes.get_ylim() == pytest.approx((-0.6, 2.6))
@@ -515,9 +518,7 @@ def test_a_chart_has_its_ticks_at_their_places_and_a_key_a_line():
     ]
     texts = re.findall(r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="(\w+)">([^<]*)<', svg)
     up = {text: float(y) for x, y, anchor, text in texts if float(x) == left - 6}
-    assert up == {
-        str(k): pytest.approx(low - (low - high) * k / 4 + 4, abs=0.06) for k in range(5)
-    }
+    assert up == {str(k): pytest.approx(low - (low - high) * k / 4 + 4, abs=0.06) for k in range(5)}
     across = [(float(x), anchor) for x, y, anchor, _ in texts if float(y) == low + 16]
     assert across[:-1] == [
         (pytest.approx(left + k * quarter, abs=0.06), "middle") for k in range(4)

@@ -37,7 +37,7 @@ class Law:
         return FrictionParts(0.2 / (1 + speed) * pressure, 0.05 * pressure, 0 * pressure)
 
 
-def setting(viscosity=0.219, edged=None) -> Any:
+def setting(viscosity: float | None = 0.219, edged=None) -> Any:
     return SimpleNamespace(
         friction=Law(), viscosity=viscosity, shoe_angle=ANGLE, edged=edged,
         settings=SimpleNamespace(pool_depth=6e-4, start_film=1e-4),
@@ -79,7 +79,11 @@ def fitted(monkeypatch):
 
     monkeypatch.setattr(scipy.optimize, "least_squares", least_squares)
     runs, apart = slips(3), slips(4)[3:]
-    fit = fitted_reduced(setting(), runs, apart, areas(), progress=lambda *k: told.append(k))
+
+    def progress(stage: str, fraction: float, residual: float | None = None) -> None:
+        told.append((stage, fraction, residual))
+
+    fit = fitted_reduced(setting(), runs, apart, areas(), progress=progress)
     return fit, asked, told, runs, apart
 
 

@@ -82,11 +82,12 @@ def test_those_who_slip_tell_where_their_slips_begin_and_runs_how_high_a_sensor_
 
 def test_a_motion_is_thinned_with_its_first_and_last_instant():
     count = 23
-    columns = {name: np.arange(float(count)) for name in study.COLUMNS}
+    columns: dict[str, Any] = {name: np.arange(float(count)) for name in study.COLUMNS}
     motion = study.SlipMotion(fake(), **columns, status=fake(), model="m")
     kept = _thinned(motion).time
     assert kept.tolist() == [0, 4, 8, 12, 16, 20, 22]
-    short = study.SlipMotion(fake(), **{n: c[:5] for n, c in columns.items()}, status=fake(),
+    begin: dict[str, Any] = {name: each[:5] for name, each in columns.items()}
+    short = study.SlipMotion(fake(), **begin, status=fake(),
                              model="m")  # fmt: skip
     assert _thinned(short).speed.tolist() == [0, 4]
 
@@ -103,7 +104,8 @@ def test_a_study_takes_as_many_full_slips_as_are_asked_for_and_by_default_sixtee
 
     monkeypatch.setattr(study, "design", designed)
     people = Population(subjects=2)
-    for more in ({}, {"fit_runs": 5, "held_out": 2}):
+    options: tuple[dict[str, Any], ...] = ({}, {"fit_runs": 5, "held_out": 2})
+    for more in options:
         with pytest.raises(Enough):
             slip_study(fake(viscosity=0.2), people, **more)
     assert asked == [16, 7]
