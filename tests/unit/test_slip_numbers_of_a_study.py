@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.core import InputError, SourcedValue
+from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
 from underfoot.slip import (
     RcofPopulation,
     ReportG6,
@@ -68,6 +68,27 @@ def test_numbers_of_a_study_are_of_those_who_crossed_and_its_shares_of_all():
     assert (single.value, single.uncertainty) == (1.0, None)
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_bounds_of_a_share_hold_the_spread_of_the_friction_from_two_walkers_on(count):
+    draws = np.linspace(0.2, 0.6, 1001)
+    asked = []
+
+    def means_of(hits, number):
+        asked.append(number)
+        return draws
+
+    made = study_of(*[seen(1.0, 1.0, slipped=k == 0) for k in range(count)])
+    share, low, high = study.replace(made, by_friction=fake(means_of=means_of)).slipped()
+    if count == 1:
+        assert (share, asked) == (1.0, [])
+        assert math.isnan(low)
+        assert math.isnan(high)
+        return
+    assert asked[0] == count
+    assert share == pytest.approx(0.4)
+    assert (low, high) == pytest.approx((0.21, 0.59))
+
+
 def test_those_who_slip_tell_where_their_slips_begin_and_runs_how_high_a_sensor_reads():
     begins = [(0.1, 0.2), (0.3, 0.6), None, (9.0, 9.0)]
     subjects = tuple(
@@ -112,6 +133,28 @@ def test_a_study_takes_as_many_full_slips_as_are_asked_for_and_by_default_sixtee
     assert (study.FIT_RUNS, study.HELD_OUT) == (12, 4)
 
 
+@pytest.mark.parametrize("solved", [0, 1, 3])
+def test_a_full_study_is_of_those_who_were_solved_and_refused_without_any(monkeypatch, solved):
+    runs = [fake(motion=fake(status=Status.CONVERGED if k < solved else Status.NOT_CONVERGED),
+                 maps=k) for k in range(3)]  # fmt: skip
+    monkeypatch.setattr(study, "full_runs", lambda *_, **__: runs)
+    monkeypatch.setattr(study, "array_pressures", lambda motion, maps, array: maps)
+    monkeypatch.setattr(study, "_subject", lambda motion, pressures, *more: pressures)
+    monkeypatch.setattr(study, "_middle", lambda subjects: len(subjects) - 1)
+    monkeypatch.setattr(study, "_breaches", lambda setting, good: (f"of {len(good)}",))
+    people = Population(subjects=3)
+    if not solved:
+        with pytest.raises(ConvergenceError):
+            slip_study(fake(viscosity=0.2), people, full=True)
+        return
+    made: Any = slip_study(fake(viscosity=0.2), people, full=True)
+    assert made.subjects == tuple(range(solved))
+    assert made.representative is runs[solved - 1]
+    assert (made.failed, made.full) == (3 - solved, True)
+    assert made.full_runs == tuple(runs[:solved])
+    assert made.breaches == (f"of {solved}",)
+
+
 def test_the_spread_of_a_contact_is_taken_at_500_newtons_on_20_square_centimetres(monkeypatch):
     asked = []
 
@@ -143,6 +186,7 @@ def test_what_was_measured_of_people_is_not_assumed():
     assert assumed == {"mass": False, "rcof_step": False, **dict.fromkeys(
         ("rcof", "walking_speed", "heel_speed", "shoe_angle", "brake_time"), True)}  # fmt: skip
     assert not people.recorded_angle
+    assert (people.mass.mean, people.mass.sd) == (70.0, 11.8)  # of the report, G.5.1
 
 
 # histories and sensors
