@@ -18,7 +18,7 @@ from underfoot.core.fields import from_xarray
 from underfoot.explore.record import Ending
 from underfoot.report import light_mesh, live_study, maps, outsole, results, studies_page, viewer
 from underfoot.report.drawn_sole import DrawnSole
-from underfoot.report.quantities import Quantity, Scale, inside, scale
+from underfoot.report.quantities import Quantity, Scale, inside, scale, shown
 from underfoot.report.surface_mesh import SurfaceMesh, _Edges
 from underfoot.shoe import Heel, Tread, heel_surface
 from underfoot.shoe.files import FileSettings
@@ -183,6 +183,17 @@ def test_where_a_sole_is_stands_in_its_heights_where_nothing_else_says_it():
         told = from_xarray(xarray.Dataset({name: (("x", "y"), heights)}, coords=coords))
         assert inside(told).sum() == count
     assert inside(data).all()
+
+
+@pytest.mark.parametrize("stress", [True, False])
+def test_next_to_nothing_is_drawn_but_of_a_stress(stress):
+    more = {"stress": True} if stress else {}
+    values = np.array([0.0, 0.9e-3, 1.1e-3, 1.0])
+    found = shown(values, Quantity("a", "", 0.5, "", **more))
+    assert np.isnan(found).tolist() == [stress, stress, False, False]
+    assert found[2:] == pytest.approx([2.2e-3, 2.0])
+    signed = shown(values - 0.5, Quantity("a", "", 1.0, "", **more))
+    assert not np.isnan(signed).any()
 
 
 # the viewer
@@ -392,6 +403,7 @@ def test_parts_of_a_tread_have_their_colours_and_heights_are_written_in_millimet
     assert (values[surface.land & ~outsole.largest_patch(surface)] == 0).all()
     assert (values[outsole.largest_patch(surface)] == 3).all()
     assert values.count() == surface.inside.sum()
+    assert parts.collections[0].get_clim() == (-0.5, 3.5)  # a colour a part
     assert parts.get_title() == f"Land {measures.land_ratio:.0%} of the plan form"
     path = tmp_path / "heights.csv.gz"
     inspection(surface, tmp_path).write_heights(path)

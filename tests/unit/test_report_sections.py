@@ -82,7 +82,7 @@ def test_relaxation_shifts_and_holds_are_drawn_with_their_fits():
         for k in (1, 2)
     ]  # fmt: skip
     (axes,) = compound._hold(fake(compressions=tests)).axes
-    curves = [line for line in axes.lines if line.get_label().startswith("test")]
+    curves = [line for line in axes.lines if str(line.get_label()).startswith("test")]
     assert [xy(line)[1].tolist() for line in curves] == [time.tolist(), (2 * time).tolist()]
     levels = [line.get_ydata()[0] for line in cast(Any, axes.lines) if line not in curves]
     assert levels == [1, 2, 0, 2, 4, 0]
