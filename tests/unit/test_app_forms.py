@@ -14,9 +14,9 @@ from nicegui import ui
 from page_session import button, computed, press, session_of, shown, until, words_of
 from underfoot.app import inputs, serve, work
 from underfoot.app.inputs import Input, changes, number_field, read_in_unit, sliders
-from underfoot.app.jobs import DONE, INTERRUPTED, RUNNING
+from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING
 from underfoot.app.pages import assumptions, design, place, sole_file, start
-from underfoot.app.pages.project import _others
+from underfoot.app.pages.project import _others, _state_text
 from underfoot.app.project import Project
 from underfoot.app.session import Exchange
 from underfoot.app.variant_bar import new_variant, no_variant, variant_bar
@@ -308,6 +308,17 @@ def test_recent_variants_show_their_friction_and_whether_it_is_of_their_inputs(
     assert (text("start.changed") in words) is not current
     about = ", ".join(f"v{k}" for k in range(8)) + " …"
     assert text("start.interrupted", about=about) in words
+
+
+@pytest.mark.parametrize(
+    ("state", "problem", "told"),
+    [(DONE, "", None), (FAILED, "too thin", ": too thin"), (FAILED, "", ""),
+     (INTERRUPTED, "odd", ""), (RUNNING, "", "")],
+)  # fmt: skip
+def test_a_row_says_what_its_run_does_or_why_it_has_no_result(session, state, problem, told):
+    task: Any = SimpleNamespace(state=state, problem=problem)
+    words = "" if told is None else session.text(f"jobs.{state}") + told
+    assert _state_text(session, task) == words
 
 
 def test_a_project_is_packed_beside_what_computes(session, monkeypatch):

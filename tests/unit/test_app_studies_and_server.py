@@ -191,6 +191,9 @@ def test_a_form_shows_what_the_file_says_and_writes_what_is_changed(session, mon
         area.value = " rubber_volume \n\ncof\n"
         press(area, "blur")
         await asyncio.sleep(0.05)
+        tabs = {each.props["name"]: each.props["label"] for each in elements
+                if isinstance(each, ui.tab)}  # fmt: skip
+        assert tabs == {key: session.text(f"studies.{key}") for key in ("form", "file")}
         odd = [word for word in words_of(elements) if word.startswith("odd")]
         selects = {each.props.get("label"): each for each in elements
                    if isinstance(each, ui.select)}  # fmt: skip
