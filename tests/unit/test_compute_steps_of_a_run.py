@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import load
-from underfoot.compute import histories, read, sole, solve, steadiness
+from underfoot.compute import histories, positions, read, sole, solve, steadiness
 from underfoot.compute.contact_friction import _on_squares, film_warmth, leak_name
 from underfoot.compute.position_draws import Place
 from underfoot.compute.positions import TURNED, carried, tread_positions
@@ -212,8 +212,6 @@ def test_what_grows_with_finer_cells_is_carried_on_evenly_and_its_parts_bear_the
 
 @pytest.mark.parametrize("turned", [True, False])
 def test_what_the_angle_adds_is_half_of_what_toe_up_and_toe_down_differ_by(monkeypatch, turned):
-    from underfoot.compute import positions
-
     monkeypatch.setattr(positions, "treaded", lambda _: True)
     monkeypatch.setattr(positions, "remembers", lambda _: False)
     monkeypatch.setattr(positions, "further_angles", lambda _: ())
@@ -433,3 +431,66 @@ def test_the_last_instant_of_a_motion_says_when_and_from_where():
         assert words not in plain
     case.contaminant = None
     assert "touch-down" not in read._last_instant(case)
+
+
+# which places
+
+
+@pytest.mark.parametrize(
+    ("lugs", "quick", "coarse", "grid", "own"),
+    [(True, False, 2e-3, 2e-3, ["a", "c"]), (True, True, 2e-3, 1e-3, ["a", "b", "c"]),
+     (True, False, 1e-3, 1e-3, ["a", "b", "c"]), (False, False, 2e-3, 2e-3, ["x"]),
+     (False, True, 2e-3, 1e-3, ["x", "y", "z"]), (False, False, 1e-3, 1e-3, ["x", "y", "z"])],
+)  # fmt: skip
+def test_every_other_place_and_the_own_angle_alone_are_solved_on_the_grid_of_the_run(
+    monkeypatch, lugs, quick, coarse, grid, own
+):
+    monkeypatch.setattr(positions, "treaded", lambda _: lugs)
+    monkeypatch.setattr(positions, "case_places", lambda case, *, quick: ("a", "b", "c"))
+    monkeypatch.setattr(positions, "shoe_angles", lambda: ("x", "y", "z"))
+    case = fake(numerics=fake(quick_grid_spacing=coarse))
+    every, on_run, on = positions._places_on_grids(case, 1e-3, quick=quick)
+    assert list(every) == (["a", "b", "c"] if lugs else ["x", "y", "z"])
+    assert (list(on_run), on) == (own, grid)
+
+
+def test_a_mirrored_sole_has_the_other_hand(monkeypatch):
+    """By the lean of its lugs; where these hardly lean, by its plan form."""
+    x, y = np.arange(40.0), np.arange(-20.0, 20) + 0.5
+    inside = np.ones((40, 40), bool)
+
+    def hand(land, inside=inside):
+        surface = fake(land=land, inside=inside, x=x, y=y)
+        monkeypatch.setattr(positions, "bottom_surface", lambda _: surface)
+        return positions._hand(fake())
+
+    i, j = np.indices((40, 40))
+    bars = (i + j) % 10 < 5  # their walls run along x + y = const.
+    assert hand(bars) == 1
+    assert hand(bars[:, ::-1]) == -1
+    # lugs without a lean on a sole that widens to one side
+    square = (i % 10 < 5) & (j % 10 < 5)
+    form = (y[None, :] < 5) | (x[:, None] > 20)
+    assert hand(square, form) == -hand(square[:, ::-1], form[:, ::-1])
+    assert hand(square, form) == 1
+    few = square.copy()
+    few[3:6, 35] = few[4:6, 36] = True  # a corner of one lug alone leans
+    assert hand(few, form) == 1
+    assert hand(few[:, ::-1], form[:, ::-1]) == -1
+
+
+@pytest.mark.parametrize(("share", "stated"), [(0.0099, False), (0.0101, True), (0.2, True)])
+def test_a_viscosity_is_solved_for_from_a_spread_of_a_hundredth_on(monkeypatch, share, stated):
+    from underfoot.compute import stated_spreads
+
+    viscosity = SourcedValue(0.2, "Pa s", uncertainty=0.2 * share)
+    fluid = fake(build=lambda: viscosity, chemistry="oil", pool_depth=1e-3)
+    monkeypatch.setattr(stated_spreads, "_of_viscosity", lambda _: ())
+    monkeypatch.setattr(stated_spreads, "stated_paths", lambda _: ())
+    found = stated_spreads.stated_spreads(fake(contaminant=fluid))
+    assert [spread.path for spread in found] == [stated_spreads.VISCOSITY] * stated
+    for spread in found:
+        less, more = (float(each["contaminant"]["viscosity"]) for each in spread.changes)  # type: ignore
+        assert less < 0.2 < more
+        assert more - less == pytest.approx(0.4 * share, rel=0.05)
+    assert stated_spreads.stated_spreads(fake(contaminant=None)) == ()
