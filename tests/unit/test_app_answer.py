@@ -82,6 +82,7 @@ def test_an_answer_shows_its_numbers_and_marks_those_of_other_inputs(
     assert stale == (0 if current else 5)
     assert (text("answer.changed") in words) is not current
     assert (text("answer.live") in words) is current
+    assert (text("answer.under", **page._under()) in words) is current
     assert words.index(text("answer.interval", low="0.250", high="0.360")) == (
         words.index("0.301") + 1
     )

@@ -187,7 +187,7 @@ def test_where_a_sole_is_stands_in_its_heights_where_nothing_else_says_it():
 
 @pytest.mark.parametrize("stress", [True, False])
 def test_next_to_nothing_is_drawn_but_of_a_stress(stress):
-    more = {"stress": True} if stress else {}
+    more: dict[str, Any] = {"stress": True} if stress else {}
     values = np.array([0.0, 0.9e-3, 1.1e-3, 1.0])
     found = shown(values, Quantity("a", "", 0.5, "", **more))
     assert np.isnan(found).tolist() == [stress, stress, False, False]

@@ -16,6 +16,7 @@ from underfoot.core.presentation import Presentable, Table
 from underfoot.report import (
     compound,
     design_study,
+    dispatch,
     question_figures,
     results,
     slips,
@@ -26,6 +27,7 @@ from underfoot.report import (
 from underfoot.report.designed_sole import DesignedSole
 from underfoot.report.drawn_sole import DrawnSole
 from underfoot.report.quantities import Quantity
+from underfoot.report.solver_input import _wrapped
 from underfoot.report.surface_mesh import DRAWN, TOLERANCE
 from underfoot.report.writing import json_text
 
@@ -350,3 +352,18 @@ def test_a_field_between_cells_is_linear_to_the_rim_and_of_its_own_kind():
     edge_x = np.where(fine_land, np.minimum(edge_x, 2), np.maximum(edge_x, 3))
     wanted = 10 + 2 * edge_x + 3 * edge_y + 100 * ~fine_land
     np.testing.assert_allclose(made, wanted)
+
+
+@pytest.mark.parametrize("count", [1, 16, 17, 40])
+def test_each_number_of_a_set_stands_once_sixteen_a_line(count):
+    lines = [line.split(", ") for line in _wrapped(list(range(count)))]
+    assert [int(each) for line in lines for each in line] == list(range(count))
+    assert {len(line) for line in lines[:-1]} <= {16}
+
+
+def test_a_type_of_another_package_is_asked_for_by_the_name_of_its_package(monkeypatch):
+    asked = []
+    monkeypatch.setattr(dispatch, "offered", lambda *given: asked.append(given))
+    alien: Any = type("Alien", (), {"__module__": "other_package.inner.module"})
+    assert dispatch.figures(alien()) == {}
+    assert asked == [("reports", "other_package")]
