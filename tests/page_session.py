@@ -10,7 +10,7 @@ from nicegui import ui
 from nicegui.events import handle_event
 from nicegui.testing.user_simulation import user_simulation
 
-from underfoot.app.jobs import Jobs
+from underfoot.app.jobs import JobQueue
 from underfoot.app.pages import PAGES
 from underfoot.app.project import Project
 from underfoot.app.projects import Servers
@@ -32,7 +32,7 @@ class Here:
 
 
 def session_of(folder, language="en", **query):
-    jobs, text = Jobs(folder), Text(language)
+    jobs, text = JobQueue(folder), Text(language)
     jobs.live = jobs.reading = cast(Any, Here())
     project, elsewhere = Project(folder), Servers()
     return Session(project, jobs, text, query, Exchange(), PAGES, elsewhere=elsewhere)

@@ -12,7 +12,7 @@ from nicegui import ui
 
 from page_session import button, computed, press, session_of, shown, until, words_of
 from underfoot.app import components
-from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING, STOPPED, Jobs
+from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING, STOPPED, JobQueue
 from underfoot.app.pages import answer, repair, wear
 from underfoot.app.project import Project
 from underfoot.app.variant_bar import new_variant
@@ -275,7 +275,7 @@ def test_help_is_waited_for_while_its_job_is_open_and_else_offered(
 def test_a_run_of_the_present_file_is_begun_once(session, monkeypatch, state, began, same, later):
     os.utime(session.project.path("a"), (1.5e9, 1.5e9))
     cancelled = []
-    monkeypatch.setattr(Jobs, "cancel", lambda _, task: cancelled.append(task))
+    monkeypatch.setattr(JobQueue, "cancel", lambda _, task: cancelled.append(task))
     old = None
     if state:
         old = session.submit("old", answer.RUN, about="a")
@@ -298,7 +298,7 @@ def test_the_full_run_behind_a_preview_replaces_it_and_may_be_kept(
 ):
     asked = answering(monkeypatch, session, answer={**ANSWER, "verdict": "No result"})
     cancelled, sent, went, views = [], [], [], []
-    monkeypatch.setattr(Jobs, "cancel", lambda _, task: cancelled.append(task))
+    monkeypatch.setattr(JobQueue, "cancel", lambda _, task: cancelled.append(task))
     monkeypatch.setattr(ui, "run_javascript", sent.append)
     monkeypatch.setattr(session, "go", lambda route, **query: went.append(query))
 

@@ -13,7 +13,7 @@ from nicegui import ui
 
 from page_session import button, computed, press, session_of, shown, until, words_of
 from underfoot.app import frame, projects, serve, work, work_studies
-from underfoot.app.jobs import DONE, FAILED, RUNNING, STOPPED, Task
+from underfoot.app.jobs import DONE, FAILED, RUNNING, STOPPED, QueuedTask
 from underfoot.app.pages import compare, studies
 from underfoot.app.pages.studies import _fields, _value
 from underfoot.app.project import Project
@@ -356,7 +356,9 @@ def test_what_would_tell_an_open_order_is_computed_once_for_these_results(
         began = 1e9 if task in ("old", "open") else 4e9
         if task == "open":
             began = 4e9
-        made = Task(99, "separate", function, about, state=RUNNING if task == "open" else DONE)
+        made = QueuedTask(
+            99, "separate", function, about, state=RUNNING if task == "open" else DONE
+        )
         made.began = began
         made.answer = None if task in ("open", "unanswered") else {**COMPARED, "cautions": ["told"]}
         return made
@@ -444,7 +446,7 @@ def test_every_page_stands_in_a_frame_that_leads_to_the_others(session):
     broken: Any = SimpleNamespace(
         **{name: getattr(page, name) for name in ("door", "route", "title")}, build=None
     )
-    links = shown(lambda: frame.framed(session, page), look)
+    links = shown(lambda: frame.build_framed_page(session, page), look)
     text = session.text
     assert links == {
         text(each.title): "page" if each is page else None for each in session.pages if each.door
@@ -454,7 +456,7 @@ def test_every_page_stands_in_a_frame_that_leads_to_the_others(session):
         raise InputError("it is broken")
 
     broken.build = fails
-    assert "it is broken" in shown(lambda: frame.framed(session, broken), words_of)
+    assert "it is broken" in shown(lambda: frame.build_framed_page(session, broken), words_of)
 
 
 @pytest.mark.parametrize(
@@ -466,7 +468,9 @@ def test_every_page_stands_in_a_frame_that_leads_to_the_others(session):
 def test_a_job_says_its_state_and_may_be_stopped_or_run_again(
     session, monkeypatch, state, problem, line, offered
 ):
-    task = Task(1, "Run", about="a", state=state, problem=problem, stage="half way", fraction=0.42)
+    task = QueuedTask(
+        1, "Run", about="a", state=state, problem=problem, stage="half way", fraction=0.42
+    )
     did = []
     monkeypatch.setattr(session.jobs, "cancel", lambda task: did.append(("stop", task)))
     monkeypatch.setattr(session.jobs, "again", lambda task: did.append(("again", task)))
@@ -484,7 +488,7 @@ def test_a_job_says_its_state_and_may_be_stopped_or_run_again(
 
 
 def test_jobs_stand_in_the_order_in_which_they_come():
-    tasks = [Task(n, "", state=s) for n, s in ((1, DONE), (2, "waiting"), (3, RUNNING),
+    tasks = [QueuedTask(n, "", state=s) for n, s in ((1, DONE), (2, "waiting"), (3, RUNNING),
                                                (4, "waiting"), (5, FAILED))]  # fmt: skip
     assert [task.number for task in sorted(tasks, key=frame._place)] == [3, 2, 4, 5, 1]
 
@@ -717,8 +721,8 @@ def test_a_design_has_the_sole_and_the_file_of_its_job(monkeypatch):
 @pytest.mark.parametrize("order", ["open", "decided", None])
 @pytest.mark.parametrize("ranked", [True, False])
 def test_a_comparison_is_told_without_the_numbers_that_stand_in_rows(monkeypatch, order, ranked):
-    verdict = work.Verdict.OPEN if order == "open" else next(
-        each for each in work.Verdict if each is not work.Verdict.OPEN)  # fmt: skip
+    verdict = work.OrderVerdict.OPEN if order == "open" else next(
+        each for each in work.OrderVerdict if each is not work.OrderVerdict.OPEN)  # fmt: skip
     found = SimpleNamespace(
         ranking=("a", "b") if ranked else (),
         order=None if order is None else SimpleNamespace(verdict=verdict),

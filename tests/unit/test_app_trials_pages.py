@@ -15,7 +15,7 @@ from underfoot.app.jobs import DONE
 from underfoot.app.pages import trials, trials_folder
 from underfoot.app.pages.trials_folder import FolderView
 from underfoot.app.pages.trials_trial import TrialView, _edit_words, _step_words
-from underfoot.app.trials_study import Study, free_name, studies
+from underfoot.app.trials_study import TrialsFolder, free_name, studies
 from underfoot.core import InputError
 from underfoot.trials.study.record_signals import Envelope
 
@@ -43,7 +43,7 @@ def session(tmp_path):
 
 @pytest.fixture
 def study(session):
-    made = Study(session.project, "walks")
+    made = TrialsFolder(session.project, "walks")
     made.files = ["a.csv", "b.csv", "c.csv"]
     return made
 
@@ -509,7 +509,7 @@ def test_the_example_of_trials_is_analysed_as_slips(session, monkeypatch):
     name = session.text("trials.example")
     assert opened_as == [name]
     assert asked[0][1] == (str(session.project.inside("trials", name)),)
-    assert Study(session.project, name).settings["protocol"] == "report_g6"
+    assert TrialsFolder(session.project, name).settings["protocol"] == "report_g6"
 
 
 # plots

@@ -91,7 +91,7 @@ def test_a_question_is_asked_with_what_its_options_say(monkeypatch, module, name
 def test_places_and_machines_are_asked_with_what_is_given(monkeypatch, tmp_path):
     calls: list[Any] = []
     monkeypatch.setattr(place, "read_place", lambda path: SimpleNamespace(name=path.name))
-    monkeypatch.setattr(choice, "chosen", noted(calls))
+    monkeypatch.setattr(choice, "choose_shoe", noted(calls))
     for words, quick in (([], True), (["--full"], False)):
         assert called("choose", "ward.toml", *words).returncode == 0
         (((told,), more),) = calls
@@ -602,13 +602,13 @@ def test_an_error_is_said_and_ends_with_its_code(monkeypatch, capsys, error, cod
         raise error
 
     with pytest.raises(typer.Exit) as ended:
-        guard.guarded(fails)()
+        guard.guard_command(fails)()
     assert ended.value.exit_code == code
     assert said in capsys.readouterr().err
     if not isinstance(error, typer.Exit):
         monkeypatch.setenv("UNDERFOOT_DEBUG", "1")
         with pytest.raises(type(error)):
-            guard.guarded(fails)()
+            guard.guard_command(fails)()
 
 
 @pytest.mark.parametrize("usual", [True, False])
@@ -644,7 +644,7 @@ def test_commands_of_other_packages_stand_beside_ones_own(monkeypatch, name):
             raise InputError("it is broken")
         return items.get(wanted)
 
-    monkeypatch.setattr(groups, "offered", offered)
+    monkeypatch.setattr(groups, "find_offer", offered)
     listed = [*items, *(alien if prefix else [*alien][1:])]
     monkeypatch.setattr(groups, "offers", lambda door: listed)
     app = typer.Typer(name=name, cls=groups.Group)

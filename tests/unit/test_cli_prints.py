@@ -198,7 +198,7 @@ def test_remarks_of_a_table_lose_their_sources_where_not_all_is_asked(wide, caps
     assert short[1].endswith("a remark")
     assert short[2].endswith("short (s)")
     assert printed(capsys, table)[1].endswith("x)")
-    assert output.shortened("x (y) z") == "x"
+    assert output.shorten_remark("x (y) z") == "x"
     two = Table("", ("name", "value"), [("a", source)])
     assert any("source" in line for line in printed(capsys, two, everything=False))
 
@@ -249,7 +249,7 @@ def test_curves_of_two_conditions_are_told_with_where_they_differ(tmp_path, as_j
      ('a="x=y"', ("a", "x=y")), ("a=[1, 2]", ("a", [1, 2])), ("a", None), ("=3", None)],
 )  # fmt: skip
 def test_a_setting_is_a_path_and_a_value(text, read):
-    from underfoot.cli.options import loaded, setting
+    from underfoot.cli.options import load_case, setting
 
     if read is None:
         with pytest.raises(InputError, match="not a setting"):
@@ -259,4 +259,4 @@ def test_a_setting_is_a_path_and_a_value(text, read):
         assert path == read[0]
         assert value == read[1] or float(value) == read[1]
     with pytest.raises(InputError, match="is a folder"):
-        loaded(Path(), None, None)
+        load_case(Path(), None, None)

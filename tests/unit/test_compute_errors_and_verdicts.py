@@ -14,14 +14,14 @@ from underfoot.compute import numbers, numerical_error, positions, summary
 from underfoot.compute.numerical_error import NumericalErrors, _wider, errors_by_steps
 from underfoot.compute.position_draws import (
     ANGLE_DEVIATION,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     UncertainBevel,
     log_film_odds,
 )
-from underfoot.compute.stated_spreads import added, odds_changes
-from underfoot.core import Breach, Range, SourcedValue, Status
+from underfoot.compute.stated_spreads import odds_changes, sum_of_draws
+from underfoot.core import Breach, SourcedValue, Status, ValidityRange
 from underfoot.core.remark import Message, Remark
 from underfoot.friction import SampledCof
 
@@ -125,7 +125,7 @@ def at_places(kind=TreadPositions, **more):
               "cof_viscous": np.array([0.01, 0.03]), "cof": np.array([0.25, 0.15]),
               "peak_fluid_pressure": np.array([1e5, 3e5])}  # fmt: skip
     own = {name: float(each[0]) for name, each in values.items()}
-    places = (Place(), Place((1e-3, 0.0)))
+    places = (TreadPlace(), TreadPlace((1e-3, 0.0)))
     return kind(places, values, 0, own, **more)
 
 
@@ -247,9 +247,9 @@ def test_places_are_told_with_what_is_left_out(lost, turned):
     single = replace(alone, places=alone.places[:1], left_out=lost)
     lacks = {"positions_left_out"} if lost else set()
     assert set(single.labels()) == {"tread_position"} | lacks
-    yawed = replace(alone, places=(Place(yaw=0.1), Place()))
+    yawed = replace(alone, places=(TreadPlace(yaw=0.1), TreadPlace()))
     assert [one.about for one in yawed.assumptions()] == ["shoe.tread"]
-    angled = replace(alone, places=(Place(turn=0.1), Place()))
+    angled = replace(alone, places=(TreadPlace(turn=0.1), TreadPlace()))
     assert [one.about for one in angled.assumptions()] == ["motion.shoe_angle"]
     for assumed in (True, False):
         bevel = at_places(bevel=UncertainBevel(0.01, assumed, "h", 1))
@@ -263,7 +263,8 @@ def test_a_sole_without_lugs_is_read_between_the_angles_that_were_solved():
     further = {0.1: {"fluid_load": 400.0, "contact_load": 100.0, "cof": 0.05},
                -0.1: {"fluid_load": 50.0, "contact_load": 450.0, "cof": 0.35}}  # fmt: skip
     at: Any = replace(
-        at_places(ShoeAngles, bevel=bevel, further=further), places=(Place(), Place(turn=0.05))
+        at_places(ShoeAngles, bevel=bevel, further=further),
+        places=(TreadPlace(), TreadPlace(turn=0.05)),
     )
     turns, cof = at._over_angle("cof")
     assert turns.tolist() == [-0.1, 0, 0.05, 0.1]
@@ -335,8 +336,8 @@ def test_what_a_spread_adds_lies_between_its_ends_and_beyond_in_proportion():
     found = odds_changes(-0.2, 0.5, apart)
     assert found == pytest.approx([-0.4, -0.2, -0.1, 0.0, 0.25, 0.5, 1.5])
     stated = {"a": {"x": np.array([1.0, 2.0])}, "b": {"x": np.array([10.0, 20.0]), "y": 1.0}}
-    assert added(stated, "x") == pytest.approx([11, 22])
-    assert np.all(np.asarray(added(stated, "z")) == 0)
+    assert sum_of_draws(stated, "x") == pytest.approx([11, 22])
+    assert np.all(np.asarray(sum_of_draws(stated, "z")) == 0)
 
 
 def test_numbers_of_a_film_are_as_unsure_as_its_load():
@@ -403,7 +404,9 @@ def test_the_pressure_that_bears_the_contact_leaves_out_a_hundredth_of_its_load(
 )
 def test_a_march_without_a_result_says_what_stopped_it(share, crushed, said):
     contact = fake(fluid_load=500 * share, normal_force=500.0, time=0.1)
-    over = [Breach("rubber", "share", each, each, Range(0, 0.1, "1", "s")) for each in crushed]
+    over = [
+        Breach("rubber", "share", each, each, ValidityRange(0, 0.1, "1", "s")) for each in crushed
+    ]
     text = numbers.no_result_words(contact, over)
     assert said in text
     assert f"{share:.0%} of 500 N" in text

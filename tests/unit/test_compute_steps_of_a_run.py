@@ -11,8 +11,8 @@ import pytest
 from underfoot.case import load
 from underfoot.compute import histories, positions, read, sole, solve, steadiness
 from underfoot.compute.contact_friction import _on_squares, film_warmth, leak_name
-from underfoot.compute.position_draws import Place
-from underfoot.compute.positions import TURNED, carried, tread_positions
+from underfoot.compute.position_draws import TreadPlace
+from underfoot.compute.positions import TURNED, carry_to_finer, tread_positions
 from underfoot.compute.steadiness import _least, settling_time, with_steadiness
 from underfoot.core import ConvergenceError, InputError, SourcedValue
 from underfoot.friction import FrictionParts
@@ -131,7 +131,7 @@ def recorder(monkeypatch, *, end, follows=False, size=4, read_of=None):
     monkeypatch.setattr(histories, "friction_sums", lambda *_: fake(**sums))
     monkeypatch.setattr(histories, "contact_area", lambda _: 1e-4)
     reading = fake(load=scalar(5.0, "N"), peak_pressure=scalar(7.0, "Pa"))
-    monkeypatch.setattr(histories, "scanned", lambda *_, **__: reading)
+    monkeypatch.setattr(histories, "scan_reading", lambda *_, **__: reading)
     return made
 
 
@@ -192,31 +192,31 @@ def test_what_grows_with_finer_cells_is_carried_on_evenly_and_its_parts_bear_the
 
     each, coarse = arrays(), arrays()
     fine = arrays(fluid_load=120.0, contact_load=380.0)
-    same = carried(each, coarse, fine, 0.0)
+    same = carry_to_finer(each, coarse, fine, 0.0)
     odds = 120 / 380 / (100 / 400)
     film = 500 * (0.25 * odds) / (1 + 0.25 * odds)
     assert same["fluid_load"] == pytest.approx([film])
     assert same["fluid_load"] + same["contact_load"] == pytest.approx([500])
-    beyond = carried(each, coarse, fine, 0.5)
+    beyond = carry_to_finer(each, coarse, fine, 0.5)
     step = odds + 0.5 * (odds - 1)
     assert beyond["fluid_load"] == pytest.approx([500 * 0.25 * step / (1 + 0.25 * step)])
     assert beyond["cof"] == pytest.approx(
         beyond["cof_adhesion"] + beyond["cof_hysteresis"] + beyond["cof_viscous"]
     )
-    less = carried(each, fine, coarse, 0.5)  # of what shrinks the inverse grows evenly
+    less = carry_to_finer(each, fine, coarse, 0.5)  # of what shrinks the inverse grows evenly
     step = 1 / odds / (1 + 0.5 * (1 - 1 / odds))
     assert less["fluid_load"] == pytest.approx([500 * 0.25 * step / (1 + 0.25 * step)])
-    none = carried(each, arrays(fluid_load=0.0), fine, 0.5)
+    none = carry_to_finer(each, arrays(fluid_load=0.0), fine, 0.5)
     assert none["fluid_load"] == pytest.approx([100])
 
 
 @pytest.mark.parametrize("turned", [True, False])
 def test_what_the_angle_adds_is_half_of_what_toe_up_and_toe_down_differ_by(monkeypatch, turned):
-    monkeypatch.setattr(positions, "treaded", lambda _: True)
+    monkeypatch.setattr(positions, "has_lugs", lambda _: True)
     monkeypatch.setattr(positions, "remembers", lambda _: False)
     monkeypatch.setattr(positions, "further_angles", lambda _: ())
     monkeypatch.setattr(positions, "tread_on_sole", lambda _: ([1],))
-    where = Place(), Place((1e-3, 0.0))
+    where = TreadPlace(), TreadPlace((1e-3, 0.0))
     monkeypatch.setattr(positions, "_places_on_grids", lambda *_, **__: (where, where[:1], 1e-3))
     monkeypatch.setattr(positions.UncertainBevel, "of", lambda _: None)
     up, down = (PATTERN | {"cof": cof, "fluid_load": film, "contact_load": 500 - film}
@@ -229,7 +229,7 @@ def test_what_the_angle_adds_is_half_of_what_toe_up_and_toe_down_differ_by(monke
         asked_for.extend(asked)
         yield from ((k, numbers[one]) for k, one in enumerate(asked))
 
-    found = tread_positions(CASE, {Place(): PATTERN}, at_places, spacing=5e-4, quick=False)
+    found = tread_positions(CASE, {TreadPlace(): PATTERN}, at_places, spacing=5e-4, quick=False)
     assert asked_for == list(numbers)
     assert found.left_out == 0
     if not turned:
@@ -295,7 +295,7 @@ def test_how_unknown_a_film_is_is_solved_with_more_and_less_of_what_leaks(
         return factor
 
     monkeypatch.setattr(solve, "micro_contact", lambda *_: None)
-    monkeypatch.setattr(solve, "continued", continued)
+    monkeypatch.setattr(solve, "continue_contact", continued)
     monkeypatch.setattr(solve, "_leaking", leaking)
     told = solve.film_spreads(Parts(), state)  # type: ignore[arg-type]
     assert bool(told) is spread
@@ -315,7 +315,7 @@ def test_a_shoe_is_turned_up_and_down_where_its_contact_goes_on(monkeypatch, fai
             raise ConvergenceError("no", history=[])
         return ["first", turn]
 
-    monkeypatch.setattr(solve, "continued", continued)
+    monkeypatch.setattr(solve, "continue_contact", continued)
     monkeypatch.setattr(solve, "place_numbers", lambda parts, end: {"end": end})
     parts = fake(case=fake(motion=fake(build=lambda: None)))
     found = solve._turned(parts, fake())
@@ -330,7 +330,7 @@ def test_a_shoe_is_turned_up_and_down_where_its_contact_goes_on(monkeypatch, fai
 
 @pytest.mark.parametrize("processes", [1, 3])
 def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, processes):
-    asked = [(Place(), 1e-3), (Place((1e-3, 0.0)), 2e-3)]
+    asked = [(TreadPlace(), 1e-3), (TreadPlace((1e-3, 0.0)), 2e-3)]
     shares, in_several = [], []
 
     def positions_of(case, known, at_places, *, spacing, quick):
@@ -357,9 +357,11 @@ def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, proc
     def told(stage, fraction, residual=None):
         shares.append((stage, fraction))
 
-    answer: Any = solve.averaged(parts, solution, quick=True, processes=processes, progress=told)
+    answer: Any = solve.average_positions(
+        parts, solution, quick=True, processes=processes, progress=told
+    )
     found, known, spacing, quick = answer
-    assert known == {Place(): "own", "turned": 1}
+    assert known == {TreadPlace(): "own", "turned": 1}
     assert (spacing, quick) == (1e-3, True)
     if processes > 1:
         assert in_several == [3]
@@ -370,7 +372,7 @@ def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, proc
     for changes in ({"objects": {"compliance": 1}}, {}):
         if not changes:
             monkeypatch.setattr(solve, "position_count", lambda *_, **__: 1)
-        assert solve.averaged(fake(**vars(parts) | changes), solution, quick=True) is None
+        assert solve.average_positions(fake(**vars(parts) | changes), solution, quick=True) is None
 
 
 # friction of a contact
@@ -445,7 +447,7 @@ def test_the_last_instant_of_a_motion_says_when_and_from_where():
 def test_every_other_place_and_the_own_angle_alone_are_solved_on_the_grid_of_the_run(
     monkeypatch, lugs, quick, coarse, grid, own
 ):
-    monkeypatch.setattr(positions, "treaded", lambda _: lugs)
+    monkeypatch.setattr(positions, "has_lugs", lambda _: lugs)
     monkeypatch.setattr(positions, "case_places", lambda case, *, quick: ("a", "b", "c"))
     monkeypatch.setattr(positions, "shoe_angles", lambda: ("x", "y", "z"))
     case = fake(numerics=fake(quick_grid_spacing=coarse))

@@ -18,15 +18,15 @@ from underfoot.core.fields import from_xarray
 from underfoot.explore.record import Ending
 from underfoot.report import light_mesh, live_study, maps, outsole, results, studies_page, viewer
 from underfoot.report.drawn_sole import DrawnSole
-from underfoot.report.quantities import Quantity, Scale, inside, scale, shown
+from underfoot.report.quantities import ColourScale, DrawnQuantity, inside, scale, shown_values
 from underfoot.report.surface_mesh import SurfaceMesh, _Edges
 from underfoot.shoe import Heel, Tread, heel_surface
 from underfoot.shoe.files import FileSettings
 from underfoot.shoe.tread_measures import channel_depth, tread_measures
 from viewer_fields import unpacked
 
-PRESSURE = Quantity("fluid_pressure", "Fluid pressure", 1e3, "kPa", stress=True)
-RATIO = Quantity("film_thickness", "Film", 1e-6, "µm", logarithmic=True)
+PRESSURE = DrawnQuantity("fluid_pressure", "Fluid pressure", 1e3, "kPa", stress=True)
+RATIO = DrawnQuantity("film_thickness", "Film", 1e-6, "µm", logarithmic=True)
 
 
 def fake(**parts) -> Any:
@@ -150,7 +150,7 @@ def test_a_comparison_has_a_map_a_sole_and_one_of_each_difference_to_the_first()
 def test_a_colour_bar_has_the_unit_and_the_peak_beyond_it(cut):
     axes = Figure().subplots()
     values = np.array([[1.0, 2.0], [3.0, 40.0]])
-    limits = Scale(0.0, 4.0 if cut else 40.0, 40.0)
+    limits = ColourScale(0.0, 4.0 if cut else 40.0, 40.0)
     maps.draw_field(axes, np.arange(2.0), np.arange(2.0), values, PRESSURE, limits)
     bar = axes.figure.axes[1]
     assert bar.get_title() == ("kPa\npeak 40" if cut else "kPa")
@@ -189,10 +189,10 @@ def test_where_a_sole_is_stands_in_its_heights_where_nothing_else_says_it():
 def test_next_to_nothing_is_drawn_but_of_a_stress(stress):
     more: dict[str, Any] = {"stress": True} if stress else {}
     values = np.array([0.0, 0.9e-3, 1.1e-3, 1.0])
-    found = shown(values, Quantity("a", "", 0.5, "", **more))
+    found = shown_values(values, DrawnQuantity("a", "", 0.5, "", **more))
     assert np.isnan(found).tolist() == [stress, stress, False, False]
     assert found[2:] == pytest.approx([2.2e-3, 2.0])
-    signed = shown(values - 0.5, Quantity("a", "", 1.0, "", **more))
+    signed = shown_values(values - 0.5, DrawnQuantity("a", "", 1.0, "", **more))
     assert not np.isnan(signed).any()
 
 
@@ -518,7 +518,7 @@ def test_the_cost_of_a_study_is_that_of_what_ended_and_of_what_is_left(monkeypat
 @pytest.mark.parametrize(("count", "places"), [(3, [0, 4, 9]), (12, list(range(10))), (0, []),
                                                (-2, []), (1, [0])])  # fmt: skip
 def test_items_are_thinned_evenly_from_first_to_last(count, places):
-    assert live_study.thinned(range(10), count) == places
+    assert live_study.thin_evenly(range(10), count) == places
 
 
 def test_of_many_runs_the_front_the_best_the_last_and_an_even_rest_are_drawn(monkeypatch):

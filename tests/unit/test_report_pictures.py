@@ -13,7 +13,7 @@ from underfoot.core import SourcedValue
 from underfoot.explore.effects import Effects
 from underfoot.report import chart, design_study, laws, places, slips, study_figures
 from underfoot.report.question_figures import contact_figure
-from underfoot.report.study_figures import drawn, stribeck_figure
+from underfoot.report.study_figures import draw_figure, stribeck_figure
 from underfoot.rough_contact import ExponentialLaw
 from underfoot.slip import ReportG6, slip_model, slip_risk
 from underfoot.slip.dynamics import FloorSensors
@@ -245,7 +245,7 @@ def test_a_scan_is_drawn_in_millimetres_with_its_spectrum_over_the_wavelength(ma
     figure = Figure()
     laws._scan(scan, figure)
     left, right = figure.axes[:2]
-    levelled = 1e6 * laws.levelled(surface).heights
+    levelled = 1e6 * laws.level_surface(surface).heights
     if mapped:
         image = left.images[0]
         assert np.asarray(image.get_array()) == pytest.approx(levelled.T)
@@ -375,7 +375,7 @@ def every_mark():
 def test_every_mark_of_a_figure_is_drawn_at_its_numbers():
     marks = every_mark()
     panels = [Panel([layer], f"x {name}", f"y {name}", name) for name, layer in marks.items()]
-    figure = drawn(FigureData(panels, "All of them", columns=4, size=(2.0, 1.5)))
+    figure = draw_figure(FigureData(panels, "All of them", columns=4, size=(2.0, 1.5)))
     assert figure.get_size_inches() == pytest.approx((8.0, 1.5 * 3 + 0.5))
     axes: dict[str, Any] = dict(zip(marks, figure.axes, strict=False))
     assert [each.get_visible() for each in figure.axes] == [True] * len(marks) + [False] * 2
@@ -414,7 +414,7 @@ def test_maps_of_a_figure_share_one_scale_and_stacks_stand_on_each_other():
 
     stack = [Layer("stack", [0, 1], [1, 2], label=name) for name in "ab"]
     panels = [Panel([a_map(5)]), Panel([a_map(9)]), Panel(stack), Panel([], note="nothing")]
-    figure = drawn(FigureData(panels, columns=2, colour_bar="m", legend_below=True))
+    figure = draw_figure(FigureData(panels, columns=2, colour_bar="m", legend_below=True))
     first, second, piled, empty = figure.axes[:4]
     for axes in (first, second):
         assert axes.collections[0].get_clim() == (0, 9)
@@ -437,7 +437,7 @@ def test_ticks_are_names_of_places_or_numbers_and_axes_are_shared_where_said(sha
         Panel([Layer("line", [1, 2], [1, 5])], "x", "y", x_ticks=["one", long], y_scale=scale),
         Panel([Layer("line", [1, 2], [1, 50])], "x", "y", x_ticks=[1.0, 1.5], y_ticks=["a", "b"]),
     ]
-    figure = drawn(FigureData(panels, columns=2, share_y=shared))
+    figure = draw_figure(FigureData(panels, columns=2, share_y=shared))
     left, right = figure.axes
     assert left.get_yscale() == scale
     assert left.get_xticks().tolist() == [0, 1]

@@ -11,7 +11,7 @@ import xarray
 
 from underfoot.case import load
 from underfoot.core.fields import from_xarray
-from underfoot.core.page import Section
+from underfoot.core.page import PageSection
 from underfoot.core.presentation import Presentable, Table
 from underfoot.report import (
     compound,
@@ -26,7 +26,7 @@ from underfoot.report import (
 )
 from underfoot.report.designed_sole import DesignedSole
 from underfoot.report.drawn_sole import DrawnSole
-from underfoot.report.quantities import Quantity
+from underfoot.report.quantities import DrawnQuantity
 from underfoot.report.solver_input import _wrapped
 from underfoot.report.surface_mesh import DRAWN, TOLERANCE
 from underfoot.report.writing import json_text
@@ -136,7 +136,7 @@ def test_a_comparison_has_its_soles_first_and_its_differences_last(monkeypatch, 
     shown: Any = Compared(results=made, letters=("A", "B"), usable=usable)
     monkeypatch.setattr(results, "_viewer", lambda several: f"viewer of {len(several)}")
     monkeypatch.setattr(results, "grid_note", lambda data: f"note of {''.join(data)}.")
-    quantity = Quantity("p", "Pressure", 1.0, "Pa")
+    quantity = DrawnQuantity("p", "Pressure", 1.0, "Pa")
     monkeypatch.setattr(results, "quantities", lambda data: (quantity,))
     monkeypatch.setattr(results, "viewer_script", lambda: "script")
     pictures = {"p": b"png"} if usable else {}
@@ -250,7 +250,7 @@ def test_a_page_of_a_study_has_what_there_is_of_it(monkeypatch, kind, best):
         assert list(parts[titles.index("Error of the surrogates")].items) == ["cof: good"]
         assert "Surrogates" not in titles
     assert (titles[-1], parts[-1].folded, parts[-1].text) == ("Study file (TOML)", True, "toml")
-    assert all(isinstance(part, Section) for part in parts)
+    assert all(isinstance(part, PageSection) for part in parts)
 
 
 def test_numbers_of_numpy_are_plain_in_json():
@@ -318,8 +318,8 @@ def test_a_surface_says_within_what_its_lugs_are_of_the_drawing(monkeypatch, kin
 
 def test_colours_of_cells_are_those_of_the_page_and_rubber_where_there_is_none():
     values = np.array([[1.0, 10.0], [100.0, np.nan]])
-    plain = Quantity("p", "", 1.0, "", "viridis")
-    log = Quantity("f", "", 1.0, "", "viridis", logarithmic=True)
+    plain = DrawnQuantity("p", "", 1.0, "", "viridis")
+    log = DrawnQuantity("f", "", 1.0, "", "viridis", logarithmic=True)
     linear, logarithmic = (sole_export._colours(values, q) for q in (plain, log))
     import matplotlib
 
@@ -363,7 +363,7 @@ def test_each_number_of_a_set_stands_once_sixteen_a_line(count):
 
 def test_a_type_of_another_package_is_asked_for_by_the_name_of_its_package(monkeypatch):
     asked = []
-    monkeypatch.setattr(dispatch, "offered", lambda *given: asked.append(given))
+    monkeypatch.setattr(dispatch, "find_offer", lambda *given: asked.append(given))
     alien: Any = type("Alien", (), {"__module__": "other_package.inner.module"})
     assert dispatch.figures(alien()) == {}
     assert asked == [("reports", "other_package")]
