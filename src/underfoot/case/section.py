@@ -27,6 +27,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from underfoot.core import InputError, SourcedValue, unknown_name
+from underfoot.core.arrays import of_python
 from underfoot.core.leaves import INHERITED, Leaf
 from underfoot.core.registry import all_offers, loaded, offered, offers
 from underfoot.core.units import spread_to_si
@@ -95,7 +96,8 @@ class Section(BaseModel):
         given = cls.in_own_terms(given)
         origins = {key: origin for key, item in given.items() if (origin := origin_of(item))}
         plain = {
-            key: origins[key].leaf.given if key in origins else item for key, item in given.items()
+            key: of_python(origins[key].leaf.given) if key in origins else of_python(item)
+            for key, item in given.items()
         }
         if issubclass(cls, Option):
             plain.pop(cls.key, None)
@@ -445,6 +447,7 @@ def leaf_of(item: Any) -> Leaf:
 
 def plain_text(value: Any, unit: str) -> Any:
     """Return an SI value as a file writes it: exact, with its unit."""
+    value = of_python(value)
     if isinstance(value, bool) or not isinstance(value, float | int) or unit == "1":
         return value
     return f"{value!r} {unit}"
