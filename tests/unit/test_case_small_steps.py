@@ -242,3 +242,20 @@ def test_numbers_of_numpy_are_those_of_python_in_a_case_and_in_its_file(heel):
     assert read.hash == plain.hash
     with pytest.raises(InputError, match=r"motion.speed: \[0.3, 0.4\] is not a quantity"):
         heel.replace("motion.speed", np.array([0.3, 0.4]))
+
+
+def test_a_spread_beside_an_si_number_is_one_too(heel):
+    told = {"value": "50 cP", "uncertainty": "3 cP"}
+    plain = {"value": 0.05, "uncertainty": np.float64(0.003)}
+    case, same = (heel.replace("contaminant.viscosity", each) for each in (told, plain))
+    assert same.sourced("contaminant.viscosity").uncertainty == pytest.approx(0.003)
+    assert same == case
+    assert Case.from_text(same.to_toml()) == case
+    warm = {"value": 293.15, "uncertainty": 2.0}
+    glycerol = {"glycerol_fraction": 0.9, "fraction_basis": "volume", "temperature": warm}
+    spread = heel.replace("contaminant", glycerol)
+    assert spread.sourced("contaminant.temperature").uncertainty == pytest.approx(2.0)
+    assert Case.from_text(spread.to_toml()) == spread
+    for mixed in ({"value": "50 cP", "uncertainty": 0.003}, {"value": 0.05, "uncertainty": True}):
+        with pytest.raises(InputError, match="uncertainty"):
+            heel.replace("contaminant.viscosity", mixed)

@@ -148,8 +148,11 @@ class Section(BaseModel):
                 raise refused_at(cls, (key, "uncertainty"), error, written)
             assert field is not None
             unit = unit_of(field)
+            given, plain = of_python(origin.leaf.given), of_python(written)
+            if all(type(each) in (int, float) for each in (given, plain)):  # both are SI
+                plain = plain_text(plain, unit)
             try:
-                uncertainty = spread_to_si(written, origin.leaf.given, unit, where="")
+                uncertainty = spread_to_si(plain, given, unit, where="")
                 if uncertainty < 0:
                     raise InputError(f"{written} is negative", allowed="0 or more")
             except InputError as error:
