@@ -151,3 +151,33 @@ reading = "{error * 196.133} N"
         flags = record(tmp_path, RECORD + check).flags(DATE)
         assert [flag.name for flag in flags] == ([FAILED] if failed else [])
         assert record(tmp_path, RECORD + check).flags("12.03.2026") == flags
+
+
+@pytest.mark.parametrize(
+    ("heading", "factor"),
+    [
+        ("speed (mm/s)", 1e3),
+        ("Geschwindigkeit (m/min)", 60.0),
+        ("velocity (in/s)", 1 / 0.0254),
+        ("Speed (ft/min)", 60 / 0.3048),
+    ],
+)
+@pytest.mark.parametrize(("share", "verdict"), [(1.0, "accepted"), (1 / 3, "refused")])
+def test_a_speed_is_judged_in_the_units_of_testers(tmp_path, heading, factor, share, verdict):
+    """A shoe that slid at 0.1 m/s was accepted where the log was in feet a minute or German."""
+    log = next(log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns)
+    speed = log.columns.pop("speed (m/s)")
+    log.columns[heading] = share * factor * speed
+    write_log(log, tmp_path)
+    (one,) = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    assert one.verdict == verdict
+    assert one.facts["sliding_speed"] == pytest.approx(0.3 * share, rel=0.02)
+
+
+def test_a_speed_in_no_known_unit_is_said(tmp_path):
+    log = next(log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns)
+    log.columns["speed (knots)"] = log.columns.pop("speed (m/s)")
+    write_log(log, tmp_path)
+    (one,) = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    assert one.verdict == "caution"
+    assert "no known unit of speed" in str(one.reasons)

@@ -12,6 +12,7 @@ from underfoot.core.remark import NOTHING, Message
 from ..recording.measurement import RATIOS, TOO_FEW, Flag, Measurement, caution
 from ..recording.signals import runs
 from ..recording.trial import Channel, Trial
+from .slip_friction import speed_channel
 
 BATCH = 5
 _LATEST = 0.5
@@ -86,7 +87,6 @@ SHEAR = (
     "friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft", "daq.fx",
     "reibkraft", "reibungskraft",
 )  # fmt: skip
-SPEED = ("sliding speed", "speed", "velocity", "max linear speed")
 COF = (
     "cof", "friction coefficient", "traction coeff", "traction coefficient", "daq.cof", "µ", "mu",
     "reibwert", "reibungszahl",
@@ -419,7 +419,7 @@ def _channel(trial: Trial, names: tuple[str, ...]) -> Channel | None:
 
 
 def _speed(trial: Trial, used: np.ndarray) -> float | None:
-    channel = _channel(trial, SPEED)
+    channel = speed_channel(trial)
     if channel is None or channel.unit != "m/s":
         return None
     values = channel.values[used[used < len(channel.values)]]
