@@ -130,3 +130,16 @@ def test_a_floor_is_not_told_apart_by_its_results(tmp_path):
     sheets = {"sheet.csv": head + rows}
     found = classes(tmp_path, sheets, "en_16165_pendulum", "lowest")
     assert found == ["high slip potential"]
+
+
+@pytest.mark.parametrize(
+    ("remarks", "cofs"),
+    [(("", "", "patch"), [0.45]), (("wet", "dry", "dry"), [0.3, 0.525])],
+)
+def test_remarks_on_every_reading_tell_samples_apart(tmp_path, remarks, cofs):
+    """Only a remark about some of the readings is none of the sample's."""
+    rows = "".join(
+        f"F;{cof};{remark}\n" for cof, remark in zip((0.3, 0.5, 0.55), remarks, strict=True)
+    )
+    files = analysed(tmp_path, f"Boden;COF;Bemerkung\n{rows}").files
+    assert sorted(file.main["cof"] for file in files) == pytest.approx(cofs)

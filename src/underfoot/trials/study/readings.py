@@ -54,12 +54,17 @@ _SUMMARY = re.compile(
     re.IGNORECASE,
 )
 """Labels of rows below a table that hold no reading but a number of those above."""
-_ABOUT_READINGS = re.compile(
-    rf"(?<![^\W_])({_SUMMARY.pattern}|results?|verdict|pass|potential|remarks?|comments?|notes?"
-    r"|ergebnis|urteil|bewertung|bemerkung(en)?|kommentar|notiz(en)?)(?![^\W_])",
+_OUTCOME = re.compile(
+    rf"(?<![^\W_])({_SUMMARY.pattern}|results?|verdict|pass|potential|ergebnis|urteil|bewertung)"
+    r"(?![^\W_])",
     re.IGNORECASE,
 )
-"""Headings of what is computed from readings or said about one: they tell no samples apart."""
+"""Headings of what is computed from readings: they tell no samples apart."""
+_REMARK = re.compile(
+    r"(?<![^\W_])(remarks?|comments?|notes?|bemerkung(en)?|kommentar|notiz(en)?)(?![^\W_])",
+    re.IGNORECASE,
+)
+"""Headings of what is said about single readings, where some have nothing."""
 _FEWEST_BESIDE = 3  # numbered columns of a record sheet
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
 _WALKERS = (
@@ -122,14 +127,14 @@ def reading_results(
     """Return one result for each sample of the tables of readings in a file (one reading a row).
 
     Sheets of a workbook with the same headings are one table. Every text column is a condition, but
-    for remarks, verdicts and means of the readings; rows that agree in all of them are readings of
-    one sample (of one direction, with one slider). A column "run" may say "zero" (the mean of these
-    readings is taken off the sample's others), "conditioning" (left out) or "check" (a surface of
-    known PTV: a failed check refuses the readings of its slider). Of a ramp a row with a "standard
-    angle" is a calibration board, which shows how far its operator reads off. The protocol may
-    leave out the first readings (``conditioning``) where more than ``readings`` are given. A table
-    in which no column can be recognised as readings, impossible values and one condition in two
-    spellings are a `DataError` or `InputError`.
+    for verdicts, means and remarks about some of the readings; rows that agree in all of them are
+    readings of one sample (of one direction, with one slider). A column "run" may say "zero" (the
+    mean of these readings is taken off the sample's others), "conditioning" (left out) or "check"
+    (a surface of known PTV: a failed check refuses the readings of its slider). Of a ramp a row
+    with a "standard angle" is a calibration board, which shows how far its operator reads off. The
+    protocol may leave out the first readings (``conditioning``) where more than ``readings`` are
+    given. A table in which no column can be recognised as readings, impossible values and one
+    condition in two spellings are a `DataError` or `InputError`.
     """
     tables = tables_of(path)
     known = {protocol.text("column").casefold()}.union(*QUANTITIES.values())
@@ -181,7 +186,7 @@ def _table_results(
         for k, v in cells.items()
         if k.casefold() not in _RUN
         and k != column
-        and not _ABOUT_READINGS.search(k)
+        and _names_samples(k, cells[k])
         and (k not in numbers or k.casefold() in _LABELS)
     }
     # floors 1, 2, 3 are samples, not one sample with a number beside its readings
@@ -190,7 +195,7 @@ def _table_results(
         for k in numbers
         if k != column
         and k.casefold() not in (*texts, *_RUN, *_BOARD)
-        and not _ABOUT_READINGS.search(k)
+        and _names_samples(k, cells[k])
     }
     texts |= {name: levels for name, levels in coded.items() if levels is not None}
     walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
@@ -247,6 +252,11 @@ def _table_results(
         draft.sample = replace(draft.sample, source=name)
         results.append(draft.finished(protocol))
     return results
+
+
+def _names_samples(head: str, cells: Sequence[str]) -> bool:
+    """Whether a column can tell samples apart: no outcome, and no remark about some readings."""
+    return not _OUTCOME.search(head) and (all(cells) or not _REMARK.search(head))
 
 
 def _one_a_row(
