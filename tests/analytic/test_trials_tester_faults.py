@@ -4,12 +4,14 @@
 """
 
 import numpy as np
+import openpyxl
 import pytest
 
 from trial_testers import (
     DATE,
     FAULTS,
     NOTICED,
+    PROFILE,
     RIGHT,
     SILENT,
     faulty_outcome,
@@ -181,3 +183,21 @@ def test_a_speed_in_no_known_unit_is_said(tmp_path):
     (one,) = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
     assert one.verdict == "caution"
     assert "no known unit of speed" in str(one.reasons)
+
+
+def test_every_sheet_of_a_workbook_is_a_slide(tmp_path):
+    """The second of two slides was lost; only `describe` named its sheet."""
+    logs = [log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns]
+    logs = [log for log in logs if "normal force (N)" in log.columns][:2]
+    book = openpyxl.Workbook(write_only=True)
+    book.create_sheet("Info").append(["operator", "A"])
+    for number, log in enumerate(logs, start=1):
+        sheet = book.create_sheet(f"Run {number}")
+        sheet.append(list(log.columns))
+        for row in zip(*log.columns.values(), strict=True):
+            sheet.append([float(value) for value in row])
+    book.save(tmp_path / "runs.xlsx")
+    (tmp_path / "profile.toml").write_text(PROFILE, encoding="utf-8")
+    files = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    found = [file.main["cof"] for file in files]
+    assert found == pytest.approx([log.cof for log in logs], rel=0.01)
