@@ -170,7 +170,7 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     for number, name in enumerate(table.columns):
         drawn.add_column(
             escaped(name),
-            no_wrap=number != last and (roomy or last == 1 or number == 0 and short),
+            no_wrap=number != last and (roomy or last == 1 or (number == 0 and short)),
             overflow="fold",
             style="dim" if number == last > 1 and name in REMARKS else None,
         )
