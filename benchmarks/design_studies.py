@@ -25,7 +25,7 @@ from underfoot.explore import Study, StudyResult
 from underfoot.explore.computing import crashed
 from underfoot.explore.engines import engine
 from underfoot.explore.plan import StudyPlan
-from underfoot.explore.record import Job, Record
+from underfoot.explore.record import CaseJob, Record
 from underfoot.explore.result import Design
 from underfoot.explore.status import study_status
 from underfoot.explore.study_file import read_plan
@@ -379,7 +379,7 @@ def _told(name: str, result: StudyResult, design: Design, stated: float) -> str:
     )
 
 
-def _waited(seconds: float, job: Job) -> Record:
+def _waited(seconds: float, job: CaseJob) -> Record:
     time.sleep(seconds)
     return record(job)
 

@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks import steadiness
 from underfoot import Case
 from underfoot.compute.numbers import FILM_ERROR
-from underfoot.compute.position_draws import Place, log_film_odds
+from underfoot.compute.position_draws import TreadPlace, log_film_odds
 from underfoot.compute.positions import case_places, shoe_angles, treaded
 from underfoot.compute.prepare import prepared
 from underfoot.compute.solve import LEAST_FILM, film_odds, solved_at
@@ -49,7 +49,7 @@ SOLES, DRAWS, SEED = 40, 2, 51
 def march(case: Case, turn: float = 0.0) -> float:
     """Return the film's odds with the shoe turned by ``turn``, degrees."""
     spacing = case.numerics.quick_grid_spacing
-    place = Place(turn=math.radians(turn))
+    place = TreadPlace(turn=math.radians(turn))
     return film_odds(solved_at(prepared(case, spacing), place, spacing)[1])
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.tread_widths import bars
 from underfoot import Case
-from underfoot.compute.position_draws import Place
+from underfoot.compute.position_draws import TreadPlace
 from underfoot.compute.positions import TURNED, place_numbers, places
 from underfoot.compute.prepare import Prepared, prepared
 from underfoot.compute.sole import tread_on_sole
@@ -39,7 +39,7 @@ def film_loads(parts: Prepared, at: Sequence[tuple[float, float]]) -> Array:
     loads = []
     for shift in at:
         try:
-            here, contact = solved_at(parts, Place(shift), parts.spacing)
+            here, contact = solved_at(parts, TreadPlace(shift), parts.spacing)
             usable = contact.status.usable
             loads.append(place_numbers(here, contact)["fluid_load"] if usable else math.nan)
         except ConvergenceError:
@@ -83,10 +83,10 @@ def of_turned(parts: Prepared, name: str) -> None:
     (period,) = tread_on_sole(parts.case)[0]
     for share in (0.0, 1 / 3, 2 / 3):
         shift = tuple(period * share)
-        here, contact = solved_at(parts, Place(shift), parts.spacing)
+        here, contact = solved_at(parts, TreadPlace(shift), parts.spacing)
         for turned in TURNED:
             (end,) = continued(contact, here, turn=turned.turn)[-1:]
-            _, march = solved_at(parts, Place(shift, turned.turn), parts.spacing)
+            _, march = solved_at(parts, TreadPlace(shift, turned.turn), parts.spacing)
             print(
                 f"{name:<22}{share:>8.2f}{math.degrees(turned.turn):>+8.2f}"
                 f"{contact.fluid_load:>8.1f}{end.fluid_load:>8.1f}{march.fluid_load:>8.1f}",

@@ -32,7 +32,7 @@ from underfoot.studies.pair_law import (
     scored,
     weights,
 )
-from underfoot.studies.sources import Condition, Reading, Span
+from underfoot.studies.sources import PublishedCondition, PublishedReading, Span
 
 ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}
@@ -86,9 +86,11 @@ def made_up(source, drag, cof, kind="value"):
         name: Span(value, value) for name, value in {**PAIR, "viscosity": drag / 0.3}.items()
     }
     high = cof if kind == "value" else np.inf
-    reading = Reading(kind, cof, high, 0.05)
+    reading = PublishedReading(kind, cof, high, 0.05)
     name = f"{kind} {drag:g}"
-    return Condition(source, name, numbers, {"fluid": "aqueous"}, reading, laboratory=source)
+    return PublishedCondition(
+        source, name, numbers, {"fluid": "aqueous"}, reading, laboratory=source
+    )
 
 
 @pytest.mark.slow
@@ -202,7 +204,7 @@ def test_a_laboratory_counts_once_and_a_curve_of_it_once():
 
 def test_a_bound_has_no_middle_and_a_range_its_own():
     lower, value = made_up("one", 1e-3, 0.2, kind="lower"), made_up("one", 1e-3, 0.3)
-    ranged = replace(value, reading=Reading("range", 0.1, 0.4, 0.1))
+    ranged = replace(value, reading=PublishedReading("range", 0.1, 0.4, 0.1))
     assert np.exp(middle([lower, value, ranged])) == pytest.approx([np.nan, 0.3, 0.2], nan_ok=True)
     assert features([value])[0] == pytest.approx(
         [np.log(1e-3), np.log(8e-6), np.log(2e-6), 60.0, 0.0]

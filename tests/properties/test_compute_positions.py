@@ -15,8 +15,8 @@ from underfoot.compute.position_draws import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
     COF_PARTS,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
 )
 from underfoot.compute.positions import (
@@ -93,7 +93,7 @@ def test_even_positions_are_the_same_from_any_of_them(count, step):
 @given(st.integers(1, 64))
 def test_positions_cover_both_directions_evenly_at_the_angle_of_the_case(count):
     found = places(np.eye(2), count)
-    assert found[0] == Place()
+    assert found[0] == TreadPlace()
     assert len({place.shift[0] for place in found}) == count
     assert not any(place.turn for place in found)
     for wave in ((1, 0), (0, 1)) if count > 1 else ():
@@ -305,7 +305,7 @@ def test_the_angle_adds_half_of_what_toe_up_and_toe_down_differ_by(bars):
     spacing = bars.numerics.quick_grid_spacing / 2
     made = tread_positions(
         bars,
-        {Place(): numbers(Place())},
+        {TreadPlace(): numbers(TreadPlace())},
         lambda asked: ((k, numbers(place)) for k, (place, _) in enumerate(asked)),
         spacing=spacing,
         quick=False,

@@ -22,7 +22,7 @@ from underfoot.core import SourcedValue
 from underfoot.explore.inputs import Range
 from underfoot.explore.surrogate import fitted
 from underfoot.friction.propagation import propagated
-from underfoot.places.joint import JointDraws
+from underfoot.places.joint import PlaceDraws
 from underfoot.places.joint import interval as interval_of_draws
 from underfoot.places.machines import FLUIDS, machine
 from underfoot.slip import Chang2004, RcofPopulation, slip_risk
@@ -159,7 +159,7 @@ def readings_of_worlds():
     """Return a machine's readings of 1,000 worlds, and what is foretold of them."""
     device, span = machine("pendulum-96"), (0.3e-6, 20e-6)
     worlds, told = (
-        device.read(JointDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
+        device.read(PlaceDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
         for count, seed in ((1000, 11), (4000, 12))
     )
     return iter(worlds.tolist()), interval_of_draws(told)

@@ -15,7 +15,7 @@ import pytest
 from underfoot import compute, shoe
 from underfoot.case import load
 from underfoot.compute import numerical_error, positions, read, sole, solve
-from underfoot.compute.position_draws import COF_PARTS, Place, ShoeAngles
+from underfoot.compute.position_draws import COF_PARTS, ShoeAngles, TreadPlace
 from underfoot.compute.prepare import prepared
 from underfoot.compute.resolve import _untested_rates
 from underfoot.compute.sole import trimmed
@@ -251,7 +251,7 @@ def test_half_of_what_finer_cells_would_add_is_between_the_grids_where_all_place
     )  # fmt: skip
     made = positions.tread_positions(
         case,
-        {Place(): numbers_on(50.0)},
+        {TreadPlace(): numbers_on(50.0)},
         lambda asked: ((k, numbers_on(50.0 if h == GRID else 40.0))
                        for k, (_, h) in enumerate(asked)),
         spacing=GRID, quick=False,
@@ -346,7 +346,7 @@ def test_a_row_of_a_result_has_the_interval_beside_it_or_what_its_value_means(re
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_run_at_several_angles_says_from_where_to_where(count):
     degree = math.radians(1.0)
-    turns = [Place(), Place(turn=degree), Place(turn=-degree)][:count]
+    turns = [TreadPlace(), TreadPlace(turn=degree), TreadPlace(turn=-degree)][:count]
     values = {"cof": np.array([0.30, 0.35, 0.25])[:count],
               "fluid_load": np.array([40.0, 30.0, 50.0])[:count]}  # fmt: skip
     made = ShoeAngles(tuple(turns), values, 0, {"cof": 0.30, "fluid_load": 40.0})

@@ -158,7 +158,7 @@ def test_where_to_run_it_follows_from_time_memory_and_disk(made_up, tmp_path):
     made = plan()
     one = Study(made, tmp_path)
     one.compute_some(10)
-    machine = check.Machine(processors=8, memory=1e9, disk=1e5)
+    machine = check.Computer(processors=8, memory=1e9, disk=1e5)
     answer = replace(check.study_check(made, 1, one.store), machine=machine)
     assert answer.workers == 5  # of 0.2 GB
     assert answer.seconds_left == pytest.approx(290 * 5400 / 5)

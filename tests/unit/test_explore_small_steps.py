@@ -14,7 +14,7 @@ from underfoot.explore import proposals, study, study_file
 from underfoot.explore.computing import crashed
 from underfoot.explore.inputs import TAIL, Choice, Range, read_joint_draws
 from underfoot.explore.posterior import DISCREPANCY, _log_density
-from underfoot.explore.record import Ending, Job
+from underfoot.explore.record import CaseJob, Ending
 from underfoot.explore.study_file import _Reader
 from underfoot.explore.surrogate import featured
 
@@ -48,7 +48,7 @@ def test_one_draw_or_one_that_is_no_number_makes_no_posterior(tmp_path, rows):
 
 
 def test_a_case_that_crashed_has_no_number_and_took_no_time_that_is_known():
-    record = crashed(Job("k", 0, 0, 0, 0, (0.5,), {}))
+    record = crashed(CaseJob("k", 0, 0, 0, 0, (0.5,), {}))
     assert record.ending is Ending.CRASHED
     assert not record.usable
     assert (record.seconds, record.cpu_seconds, record.memory) == (0.0, 0.0, 0.0)

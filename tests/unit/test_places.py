@@ -33,7 +33,7 @@ from underfoot.places.evidence import (
     machine_scores,
     score,
 )
-from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
+from underfoot.places.joint import FLOOR_LIKENESS, CofReading, PlaceDraws
 from underfoot.places.machines import (
     FLUIDS,
     SCALES,
@@ -173,7 +173,7 @@ def test_a_longer_edge_reads_less_of_a_smooth_wet_floor():
     device, read = machine("pendulum-96"), []
     for length in (1e-3, 3e-3):
         worn = dataclasses.replace(device, bearing=Bearing((length, length), 76e-3, 25.0))
-        cof = worn.cof(JointDraws(), "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
+        cof = worn.cof(PlaceDraws(), "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
         read.append(np.median(cof))
     assert read[1] < read[0]
 
@@ -184,7 +184,7 @@ def test_a_walker_of_the_ramp_slips_below_the_angle_of_friction():
     device = dataclasses.replace(device, bearing=None, deviation=0.0)
     for walker in (device.walker, (0.0, 0.0)):
         walked = dataclasses.replace(device, walker=walker)
-        cof = walked.cof(JointDraws(), "floor", rq_of_rz(60 * UM), FLUIDS["ramp oil"])
+        cof = walked.cof(PlaceDraws(), "floor", rq_of_rz(60 * UM), FLUIDS["ramp oil"])
         angles.append(np.median(walked.scale.reading(cof)))
     needed = np.degrees(np.arctan(np.mean(device.walker)))
     assert angles[1] - angles[0] == pytest.approx(needed, abs=0.5)
@@ -287,7 +287,7 @@ def test_what_a_reading_says_of_a_shoe_is_what_machines_say_of_each_other():
     assert floor_likeness() == pytest.approx(FLOOR_LIKENESS, abs=0.005)
     for source in ("floor_testing_services", "safety_direct_coatings", "uksrg_verification"):
         assert floor_likeness(source) == pytest.approx(FLOOR_LIKENESS, abs=0.1)
-    joint = JointDraws(count=20000)
+    joint = PlaceDraws(count=20000)
     one, two = (joint.beyond_roughness("hall", name) for name in "ab")
     assert np.corrcoef(one, two)[0, 1] == pytest.approx(FLOOR_LIKENESS, abs=0.02)
     for other in (joint.beyond_roughness("yard", "b"), joint.beyond_roughness("hall", "b2", "oil")):
@@ -368,7 +368,7 @@ def test_a_reading_moves_what_it_is_of_and_leaves_other_floors():
     device, span = machine("pendulum-96"), (0.3 * UM, 20 * UM)
     medians = []
     for reading in (20.0, 50.0):
-        joint = JointDraws()
+        joint = PlaceDraws()
         other = np.median(joint.share("roughness of floor other"))
         likelihood = device.log_likelihood(joint, "hall", span, FLUIDS["water"], reading)
         joint.learn(likelihood, "hall")
@@ -401,7 +401,7 @@ def moved(read, count=24000):
     """Return ln of the ratio of median COFs after a high and after a low reading."""
     medians = []
     for high in (False, True):
-        joint = JointDraws(count=count)
+        joint = PlaceDraws(count=count)
         read(joint, high)
         medians.append({name: np.log(np.median(cof)) for name, cof in shoe_cofs(joint).items()})
     return {name: medians[1][name] - medians[0][name] for name in medians[0]}
@@ -429,7 +429,7 @@ def test_a_shoe_that_was_read_moves_on_every_floor_more_than_another_shoe():
             pressure=3e5,
             drag=test.viscosity * SPEED,
         )
-        joint.learn(joint.log_likelihood(cof, Reading(0.4 if high else 0.08)), "soft")
+        joint.learn(joint.log_likelihood(cof, CofReading(0.4 if high else 0.08)), "soft")
 
     change = moved(read, count=200_000)  # of fewer draws the sampling hides it
     for floor in ("hall", "yard"):
@@ -440,7 +440,7 @@ def test_a_bound_says_less_than_a_value():
     """A value narrows to a band; a lower bound cuts one side alone (of ln: errors are factors)."""
     device, span, wide = machine("pendulum-96"), (0.3 * UM, 20 * UM), {}
     for kind in ("value", "lower", "upper"):
-        joint = JointDraws()
+        joint = PlaceDraws()
         joint.learn(
             device.log_likelihood(joint, "hall", span, FLUIDS["water"], 36.0, kind=kind), "hall"
         )
@@ -455,7 +455,7 @@ def test_two_readings_teach_the_same_in_either_order():
     device, found = machine("bot-3000e"), []
     device = dataclasses.replace(device, learned=None)
     for order in (("a", "b"), ("b", "a")):
-        joint = JointDraws(count=20000)
+        joint = PlaceDraws(count=20000)
         for floor in order:
             value = {"a": 0.3, "b": 0.5}[floor]
             span = {"a": rq_of_rz(10 * UM), "b": rq_of_rz(30 * UM)}[floor]
@@ -466,7 +466,7 @@ def test_two_readings_teach_the_same_in_either_order():
 
 
 def test_slips_fall_with_friction_and_grow_with_slope_and_need():
-    joint = JointDraws(count=2000)
+    joint = PlaceDraws(count=2000)
     acof = np.full(joint.count, 0.2)
     base = slip_share(acof, 0.2, 0.03, 0.0, joint).mean()
     assert slip_share(1.5 * acof, 0.2, 0.03, 0.0, joint).mean() < base
@@ -778,7 +778,7 @@ def test_a_machine_outside_its_standard_calibrates_nothing():
 
 
 def test_readings_that_contradict_each_other_are_refused():
-    joint, device = JointDraws(), machine("pendulum-96")
+    joint, device = PlaceDraws(), machine("pendulum-96")
 
     def learned(values):
         for value in values:
@@ -813,9 +813,9 @@ def test_the_repeat_of_a_reading_is_the_scatter_it_states():
     """One standard deviation off is e^-1/2 of the reading itself, whatever the deviation."""
     draws = SimpleNamespace(constants=SimpleNamespace(sd_reading=np.zeros(1)))
     for sd in (0.01, 0.04):
-        reading = Reading(0.4, "value", sd)
+        reading = CofReading(0.4, "value", sd)
         off = np.array([0.4, 0.4 * math.exp(sd / 0.4)])
-        at, beside = JointDraws.log_likelihood(draws, off, reading)
+        at, beside = PlaceDraws.log_likelihood(draws, off, reading)
         assert at - beside == pytest.approx(0.5)
 
 
@@ -881,7 +881,7 @@ def test_shares_add_to_one_within_half_a_percent(rest, taken):
 @pytest.mark.parametrize(("share", "left"), [(0.5, 390.0), (0.025, 4000.0)])
 def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share, left):
     """100 of 4,000 draws have ``share`` of the weight: 1 / (s^2 / 100 + (1 - s)^2 / 3900)."""
-    joint = JointDraws(count=4000)
+    joint = PlaceDraws(count=4000)
     weight = np.repeat([share / 100, (1 - share) / 3900], [100, 3900])
     unlike = np.unique(joint.constants.constants.kappa_0).size
     joint.learn(np.log(weight), "hall")
@@ -893,7 +893,7 @@ def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share,
 @pytest.mark.parametrize("factor", [-1000.0, -300.0, 300.0, 1000.0])
 def test_a_factor_of_all_likelihoods_teaches_nothing(factor):
     log = -0.5 * np.linspace(-2, 2, 4000) ** 2
-    rows = [JointDraws(count=4000).learn(log + more, "hall") for more in (0.0, factor)]
+    rows = [PlaceDraws(count=4000).learn(log + more, "hall") for more in (0.0, factor)]
     np.testing.assert_array_equal(*rows)
 
 

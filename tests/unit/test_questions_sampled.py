@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 
 from underfoot.core import InputError, SourcedValue, Status
-from underfoot.questions.outcomes import Outcome
-from underfoot.questions.sensitivity import Effect, Sensitivity
+from underfoot.questions.outcomes import CaseOutcome
+from underfoot.questions.sensitivity import InputEffect, Sensitivity
 from underfoot.studies.sampled import sampled
 
 CLIPPED = math.sqrt(0.5160)
 """Standard deviation of a standard normal number held between -1 and 1."""
 
 
-def outcome(load: float, status: Status = Status.CONVERGED) -> Outcome:
+def outcome(load: float, status: Status = Status.CONVERGED) -> CaseOutcome:
     scalars = {"load": SourcedValue(load, "N", source="made up")}
-    return Outcome("x", "h", scalars, {}, status, "", (), (), 0.0)
+    return CaseOutcome("x", "h", scalars, {}, status, "", (), (), 0.0)
 
 
-def effect(path: str, low: float, high: float) -> Effect:
-    return Effect(path, "", 0.0, 1.0, "1", outcome(low), outcome(high))
+def effect(path: str, low: float, high: float) -> InputEffect:
+    return InputEffect(path, "", 0.0, 1.0, "1", outcome(low), outcome(high))
 
 
 def test_without_effects_every_draw_is_the_value():
@@ -54,7 +54,7 @@ def test_an_optimum_moves_the_draws_to_one_side():
 
 
 def test_an_end_that_was_not_computed_mirrors_the_other():
-    lost = Effect("a", "", 0.0, 1.0, "1", outcome(1.0, Status.NOT_CONVERGED), outcome(20.0))
+    lost = InputEffect("a", "", 0.0, 1.0, "1", outcome(1.0, Status.NOT_CONVERGED), outcome(20.0))
     draws = sampled(Sensitivity(outcome(10.0), (lost,)), "load", least=0.01)
     assert draws.min() == pytest.approx(5.0)
     assert draws.max() == pytest.approx(20.0)

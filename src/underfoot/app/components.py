@@ -12,7 +12,7 @@ from nicegui.events import GenericEventArguments
 
 from underfoot.core.remark import MARK, Message
 
-from .jobs import INTERRUPTED, Task
+from .jobs import INTERRUPTED, QueuedTask
 from .session import Session
 from .text import as_json
 from .uploads import MOST_BYTES
@@ -162,7 +162,9 @@ def drop_zone(
     return zone
 
 
-def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[None]]) -> ui.element:
+def task_line(
+    session: Session, task: QueuedTask, done: Callable[[QueuedTask], Awaitable[None]]
+) -> ui.element:
     """Return a line with the progress of a task and a button to stop it; ``done`` when it ended."""
     text = session.text
     with ui.element("div").classes("task").props('role="status"') as line:
@@ -184,7 +186,7 @@ def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[Non
     return line
 
 
-def interruption(session: Session, task: Task | None) -> None:
+def interruption(session: Session, task: QueuedTask | None) -> None:
     """Say it where the end of the server has interrupted a task."""
     if task is not None and task.state == INTERRUPTED:
         message = f"{task.title}: {session.text('jobs.interrupted')}"
@@ -195,7 +197,7 @@ def refilled(fill: Callable[[Callable[..., Awaitable[None]]], None]) -> None:
     """Show what ``fill`` shows in a place of its own; awaiting what it is given shows it anew."""
     place = ui.element("div")
 
-    async def again(_: Task | None = None) -> None:
+    async def again(_: QueuedTask | None = None) -> None:
         place.clear()
         with place:
             fill(again)

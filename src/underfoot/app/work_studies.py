@@ -12,7 +12,7 @@ from underfoot.case import text as toml
 from underfoot.compute.result import Result
 from underfoot.core import Progress
 from underfoot.core.html import png
-from underfoot.core.page import Section, page_part
+from underfoot.core.page import PageSection, page_part
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import percent
 from underfoot.explore import Study
@@ -83,7 +83,7 @@ def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -
         return [page_part([plots]), page_part(rest)]
     live = live_study(study)
     plots, *rest = live_sections(live)
-    cost = Section("Cost", table=live.cost_table())
+    cost = PageSection("Cost", table=live.cost_table())
     plots = replace(plots, intro=" ".join((*live.cautions()[:1], plots.intro)))
     return [page_part([cost, plots]), page_part(rest)]
 

@@ -16,7 +16,7 @@ from .output import print_table, show
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from underfoot.studies import StudyResult
+    from underfoot.studies import PublishedStudyResult
 
 studies_app = typer.Typer(
     name="studies",
@@ -92,7 +92,7 @@ def run_study(
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
     chosen = None if everything else study(name)
-    results: list[StudyResult]
+    results: list[PublishedStudyResult]
     try:
         with bar(name) as progress:
             options = Options(quick, processes, 0, settings, progress)
@@ -184,7 +184,7 @@ def _settings(
 
 
 def _deliver(
-    results: Sequence[StudyResult],
+    results: Sequence[PublishedStudyResult],
     out: Path | None,
     *,
     everything: bool,
@@ -229,7 +229,7 @@ def _print_json(content: Any) -> None:
     print(json_text.dumps(content, indent=2, ensure_ascii=False))
 
 
-def _show_headline(results: Sequence[StudyResult]) -> None:
+def _show_headline(results: Sequence[PublishedStudyResult]) -> None:
     from underfoot.core.presentation import Table
     from underfoot.studies import Verdict, headline
 

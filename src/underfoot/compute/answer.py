@@ -15,7 +15,7 @@ from .histories import history_fields
 from .pictured import pictured_fields
 from .position_draws import TreadPositions
 from .prepare import Prepared, case_hash, object_texts
-from .read import Reading
+from .read import ResultNumbers
 from .result import Result
 from .sole import compression_breaches, forefoot_breaches, outsole_notes, tread_breaches
 from .solve import Solution
@@ -30,7 +30,7 @@ def answer(
     parts: Prepared,
     solution: Solution,
     positions: TreadPositions | None,
-    reading: Reading,
+    reading: ResultNumbers,
     timings: Mapping[str, float],
 ) -> Result:
     """Return the result of a case."""
@@ -68,7 +68,7 @@ def answer(
     )
 
 
-def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Breach | str]:
+def _breaches(parts: Prepared, solution: Solution, reading: ResultNumbers) -> list[Breach | str]:
     """Return what left the range on which it was tested."""
     case, contact, speed = parts.case, solution.contact, parts.case.motion.speed
     return [
@@ -89,7 +89,10 @@ def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Bre
 
 
 def _provenance(
-    parts: Prepared, reading: Reading, objects: Mapping[str, str], timings: Mapping[str, float]
+    parts: Prepared,
+    reading: ResultNumbers,
+    objects: Mapping[str, str],
+    timings: Mapping[str, float],
 ) -> Provenance:
     case, modulus = parts.case, parts.context.modulus
     cited = (parts.law, parts.asperities, modulus, reading.values["slip_probability"])
@@ -129,7 +132,7 @@ def _unique(*texts: Iterable[str]) -> tuple[str, ...]:
 
 
 def _fields(
-    parts: Prepared, solution: Solution, positions: TreadPositions | None, reading: Reading
+    parts: Prepared, solution: Solution, positions: TreadPositions | None, reading: ResultNumbers
 ) -> Fields:
     """Return maps, histories and draws with their axes."""
     sole, contact, sampled = parts.sole, solution.contact, reading.sampled

@@ -19,8 +19,8 @@ from .position_draws import (
     COF_PARTS,
     LOADS,
     ON_CONTACT,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     log_film_odds,
 )
@@ -258,10 +258,10 @@ def _compared(
 ) -> NumericalErrors | str:
     """Return the differences of ``numbers`` to the quick grid, and by its steps in time."""
     spacing = parts.case.numerics.quick_grid_spacing
-    here, contact = solved_at(parts, Place(), spacing, progress=progress)
+    here, contact = solved_at(parts, TreadPlace(), spacing, progress=progress)
     contacts = [contact]
     if parts.viscosity is not None:  # a dry contact has no memory
-        contacts.append(solved_at(parts, Place(finer=2), spacing, progress=progress)[1])
+        contacts.append(solved_at(parts, TreadPlace(finer=2), spacing, progress=progress)[1])
     cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
         return Message("not estimated: a march on {cells} did not converge", cells=cells)

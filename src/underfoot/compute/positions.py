@@ -22,8 +22,8 @@ from .position_draws import (
     COF_PARTS,
     LOADS,
     ON_CONTACT,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     UncertainBevel,
     log_film_odds,
@@ -60,7 +60,7 @@ RATES = {1: 1.0, 2: 0.75}
 the place (docs/physics/coupled_contact.md)."""
 
 
-def further_angles(case: Case) -> tuple[Place, ...]:
+def further_angles(case: Case) -> tuple[TreadPlace, ...]:
     """Return the angles beyond ``shoe_angles`` that the interval of a case without lugs needs.
 
     One to each side, as far as the angle of its bevel may go; none where that counts as exact.
@@ -68,20 +68,20 @@ def further_angles(case: Case) -> tuple[Place, ...]:
     bevel = None if treaded(case) else UncertainBevel.of(case)
     if bevel is None:
         return ()
-    return Place(turn=FURTHER * bevel.deviation), Place(turn=-FURTHER * bevel.deviation)
+    return TreadPlace(turn=FURTHER * bevel.deviation), TreadPlace(turn=-FURTHER * bevel.deviation)
 
 
-def shoe_angles() -> tuple[Place, ...]:
+def shoe_angles() -> tuple[TreadPlace, ...]:
     """Return the case's own shoe angle and one on each side, of the variance of ``ANGLE_BAND``."""
     turn = ANGLE_BAND / math.sqrt(2)
-    return Place(), Place(turn=turn), Place(turn=-turn)
+    return TreadPlace(), TreadPlace(turn=turn), TreadPlace(turn=-turn)
 
 
-TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
+TURNED = (TreadPlace(turn=ANGLE_DEVIATION), TreadPlace(turn=-ANGLE_DEVIATION))
 """The shoe turned toe up and toe down, the tread as it lies."""
 
 
-def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Place, ...]:
+def places(periods: Array, count: int, begin: Array | None = None) -> tuple[TreadPlace, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m.
 
     The first at ``begin``, shares (n,) of the periods; at rest without. Even along the first period
@@ -93,7 +93,7 @@ def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Plac
     periods, at = np.asarray(periods, dtype=float), np.arange(count)
     shares = np.column_stack([at, at * _step(periods, count)])[:, : len(periods)] / count
     shares = np.mod(shares + (0.0 if begin is None else begin), 1)
-    return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
+    return tuple(TreadPlace((float(x), float(y))) for x, y in shares @ periods)
 
 
 def _step(periods: Array, count: int) -> int:
@@ -107,7 +107,7 @@ def _step(periods: Array, count: int) -> int:
     return 1 + int(np.argmax(met))
 
 
-def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
+def case_places(case: Case, *, quick: bool) -> tuple[TreadPlace, ...]:
     """Return the places of a run of a treaded sole.
 
     The pattern begins at the front of what lands first, where the teeth of its film lie: so all
@@ -124,7 +124,7 @@ def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
     lie = places(ahead, position_count(case, quick=quick), origin @ np.linalg.pinv(ahead))
     signs = (1, -1, -1, 1)
     return tuple(
-        Place((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
+        TreadPlace((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
         for k, place in enumerate(lie)
     )
 
@@ -143,9 +143,9 @@ def _reduced(periods: Array) -> Array:
 
 def tread_positions(
     case: Case,
-    known: Mapping[Place, Mapping[str, float]],
+    known: Mapping[TreadPlace, Mapping[str, float]],
     at_places: Callable[
-        [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
+        [Sequence[tuple[TreadPlace, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
     ],
     *,
     spacing: float,
@@ -165,7 +165,7 @@ def tread_positions(
     each on a grid (m), and gives the index of each with its numbers as they end, None where a
     contact did not converge.
     """
-    lugs, own = treaded(case), known[Place()]
+    lugs, own = treaded(case), known[TreadPlace()]
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
     angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
@@ -179,9 +179,9 @@ def tread_positions(
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
     pairs = [p for p in on_run_grid if (p, spacing) in at and (p, coarse) in at]
     if not pairs:  # nothing compares the grids
-        pairs = [place for place in on_run_grid if (place, spacing) in at] or [Place()]
+        pairs = [place for place in on_run_grid if (place, spacing) in at] or [TreadPlace()]
         coarse = spacing
-    answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
+    answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {TreadPlace(): own}
     failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
     each = _arrays(own, answers.values())
     before, after = (_arrays(own, [at[p, h] for p in pairs]) for h in (coarse, spacing))
@@ -285,7 +285,7 @@ def _hand(case: Case) -> int:
 
 def _places_on_grids(
     case: Case, spacing: float, *, quick: bool
-) -> tuple[tuple[Place, ...], tuple[Place, ...], float]:
+) -> tuple[tuple[TreadPlace, ...], tuple[TreadPlace, ...], float]:
     """Return the places of a run, those that the grid of the run solves, and that of all, m."""
     coarse = case.numerics.quick_grid_spacing
     if treaded(case):

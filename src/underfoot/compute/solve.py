@@ -25,7 +25,7 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
-from .position_draws import Place, TreadPositions, log_film_odds
+from .position_draws import TreadPlace, TreadPositions, log_film_odds
 from .positions import (
     TURNED,
     case_places,
@@ -111,7 +111,7 @@ def stated_effects(
     """
     steady = parts.case.motion.end_time is None
     beside = not treaded(parts.case) and parts.case.numerics.tread_positions > 1
-    turns = shoe_angles() if beside else (Place(),)
+    turns = shoe_angles() if beside else (TreadPlace(),)
 
     def stepped(case: Case) -> Numbers | None:
         same = all(getattr(case.shoe, name) == getattr(parts.case.shoe, name) for name in OF_PLAN)
@@ -139,11 +139,11 @@ def stated_effects(
     return solved_effects(parts.case, stepped, marched)
 
 
-def effect_places(case: Case) -> tuple[Place, ...]:
+def effect_places(case: Case) -> tuple[TreadPlace, ...]:
     """Return where the tread lies as the effect of a stated spread is solved."""
     one = case.numerics.tread_positions == 1 or case.motion.build() is not None
     if one:
-        return (Place(),)
+        return (TreadPlace(),)
     return case_places(case, quick=True) if treaded(case) else shoe_angles()
 
 
@@ -242,7 +242,7 @@ def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
 
 
 def solved_at(
-    parts: Prepared, place: Place, spacing: float, *, progress: Progress = silent
+    parts: Prepared, place: TreadPlace, spacing: float, *, progress: Progress = silent
 ) -> tuple[Prepared, SoleContact]:
     """Return case and contact with the tread at a place, on cells of ``spacing`` (m)."""
     sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
@@ -272,7 +272,7 @@ def averaged(
         return None
 
     def at_places(
-        asked: Sequence[tuple[Place, float]],
+        asked: Sequence[tuple[TreadPlace, float]],
     ) -> Iterator[tuple[int, Mapping[str, float] | None]]:
         if processes > 1 and not parts.objects:
             yield from in_processes(
@@ -288,13 +288,13 @@ def averaged(
             name, begin, end = f"Position {k + 2} of {len(asked) + 1}", *ends[k : k + 2] / ends[-1]
             yield k, _numbers_at(parts, place, spacing, part(progress, begin, end, name))
 
-    known = {Place(): place_numbers(parts, solution.contact)}
+    known = {TreadPlace(): place_numbers(parts, solution.contact)}
     if treaded(parts.case):
         known |= _turned(parts, solution.contact)
     return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
-def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, float]]:
+def _turned(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
     """Return the numbers of a contact that goes on in two steps with the shoe turned up and down.
 
     Empty where the steps can't be made, or the motion follows a history.
@@ -319,7 +319,7 @@ class _PlaceNumbers:
     def _parts(self) -> Prepared:
         return prepared(self.case, self.own_spacing)
 
-    def __call__(self, asked: tuple[Place, float]) -> Mapping[str, float] | None:
+    def __call__(self, asked: tuple[TreadPlace, float]) -> Mapping[str, float] | None:
         return _numbers_at(self._parts, *asked)
 
 
@@ -331,7 +331,7 @@ class _NumbersOfCases:
     spacing: float
     objects: Mapping[str, Any]
 
-    def __call__(self, asked: tuple[int, Place]) -> Numbers | None:
+    def __call__(self, asked: tuple[int, TreadPlace]) -> Numbers | None:
         number, place = asked
         try:
             parts = prepared(self.cases[number], self.spacing, self.objects)
@@ -341,7 +341,7 @@ class _NumbersOfCases:
 
 
 def _numbers_at(
-    parts: Prepared, place: Place, spacing: float, progress: Progress = silent
+    parts: Prepared, place: TreadPlace, spacing: float, progress: Progress = silent
 ) -> Mapping[str, float] | None:
     """Return the numbers of a result at a place; None where its contact did not converge."""
     try:

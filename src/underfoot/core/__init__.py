@@ -3,6 +3,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from underfoot.core.deprecation import renamed_classes
+
 if TYPE_CHECKING:
     from .cache import Cache as Cache
     from .errors import Cancelled as Cancelled
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from .units import display as display
     from .units import to_si as to_si
     from .validity import Breach as Breach
-    from .validity import Range as Range
+    from .validity import TestedRange as TestedRange
     from .validity import breaches as breaches
     from .values import SourcedValue as SourcedValue
 
@@ -47,7 +49,7 @@ _HOMES = {
     "display": ".units",
     "to_si": ".units",
     "Breach": ".validity",
-    "Range": ".validity",
+    "TestedRange": ".validity",
     "breaches": ".validity",
     "SourcedValue": ".values",
 }
@@ -58,6 +60,6 @@ __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 def __getattr__(name: str) -> Any:
     # what a command imports to print its help stays light: no arrays, no units
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return renamed_classes(__name__, gone="0.4", Range="TestedRange")(name)
     value = globals()[name] = getattr(import_module(_HOMES[name], __name__), name)
     return value

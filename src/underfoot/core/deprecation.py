@@ -3,6 +3,7 @@
 The policy stands in ``CONTRIBUTING.md``; the names that answer so, in ``CHANGELOG.md``.
 """
 
+import sys
 from collections.abc import Callable
 from typing import Any
 from warnings import warn
@@ -23,4 +24,20 @@ def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
 
     answer.__name__ = old
     answer.__doc__ = f"Old name of ``{new}``, until {gone}."
+    return answer
+
+
+def renamed_classes(package: str, *, gone: str, **names: str) -> Callable[[str], Any]:
+    """Return a ``__getattr__`` of a package whose classes answer to their old names.
+
+    ``names``: the new name of each old one. ``gone``: version without the old names.
+    """
+
+    def answer(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        new = names[name]
+        warn(f"{package}.{name} is {new} now; the old name goes in {gone}", FutureWarning, 2)
+        return getattr(sys.modules[package], new)
+
     return answer

@@ -17,7 +17,7 @@ from underfoot.core.progress import time_text
 from .record import Ending
 from .records import Records
 from .result import StudyResult
-from .scan import Scan, scanned
+from .scan import DesignScan, scanned
 from .study import Study
 
 USUAL = (Ending.OPEN, Ending.COMPUTED)
@@ -46,7 +46,7 @@ class StudyStatus(StudyResult):
         return sum(one["workers"] for one in self._alive)
 
     @cached_property
-    def scan(self) -> Scan:
+    def scan(self) -> DesignScan:
         """Numbers of all finished cases."""
         return scanned(self.records)
 

@@ -17,7 +17,7 @@ from .cost import spread_jobs
 from .engines import PATIENCE, Engine, engine
 from .plan import StudyPlan
 from .proposals import first_points, next_batch
-from .record import Ending, Job
+from .record import CaseJob, Ending
 from .result import StudyResult
 from .store import SILENT, STOP, Store
 from .study_file import load_plan
@@ -157,7 +157,7 @@ class Study:
                 raise type(stop)(kept) from None
         return count
 
-    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[Job | None]:
+    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[CaseJob | None]:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
         if leads and self.store.end_round():
             self._begin_next()

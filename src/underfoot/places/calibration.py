@@ -28,7 +28,7 @@ from underfoot.friction import (
 )
 from underfoot.friction.pair_contact import Pair, UnexpectedReading
 
-from .joint import KEPT_AS, JointDraws, floor_name, interval
+from .joint import KEPT_AS, PlaceDraws, floor_name, interval
 from .machines import (
     ANY_FLOOR_RQ,
     Fluid,
@@ -67,7 +67,7 @@ class FloorReading:
 
 
 def learn_floor(
-    joint: JointDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
+    joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
 ) -> tuple[UnexpectedReading, ...]:
     """Teach draws what a machine read on a floor; return it where it was not foretold."""
     foretold = interval(reading.machine.read(joint, floor, floor_rq, reading.fluid))
@@ -174,9 +174,9 @@ def floor_calibration(
     return FloorCalibration(readings, pair_draws, before, after, joint.fewest)
 
 
-def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> JointDraws:
+def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> PlaceDraws:
     """Return joint draws that know of the floor of a pair what its draws do."""
-    joint, share = JointDraws(seed=seed, start=draws), floor_name(pair)
+    joint, share = PlaceDraws(seed=seed, start=draws), floor_name(pair)
     for name, known in joint.errors().items():
         if name == share:
             joint.begin(f"roughness of floor {FLOOR}", known)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from underfoot.core import InputError, unknown_name
 from underfoot.core.html import embedded, png
-from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
+from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Presentable
 from underfoot.core.registry import offered
 
@@ -96,7 +96,7 @@ def files(shown: Any) -> dict[str, Writer]:
 
 
 @singledispatch
-def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[PageSection], str]:
     """Return the sections of an object's page and its script; ``pictures`` are those drawn."""
     chosen = _registered(sections, shown)
     if chosen is not None:
@@ -104,7 +104,7 @@ def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[Section],
     drawn = [
         Picture(name.replace("_", " "), embedded(data), True) for name, data in pictures.items()
     ]
-    figure = [Section("Figure", pictures=drawn)] if drawn else []
+    figure = [PageSection("Figure", pictures=drawn)] if drawn else []
     return [*figure, *table_sections(shown), *remark_sections(shown)], ""
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from underfoot.core import Progress, UnderfootError
 from underfoot.core.arrays import AnyArray, Array
-from underfoot.core.page import Section, page, remark_sections
+from underfoot.core.page import PageSection, page, remark_sections
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Table, quantity_text
 from underfoot.core.progress import time_text
@@ -28,11 +28,11 @@ from underfoot.core.threads import threads_limited
 from underfoot.explore.check import size_text
 from underfoot.explore.cost import StudyCost, study_cost
 from underfoot.explore.goals import AnyGoal
-from underfoot.explore.jobs import Jobs
+from underfoot.explore.jobs import BatchJobs
 from underfoot.explore.record import Ending
 from underfoot.explore.records import ENDINGS
 from underfoot.explore.result import MOST_ROWS, Design, front_places
-from underfoot.explore.scan import Scan, scanned
+from underfoot.explore.scan import DesignScan, scanned
 from underfoot.explore.status import StudyStatus
 from underfoot.explore.study import Study
 
@@ -59,13 +59,13 @@ class LiveStudy(StudyStatus):
 
     kind: ClassVar[str] = "live_study"
 
-    jobs: Jobs
+    jobs: BatchJobs
     cost: StudyCost | None = None
 
     # a run: the cases of a design, which stand together among the jobs
 
     @cached_property
-    def scan(self) -> Scan:
+    def scan(self) -> DesignScan:
         """What is asked of all finished cases."""
         outputs = {goal.output for goal in self.plan.shown_goals}
         draws = any(goal.of_draws for goal in self.plan.shown_goals)
@@ -266,15 +266,17 @@ def live_study(study: Study) -> LiveStudy:
     return LiveStudy(plan, jobs, records, store.sessions(), time.time(), cost)
 
 
-def live_sections(live: LiveStudy) -> list[Section]:
+def live_sections(live: LiveStudy) -> list[PageSection]:
     """Return the designs, the best of them, and why some have no numbers."""
     html = explorer(live, live.shown) if live.shown else ""
     parts = [
-        Section("Designs", live.drawn_text() if html else "None ended yet.", html=html, first=True)
+        PageSection(
+            "Designs", live.drawn_text() if html else "None ended yet.", html=html, first=True
+        )
     ]
     table = live.table()
     if table.rows:
-        parts.append(Section(table.title, table=table))
+        parts.append(PageSection(table.title, table=table))
     return [*parts, *remark_sections(live)]
 
 
@@ -295,8 +297,8 @@ def live_page(study: Study) -> str:
         folder=str(folder.absolute()), working=live.working, method=live.plan.method
     )
     sections = live_sections(live)
-    so_far = Section("So far", html=head, table=live.cost_table(), first=True)
-    parts = [so_far, *sections, Section("Stop, widen", html=steps)]
+    so_far = PageSection("So far", html=head, table=live.cost_table(), first=True)
+    parts = [so_far, *sections, PageSection("Stop, widen", html=steps)]
     script = template("live_study.js").render() + template("design_study.js").render()
     return page(live, parts, script=script)
 

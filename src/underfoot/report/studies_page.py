@@ -13,7 +13,7 @@ from underfoot.core.html import embedded, environment
 from .study_figures import drawn
 
 if TYPE_CHECKING:
-    from underfoot.studies.runner import StudyResult
+    from underfoot.studies.runner import PublishedStudyResult
 
 COLOURS = {
     "agrees": "good",
@@ -30,7 +30,7 @@ BROAD = 2.6
 """Width over height from which a figure stands alone."""
 
 
-def write_study(result: StudyResult, folder: Path) -> list[str]:
+def write_study(result: PublishedStudyResult, folder: Path) -> list[str]:
     """Write study.json, tables, statements and figures (PNG and their data) into a folder.
 
     Returns the figures' names.
@@ -50,7 +50,10 @@ def write_study(result: StudyResult, folder: Path) -> list[str]:
 
 
 def studies_page(
-    results: Sequence[StudyResult], images: Mapping[tuple[str, str], bytes], *, quick: bool = False
+    results: Sequence[PublishedStudyResult],
+    images: Mapping[tuple[str, str], bytes],
+    *,
+    quick: bool = False,
 ) -> str:
     """Return the page as HTML text that needs no network; ``images`` are PNG by (study, name)."""
     from underfoot.studies.summary import figure_rows, headline

@@ -22,7 +22,7 @@ from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
-from .quantities import Quantity, carried_load, drawn, quantities, scale
+from .quantities import DrawnQuantity, carried_load, drawn, quantities, scale
 from .surface_mesh import SurfaceMesh, surface_mesh
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
@@ -122,7 +122,9 @@ def scene(
 
 
 def listed_quantity(
-    quantity: Quantity, fields: Sequence[NDArray[np.float64]], loads: Sequence[float | None] = ()
+    quantity: DrawnQuantity,
+    fields: Sequence[NDArray[np.float64]],
+    loads: Sequence[float | None] = (),
 ) -> dict[str, Any]:
     """Return a quantity for the viewer with the colour scale of all its ``fields``.
 
@@ -198,7 +200,7 @@ def _lugs(dataset: Fields) -> list[list[float]]:
 
 
 def _history(
-    dataset: Fields, quantity: Quantity, alone: bool
+    dataset: Fields, quantity: DrawnQuantity, alone: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long.
 

@@ -19,7 +19,7 @@ from underfoot.core import InputError, to_si, unknown_name
 from underfoot.film import Strike, touch_time
 from underfoot.rough_contact import ExponentialLaw
 
-from .sources import RQ_PER_RA, Condition, Effect, Source, Span
+from .sources import RQ_PER_RA, PublishedCondition, PublishedEffect, Source, Span
 
 WHOLE_SHOE = ("whole shoe", "walking")
 FLAT = ("block", "pin", "slipmeter", "pull slipmeter", "drop pad")
@@ -153,14 +153,14 @@ def contrasts(source: Source) -> list[Contrast]:
     return [contrast for effect in source.effects for contrast in _of(effect, source)]
 
 
-def whole_shoe_stands(source: Source) -> list[tuple[Condition, Stand]]:
+def whole_shoe_stands(source: Source) -> list[tuple[PublishedCondition, Stand]]:
     """Return each condition of whole shoes with the cases that stand for it."""
     return [
         (c, stand(described(c))) for c in source.conditions if c.labels.get("device") in WHOLE_SHOE
     ]
 
 
-def described(condition: Condition) -> dict[str, Any]:
+def described(condition: PublishedCondition) -> dict[str, Any]:
     """Return a condition as one table, as effects write theirs."""
     members = [described(member) for member in condition.members]
     table = {**condition.labels, **condition.numbers}
@@ -193,7 +193,7 @@ def _contact_time(case: Case) -> float:
     return max(1 - touch_time(strike, asperities.pressure) / STRIKE, 0.0)
 
 
-def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
+def _of(effect: PublishedEffect, source: Source) -> Iterator[Contrast]:
     content = effect.content
     base = content.get("conditions", {})
     low = high = step = math.nan

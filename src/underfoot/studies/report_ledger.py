@@ -44,7 +44,7 @@ SUBJECTS = ("eq", "statement", "figure", "test", "command", "entry", "protocol",
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class LedgerRow:
     """One thing that the report holds: what a person runs for it, and what shows that it works."""
 
     number: str
@@ -72,7 +72,7 @@ class Sentence:
     sources: str
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[LedgerRow, ...]:
     """Return the rows of the report."""
     claims = []
     for row in read_toml(ROWS)["row"]:
@@ -80,7 +80,7 @@ def rows() -> tuple[Row, ...]:
             (kind, name) for kind, _, name in (e.partition(" ") for e in row["evidence"])
         )
         claims.append(
-            Row(
+            LedgerRow(
                 row["n"],
                 row["what"],
                 row["how"],
@@ -184,7 +184,7 @@ def summary_verdicts(text: str) -> dict[str, str]:
     return found
 
 
-def beside_the_print(row: Row, verdicts: Mapping[str, str]) -> str:
+def beside_the_print(row: LedgerRow, verdicts: Mapping[str, str]) -> str:
     """Return the verdicts of a row's statements, as "2 agrees, 1 undecided"; "-" without any."""
     known = {
         statement.name: statement for name in studies() for statement in study(name).statements

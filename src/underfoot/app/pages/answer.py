@@ -26,7 +26,7 @@ from ..components import (
     told,
 )
 from ..inputs import Input, sliders
-from ..jobs import DONE, Task
+from ..jobs import DONE, QueuedTask
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant, no_variant, variant_bar
 from . import repair, wear
@@ -59,7 +59,7 @@ def build(session: Session) -> None:
         _Answer(session, name, case).show()
 
 
-def begin_run(session: Session, name: str, *, later: bool = False) -> Task:
+def begin_run(session: Session, name: str, *, later: bool = False) -> QueuedTask:
     """Queue the full run of a variant as its file says; one of these inputs is taken as it is.
 
     It comes before those that wait, and what would help follows it; not so one of many (``later``).
@@ -94,7 +94,7 @@ class _Answer:
         self.folder = session.project.result_folder(name)
         self.changes: dict[str, Any] = {}
         self.preview_cof = 0.0
-        self.tried: Task | None = None
+        self.tried: QueuedTask | None = None
 
     def show(self) -> None:
         title(self.text("answer.title")).classes("hidden-title")
@@ -124,10 +124,10 @@ class _Answer:
     def _reload(self) -> None:
         self.session.go(ROUTE, **{**self.session.query, "variant": self.name})
 
-    def _follow(self, task: Task) -> None:
+    def _follow(self, task: QueuedTask) -> None:
         self.run_button.disable()
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             self.run_button.enable()
             with self.progress:
                 _alert(done.problem)
@@ -351,7 +351,7 @@ class _Answer:
         )
         self.behind.clear()
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             if done is not self.tried:
                 return
             with self.behind:
@@ -433,7 +433,7 @@ class _Answer:
                     for message in rest:
                         ui.label(message).classes("soft")
 
-    def _offer_help(self, task: Task | None) -> None:
+    def _offer_help(self, task: QueuedTask | None) -> None:
         """Offer to simulate what would help where nothing has: of many runs at once none does."""
         project = self.session.project
         if (task is not None and task.state == DONE) or not project.is_current(self.name):

@@ -24,7 +24,7 @@ from underfoot.core.units import display, to_si
 
 from ..components import SoleView, interruption, sentences, task_line, title
 from ..inputs import read_count, read_field, whole_number
-from ..jobs import Task
+from ..jobs import QueuedTask
 from ..project import NAME
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant
@@ -329,10 +329,10 @@ class _Study:
             await self._fill()
         await self.run()
 
-    def _follow(self, task: Task) -> None:
+    def _follow(self, task: QueuedTask) -> None:
         timer = self._watch()
 
-        async def done(ended: Task) -> None:
+        async def done(ended: QueuedTask) -> None:
             timer.deactivate()
             if ended.problem:
                 self.session.tell(InputError(ended.problem))

@@ -15,9 +15,9 @@ from underfoot.core.errors import UnderfootError
 from underfoot.core.remark import joined
 
 from ..components import sentences, table, task_line, title, told
-from ..jobs import Task
+from ..jobs import QueuedTask
 from ..session import Session
-from ..trials_study import Study
+from ..trials_study import TrialsFolder
 
 WORK = "underfoot.app.work_trials"
 STATIC = Path(str(files("underfoot.app"))) / "static"
@@ -31,7 +31,7 @@ class FolderView:
     def __init__(
         self,
         session: Session,
-        study: Study,
+        study: TrialsFolder,
         back: Callable[[], None],
         show: Callable[[str], Awaitable[None]],
     ) -> None:
@@ -172,7 +172,7 @@ class FolderView:
             text("trials.report_job"), work, self.study.asked, about=self.study.name
         )
 
-        async def done(ended: Task) -> None:
+        async def done(ended: QueuedTask) -> None:
             if ended.problem:
                 session.tell(InputError(ended.problem))
             elif ended.answer:

@@ -9,7 +9,7 @@ from underfoot.core.fourier import Transform
 from .complementarity import ContactState, Search, solved_contacts
 from .krylov import Workspace
 from .members import each
-from .operators import Body, Operators
+from .operators import ElasticBody, Operators
 
 _COARSEST = 4096
 """Points at which coarsening stops: below, a grid costs no less than its overhead."""
@@ -24,7 +24,7 @@ _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 
 def solve_nested(
     height: AnyArray,
-    body: Body,
+    body: ElasticBody,
     mean_pressure: Sequence[float],
     *,
     exact: Transform,

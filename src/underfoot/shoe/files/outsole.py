@@ -234,7 +234,7 @@ def _sides(
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
     if told.down is not None:
-        ground = orientation.Choice(-1, told.ground, told.ground_assumed)
+        ground = orientation.AxisDecision(-1, told.ground, told.ground_assumed)
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)

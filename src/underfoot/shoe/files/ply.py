@@ -8,7 +8,7 @@ import numpy as np
 from underfoot.core import DataError
 
 from .gltf import strip_faces
-from .mesh import AGAIN, Body, MeshFile
+from .mesh import AGAIN, FileBody, MeshFile
 from .polygons import triangulated
 from .text_meshes import _without_faces
 
@@ -85,7 +85,7 @@ def read_ply(path: Path) -> MeshFile:
     triangles = np.concatenate(faces)
     if triangles.shape[0] == 0:
         raise _without_faces("PLY", f"{vertices.shape[0]} points and no faces", where)
-    return MeshFile("PLY", [Body(vertices, triangles)])
+    return MeshFile("PLY", [FileBody(vertices, triangles)])
 
 
 def _heading(data: bytes, where: str) -> tuple[str, list[_Element], int]:

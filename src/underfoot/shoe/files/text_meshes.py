@@ -10,7 +10,7 @@ from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Message
 
-from .mesh import AGAIN, Body, MeshFile, Unmet
+from .mesh import AGAIN, FileBody, MeshFile, Unmet
 from .polygons import triangulated
 
 OBJ_WORDS = frozenset(
@@ -102,7 +102,7 @@ def read_obj(path: Path) -> MeshFile:
         own = corners if mine.all() else corners[np.repeat(mine, counts)]
         made = triangulated(vertices, counts[mine], own, "OBJ", where)
         layer, name = (o, g) if o and g else ("", o or g)
-        bodies.append(Body(vertices, made, name, layer))
+        bodies.append(FileBody(vertices, made, name, layer))
     remarks = ()
     if unknown:
         few = ", ".join(sorted(unknown)[:4])
@@ -214,4 +214,4 @@ def read_off(path: Path) -> MeshFile:
         raise _without_faces("OFF", f"{vertex_count} points and no faces", where)
     if kind[4]:
         points = points[:, :3] / points[:, 3:]
-    return MeshFile("OFF", [Body(points, triangulated(points, counts, flat, "OFF", where))])
+    return MeshFile("OFF", [FileBody(points, triangulated(points, counts, flat, "OFF", where))])

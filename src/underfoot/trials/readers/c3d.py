@@ -18,7 +18,7 @@ from ..recording import plates
 from ..recording.axes import axis_vector
 from ..recording.measurement import Flag
 from ..recording.trial import Event, Trial, Vertical
-from .draft import Draft
+from .draft import RecordingDraft
 from .file_bytes import FileBytes
 from .text import force_unit, si_unit, truncated
 
@@ -375,7 +375,7 @@ _EVENT_NAMES = {
 }  # fmt: skip
 
 
-def read_c3d(draft: Draft) -> Trial:
+def read_c3d(draft: RecordingDraft) -> Trial:
     """Return the trial in a C3D file.
 
     A plate that can't be worked out is kept with its reason; the rest of the file is read.
@@ -460,7 +460,7 @@ def _unused_plates(raw: C3DFile) -> list[str]:
     return [said] if left else []
 
 
-def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:
+def _plate(draft: RecordingDraft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:
     name = f"plate {index + 1}"
     kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0

@@ -15,7 +15,7 @@ from ..recording.marker_names import heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .file_bytes import FileBytes
-from .profile import Profile
+from .profile import TrialsProfile
 from .seen import KINDS, camera_clock, coded_forces, unseen
 from .text import (
     in_si,
@@ -48,7 +48,7 @@ class _RawPlate:
 
 
 @dataclass
-class Draft:
+class RecordingDraft:
     """One recording while it is read; rate, start and times (s) are those of what is added next.
 
     ``up`` is the axis that the format says is up, for where neither plates nor markers tell it.
@@ -58,7 +58,7 @@ class Draft:
 
     data: bytes
     name: str
-    profile: Profile = field(default_factory=Profile)
+    profile: TrialsProfile = field(default_factory=TrialsProfile)
     subtract_baseline: bool = True
     rate: float = 0.0
     start: float = 0.0

@@ -1,5 +1,7 @@
 """Statistics of the field's studies, each test named with its convention."""
 
+from underfoot.core.deprecation import renamed_classes
+
 from .agreement import bland_altman as bland_altman
 from .agreement import intraclass_correlation as intraclass_correlation
 from .confounding import Confounded as Confounded
@@ -16,9 +18,9 @@ from .fisher import fisher_exact as fisher_exact
 from .linear import AdjustedMean as AdjustedMean
 from .linear import AnovaRow as AnovaRow
 from .linear import AnovaTable as AnovaTable
-from .linear import Comparison as Comparison
+from .linear import LevelDifference as LevelDifference
+from .linear import LevelPair as LevelPair
 from .linear import LinearModel as LinearModel
-from .linear import Pair as Pair
 from .linear import Predictor as Predictor
 from .linear import Subset as Subset
 from .linear import all_subsets as all_subsets
@@ -68,3 +70,5 @@ from .samples import standard_deviation as standard_deviation
 from .samples import t_test as t_test
 from .shares import ShareDifference as ShareDifference
 from .shares import share_difference as share_difference
+
+__getattr__ = renamed_classes(__name__, gone="0.4", Comparison="LevelDifference", Pair="LevelPair")

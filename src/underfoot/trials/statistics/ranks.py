@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .linear import Pair
+from .linear import LevelPair
 from .mixed import person_means
 from .samples import ROUNDING, corrected_p, ordered_levels, resolved
 
@@ -37,7 +37,7 @@ class RankTest:
     persons: int
     how: str = "exact"
     p_error: float | None = None
-    pairs: tuple[Pair, ...] = ()
+    pairs: tuple[LevelPair, ...] = ()
 
 
 def rank_test(
@@ -86,7 +86,7 @@ def rank_test(
     pairs = []
     for (i, j), p in zip(couples, corrected_p(single), strict=True):
         shift = columns[i] - columns[j] if several else np.subtract.outer(columns[i], columns[j])
-        pairs.append(Pair(names[i], names[j], float(np.median(shift)), p))
+        pairs.append(LevelPair(names[i], names[j], float(np.median(shift)), p))
     return replace(whole, persons=len(table), pairs=tuple(pairs))
 
 

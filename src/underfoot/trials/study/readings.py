@@ -25,7 +25,7 @@ from .conditions import (
     one_spelling,
     table_columns,
 )
-from .file_result import Draft, FileResult, Sample, refer_to
+from .file_result import FileResult, FileResultDraft, Sample, refer_to
 from .floor_classes import class_scheme
 
 NOTED = {
@@ -197,7 +197,7 @@ def reading_results(
         label = ", ".join(part for part in key if part)
         conditions = {k: v for k, v in zip(texts, key, strict=True) if v}
         file = f"{name}: {label}" if label and len(rows) > 1 else name
-        draft = Draft(file, {**noted, **conditions}, checksum)
+        draft = FileResultDraft(file, {**noted, **conditions}, checksum)
         refer_to(record, draft)
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
@@ -323,7 +323,7 @@ def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
 
 
 def _one_sample(
-    draft: Draft,
+    draft: FileResultDraft,
     values: np.ndarray,
     runs: Sequence[str],
     quantity: str,

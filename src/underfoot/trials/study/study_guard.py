@@ -21,7 +21,7 @@ from .conditions import MASS, NUMBERS, ORDERS, PERSON, person_condition, plain_s
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
 from .readings import NO_CHECKS, NO_ZERO
-from .tables import Table, grouped
+from .tables import TrialTable, grouped
 
 _BODY = {
     **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
@@ -198,7 +198,7 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     return doubts
 
 
-def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
+def doubt_table(doubts: Sequence[Doubt]) -> TrialTable | None:
     """Return the doubts as a table, a row each, or None where there is none."""
     if not doubts:
         return None
@@ -206,7 +206,7 @@ def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
         (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
     )
     heads = ("doubt", "left out of means and tests", "number", "files")
-    return Table.of("doubts", "Read this first: doubts about the study's files", heads, rows)
+    return TrialTable.of("doubts", "Read this first: doubts about the study's files", heads, rows)
 
 
 def _noted(result: FileResult) -> dict[str, Any]:
