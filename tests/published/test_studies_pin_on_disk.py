@@ -262,7 +262,7 @@ def test_the_expected_analysis_of_variance_has_the_scatter_of_the_report():
     none = {fluid: np.zeros(2) for fluid in g3.FLUIDS}
 
     def made(force):
-        return g3.FrictionSplit(np.full(2, force), np.zeros(2), none, (force, 0.0, {}), np.zeros(2))
+        return g3.PrintedSplit(np.full(2, force), np.zeros(2), none, (force, 0.0, {}), np.zeros(2))
 
     soles = ("polyurethane", "hard rubber")
     splits = {(s, f): made(1.0 + k) for k, s in enumerate(soles) for f in g3.FLOORS}

@@ -15,7 +15,7 @@ from underfoot.core import (
     RangeError,
     SourcedValue,
     Status,
-    TestedRange,
+    ValidityRange,
     breaches,
     content_hash,
     unknown_name,
@@ -67,7 +67,7 @@ def test_every_status_but_success_has_a_remedy():
 
 
 def test_breaches_name_the_quantity_and_the_tested_range():
-    ranges = {"speed": TestedRange(0.01, 1.0, "m/s", "paper")}
+    ranges = {"speed": ValidityRange(0.01, 1.0, "m/s", "paper")}
     assert breaches("law", ranges, {"speed": [0.01, 1.0]}) == []
     (found,) = breaches("law", ranges, {"speed": np.array([0.5, 3.0])})
     assert isinstance(found, Breach)
@@ -75,7 +75,7 @@ def test_breaches_name_the_quantity_and_the_tested_range():
 
 
 def test_an_open_range_is_left_at_its_closed_end_only():
-    cells = {"cells": TestedRange(4.0, float("inf"))}
+    cells = {"cells": ValidityRange(4.0, float("inf"))}
     assert breaches("grid", cells, {"cells": 1e9}) == []
     (found,) = breaches("grid", cells, {"cells": 2.4})
     assert "4 or more" in str(found)
@@ -170,7 +170,7 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
 @pytest.mark.parametrize(
     ("package", "old", "new"),
     [
-        ("core", "Range", "TestedRange"),
+        ("core", "Range", "ValidityRange"),
         ("shoe", "Profile", "HeelProfile"),
         ("studies", "StudyResult", "PublishedStudyResult"),
         ("trials", "Profile", "TrialsProfile"),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.core import Breach, Cancelled, Progress, Status, TestedRange, content_hash, silent
+from underfoot.core import Breach, Cancelled, Progress, Status, ValidityRange, content_hash, silent
 from underfoot.core.files import check_writable_folder
 from underfoot.core.status import worst
 
@@ -184,7 +184,7 @@ def _breaches(
             ("COF of scaled inertia", assembly.impact_friction, 0.0, impact, "energy ledger")
         )
     return [
-        Breach("explicit_sliding", quantity, value, value, TestedRange(low, high, "1", source))
+        Breach("explicit_sliding", quantity, value, value, ValidityRange(low, high, "1", source))
         for quantity, value, low, high, source in tests
         if not low <= value <= high
     ]

@@ -30,7 +30,7 @@ from underfoot.core import (
     ConvergenceError,
     InputError,
     Progress,
-    TestedRange,
+    ValidityRange,
     breaches,
     content_hash,
     display,
@@ -58,10 +58,10 @@ RESOLVED = 8
 """Cells along the sliding in one spacing that hold the inlet of a film at the corner of a sole."""
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
-LINEAR_STRAIN = TestedRange(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+LINEAR_STRAIN = ValidityRange(0.0, 0.25, "1", "linear elasticity of rubber in compression")
 SUMMITS = 3.0
 """Times Rq: how far summits stand out of the mean plane."""
-FOREFOOT_RIGID = TestedRange(
+FOREFOOT_RIGID = ValidityRange(
     math.radians(-7.5),
     math.radians(60.0),
     "rad",
@@ -520,7 +520,7 @@ def forefoot_breaches(case: Case, sole: SoleMap) -> list[Breach]:
 def tread_breaches(sole: SoleMap, rq: float) -> list[Breach]:
     """Return whether the summits of a roughness of ``rq`` (m) fill the channels of a tread."""
     depth = float(sole.tread_depth.max())
-    deeper = TestedRange(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
+    deeper = ValidityRange(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
     return (
         breaches("tread", {"depth of the channels": deeper}, {"depth of the channels": depth})
         if depth

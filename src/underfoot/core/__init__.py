@@ -1,9 +1,8 @@
 """Units at the door, sourced values, errors, status, provenance, progress and the cache."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .cache import Cache as Cache
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from .units import display as display
     from .units import to_si as to_si
     from .validity import Breach as Breach
-    from .validity import TestedRange as TestedRange
+    from .validity import ValidityRange as ValidityRange
     from .validity import breaches as breaches
     from .values import SourcedValue as SourcedValue
 
@@ -49,17 +48,11 @@ _HOMES = {
     "display": ".units",
     "to_si": ".units",
     "Breach": ".validity",
-    "TestedRange": ".validity",
+    "ValidityRange": ".validity",
     "breaches": ".validity",
     "SourcedValue": ".values",
 }
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    # what a command imports to print its help stays light: no arrays, no units
-    if name not in _HOMES:
-        return renamed_classes(__name__, gone="0.4", Range="TestedRange")(name)
-    value = globals()[name] = getattr(import_module(_HOMES[name], __name__), name)
-    return value
+__getattr__ = package_names(__name__, _HOMES, gone="0.4", Range="ValidityRange")

@@ -4,7 +4,9 @@ The policy stands in ``CONTRIBUTING.md``; the names that answer so, in ``CHANGEL
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from types import MappingProxyType
 from typing import Any
 from warnings import warn
 
@@ -27,17 +29,26 @@ def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
     return answer
 
 
-def renamed_classes(package: str, *, gone: str, **names: str) -> Callable[[str], Any]:
-    """Return a ``__getattr__`` of a package whose classes answer to their old names.
+def package_names(
+    package: str, homes: Mapping[str, str] = MappingProxyType({}), *, gone: str = "", **renamed: str
+) -> Callable[[str], Any]:
+    """Return a ``__getattr__`` of a package that loads a name when it is used, old ones too.
 
-    ``names``: the new name of each old one. ``gone``: version without the old names.
+    Parameters:
+        package: Its dotted name.
+        homes: Module of each name, as ".module"; what a command imports stays light.
+        gone: Version in which the old names go.
+        renamed: The new name of each class that had another.
     """
 
     def answer(name: str) -> Any:
-        if name not in names:
+        room, new = sys.modules[package], renamed.get(name, name)
+        if name in renamed:
+            warn(f"{package}.{name} is {new} now; the old name goes in {gone}", FutureWarning, 2)
+        elif name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        new = names[name]
-        warn(f"{package}.{name} is {new} now; the old name goes in {gone}", FutureWarning, 2)
-        return getattr(sys.modules[package], new)
+        if new not in vars(room):
+            setattr(room, new, getattr(import_module(homes[new], package), new))
+        return vars(room)[new]
 
     return answer

@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, SourcedValue, TestedRange, breaches
+from underfoot.core import Breach, InputError, SourcedValue, ValidityRange, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 from underfoot.core.presentation import AssumingModel, Presentable, Table
@@ -23,13 +23,13 @@ REPORT = "final progress report on shoe-floor friction"
 PIN_PRESSURE = 266.1e3
 """Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
 FILM_RANGE = {
-    "film thickness": TestedRange(SMALLEST_FILM, math.inf, "m", "bound of the viscous part")
+    "film thickness": ValidityRange(SMALLEST_FILM, math.inf, "m", "bound of the viscous part")
 }
 PIN_RANGES = {
-    "contact pressure": TestedRange(
+    "contact pressure": ValidityRange(
         0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"
     ),
-    "sliding speed": TestedRange(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+    "sliding speed": ValidityRange(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
     **FILM_RANGE,
 }
 """What the pin-on-disk tests of G.2.1 cover, and what bounds the viscous part."""
@@ -127,7 +127,7 @@ class UncertainInputs(Presentable):
         return FrictionParts(adhesion, hysteresis, viscous, *fraction)
 
     @property
-    def ranges(self) -> Mapping[str, TestedRange]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         """What the law was measured on, and what bounds its viscous part."""
         return FILM_RANGE
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, TestedRange, breaches
+from underfoot.core import Breach, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
 
 from ._hardness import checked_hardness
@@ -15,7 +15,7 @@ SOURCE = (
     "hardness for silicones?, Dow (2016), ascribed there to Ruess"
 )
 RANGES = {
-    "shore_a": TestedRange(30.0, 60.0, "1", "best fit for silicones 30 to 60 (secondary source)")
+    "shore_a": ValidityRange(30.0, 60.0, "1", "best fit for silicones 30 to 60 (secondary source)")
 }
 
 

@@ -1,6 +1,6 @@
 """Geometry of shoes: parametric soles, outsole files, treads, wear and their measures."""
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 from .geometry import SoleMap as SoleMap
 from .geometry import SoleSurface as SoleSurface
@@ -19,4 +19,4 @@ from .tread import Sipes as Sipes
 from .tread import Tread as Tread
 from .worn.forms import WearPlane as WearPlane
 
-__getattr__ = renamed_classes(__name__, gone="0.4", Profile="HeelProfile")
+__getattr__ = package_names(__name__, gone="0.4", Profile="HeelProfile")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import Breach, ConvergenceError, InputError, TestedRange, breaches
+from underfoot.core import Breach, ConvergenceError, InputError, ValidityRange, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
@@ -150,7 +150,7 @@ def _check_grid(
 
 
 def _few_cells(quantity: str, cells: float) -> list[Breach]:
-    tested = TestedRange(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
+    tested = ValidityRange(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
     return breaches("grid", {quantity: tested}, {quantity: cells})
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, RangeError, TestedRange, breaches
+from underfoot.core import Breach, InputError, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import Presentable, Table
 
@@ -81,7 +81,7 @@ class LogisticModel(PresentableModel):
 
     @property
     @abstractmethod
-    def tested(self) -> TestedRange:
+    def tested(self) -> ValidityRange:
         """ACOF - RCOF of the study."""
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:

@@ -1,6 +1,6 @@
 """Published studies run again: computed beside printed numbers, with a verdict for each."""
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 from .figure import Figure, Layer, Panel
 from .runner import Computed, Options, PublishedStudyResult, StudyTable, run_all, run_study
@@ -37,7 +37,7 @@ __all__ = [
     "write_summary",
 ]
 
-__getattr__ = renamed_classes(
+__getattr__ = package_names(
     __name__,
     gone="0.4",
     Kind="StatementKind",

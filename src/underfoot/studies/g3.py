@@ -59,7 +59,7 @@ CONTACT_PRESSURE, LOAD, SPEED = 266.1e3, 20.9, 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class FrictionSplit:
+class PrintedSplit:
     """Friction of one pair by the default law as the report splits it, N.
 
     ``adhesion`` (dry less oiled), ``hysteresis`` (under the oil) and ``lubricated`` by fluid (less
@@ -160,9 +160,7 @@ def compute(options: Options) -> Computed:
     )
 
 
-def split(
-    catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: int
-) -> FrictionSplit:
+def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: int) -> PrintedSplit:
     """Return the friction of a pair without fluid, under the oil and under each fluid."""
     shore, (sole_ra, floor_ra) = _pair_numbers(catalogue, sole, floor)
     rq = [(RQ_PER_RA * ra,) * 2 for ra in (sole_ra, floor_ra)]
@@ -187,7 +185,7 @@ def split(
 
     dry, oiled = friction("dry"), friction(OIL)
     wet = {name: friction(fluid) for name, fluid in FLUIDS.items()}
-    return FrictionSplit(
+    return PrintedSplit(
         np.maximum(dry[0] - oiled[0], 0.0),
         oiled[0],
         {name: np.maximum(one[0] - oiled[0], 0.0) for name, one in wet.items()},
@@ -205,7 +203,7 @@ def _pair_numbers(catalogue: Catalogue, sole: str, floor: str) -> tuple[float, t
 
 
 def default_quantities(
-    splits: Mapping[tuple[str, str], FrictionSplit],
+    splits: Mapping[tuple[str, str], PrintedSplit],
 ) -> dict[str, ComputedQuantity]:
     """Return orders and ranges of the default law by name."""
 
@@ -277,7 +275,7 @@ def default_quantities(
     return quantities
 
 
-def _middle(split: FrictionSplit, take: str) -> float:
+def _middle(split: PrintedSplit, take: str) -> float:
     """Return what a part of the friction is at the medians of the law's inputs, N."""
     if take == "loss":
         return float(np.median(split.loss))
@@ -285,7 +283,7 @@ def _middle(split: FrictionSplit, take: str) -> float:
 
 
 def _ends_of_the_pairs(
-    splits: Mapping[tuple[str, str], FrictionSplit], take: str
+    splits: Mapping[tuple[str, str], PrintedSplit], take: str
 ) -> ComputedQuantity:
     """Return a part of the friction of the pairs that the report names, and of those between."""
     extremes = [("polyurethane", "marble"), ("hard rubber", "vinyl")]
@@ -362,7 +360,7 @@ def _interval(drawn: Array) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _split_table(splits: Mapping[tuple[str, str], FrictionSplit]) -> StudyTable:
+def _split_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     rows = []
     for (sole, floor), one in splits.items():
         row: dict[str, object] = {"sole": sole, "floor": floor}
@@ -388,7 +386,7 @@ PRINTED_EFFECTS = {
 
 
 def expected_analysis(
-    splits: Mapping[tuple[str, str], FrictionSplit], take: str
+    splits: Mapping[tuple[str, str], PrintedSplit], take: str
 ) -> dict[str, float]:
     """Return p of sole, floor and both together, as the report's test would find it.
 
@@ -408,7 +406,7 @@ def expected_analysis(
     return {row.term: float(row.p) for row in table.rows if row.p is not None}
 
 
-def _analysis_table(splits: Mapping[tuple[str, str], FrictionSplit]) -> StudyTable:
+def _analysis_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     names = {
         "adhesion": "dry adhesion",
         "hysteresis": "under gear oil",
@@ -431,7 +429,7 @@ def _analysis_table(splits: Mapping[tuple[str, str], FrictionSplit]) -> StudyTab
     return StudyTable.of("analysis_of_variance", title, rows)
 
 
-def _lubricated_table(splits: Mapping[tuple[str, str], FrictionSplit]) -> StudyTable:
+def _lubricated_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     rows = [
         {
             "fluid": fluid,
@@ -445,7 +443,7 @@ def _lubricated_table(splits: Mapping[tuple[str, str], FrictionSplit]) -> StudyT
     return StudyTable.of("default_lubricated", title, rows)
 
 
-def _conclusions(splits: Mapping[tuple[str, str], FrictionSplit]) -> tuple[str, ...]:
+def _conclusions(splits: Mapping[tuple[str, str], PrintedSplit]) -> tuple[str, ...]:
     alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
     by_sole = {sole: np.mean([splits[sole, f].medians[0] for f in FLOORS]) for sole in SOLES}
     listed = ", ".join(f"{sole} {value:.1f} N" for sole, value in by_sole.items())
@@ -465,7 +463,7 @@ def _conclusions(splits: Mapping[tuple[str, str], FrictionSplit]) -> tuple[str, 
     )
 
 
-def _words_on_loss(splits: Mapping[tuple[str, str], FrictionSplit]) -> str:
+def _words_on_loss(splits: Mapping[tuple[str, str], PrintedSplit]) -> str:
     loss = {pair: _middle(one, "loss") for pair, one in splits.items()}
     share = max(loss[pair] / one.medians[1] for pair, one in splits.items())
     by_floor = [np.mean([loss[sole, floor] for sole in SOLES]) for floor in ("vinyl", "marble")]
@@ -501,7 +499,7 @@ def _pair_figure(
 
 
 def _fluid_figure(
-    catalogue: Catalogue, splits: Mapping[tuple[str, str], FrictionSplit], left: Mapping[str, Array]
+    catalogue: Catalogue, splits: Mapping[tuple[str, str], PrintedSplit], left: Mapping[str, Array]
 ) -> Figure:
     """Return adhesion by fluid, a panel a sole: default law, Eq. 26 and the printed range."""
     published = catalogue.entry("published", "boundary_g3")

@@ -1,6 +1,6 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 from .machines.pressures import (
     Passage,
@@ -169,4 +169,4 @@ __all__ = [
     "walkway_of",
 ]  # fmt: skip
 
-__getattr__ = renamed_classes(__name__, gone="0.4", Profile="TrialsProfile")
+__getattr__ = package_names(__name__, gone="0.4", Profile="TrialsProfile")

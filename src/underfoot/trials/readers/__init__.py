@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from underfoot.core import DataError, UnderfootError
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 from underfoot.core.registry import offered
 
 from ..recording.trial import Trial, file_checksum
@@ -140,4 +140,4 @@ def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
     return data, None
 
 
-__getattr__ = renamed_classes(__name__, gone="0.4", Draft="RecordingDraft", Profile="TrialsProfile")
+__getattr__ = package_names(__name__, gone="0.4", Draft="RecordingDraft", Profile="TrialsProfile")

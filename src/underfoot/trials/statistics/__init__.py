@@ -1,6 +1,6 @@
 """Statistics of the field's studies, each test named with its convention."""
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 from .agreement import bland_altman as bland_altman
 from .agreement import intraclass_correlation as intraclass_correlation
@@ -71,4 +71,4 @@ from .samples import t_test as t_test
 from .shares import ShareDifference as ShareDifference
 from .shares import share_difference as share_difference
 
-__getattr__ = renamed_classes(__name__, gone="0.4", Comparison="LevelDifference", Pair="LevelPair")
+__getattr__ = package_names(__name__, gone="0.4", Comparison="LevelDifference", Pair="LevelPair")

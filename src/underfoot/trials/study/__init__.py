@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from underfoot.core.deprecation import renamed_classes
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .file_result import ACCEPTED as ACCEPTED
@@ -36,9 +35,4 @@ _HOMES = {
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    # statistics are loaded when they are used
-    if name not in _HOMES:
-        return renamed_classes(__name__, gone="0.4", Study="TrialStudy", Table="TrialTable")(name)
-    return getattr(import_module(_HOMES[name], __name__), name)
+__getattr__ = package_names(__name__, _HOMES, gone="0.4", Study="TrialStudy", Table="TrialTable")
