@@ -18,7 +18,7 @@ from underfoot import Case
 from underfoot.compute.numerical_error import errors_by_steps
 from underfoot.compute.position_draws import LOADS, TreadPlace, TreadPositions, log_film_odds
 from underfoot.compute.positions import place_numbers
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_at
 from underfoot.core import UnderfootError
 
@@ -62,7 +62,7 @@ def motions(seed: int) -> Any:
 
 def ends(case: Case) -> list[dict[str, float]]:
     """Return the numbers with the steps of a run, twice and four times as many."""
-    parts, found = prepared(case, SPACING), []
+    parts, found = prepare_case(case, SPACING), []
     for finer in (1, 2, 4):
         here, contact = solved_at(parts, TreadPlace(finer=finer), SPACING)
         if not contact.status.usable:

@@ -21,7 +21,7 @@ from underfoot.studies.pair_law import (
     PairConstants,
     PairLaw,
     corpus_score,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     middle,
@@ -182,7 +182,7 @@ def learned(term: PairLaw, rows: Sequence[PublishedCondition]) -> str:
     told = []
     for name, left in (("of all", ""), ("of everybody else", REPORT)):
         training = [row for row in rows if row.laboratory != left]
-        posterior = fitted(term, training, steps=STEPS, left=left)
+        posterior = fit_law(term, training, steps=STEPS, left=left)
         numbers = [
             f"{term.parameters[at]} {posterior.theta[:, at].mean():.2f} "
             f"± {posterior.theta[:, at].std():.2f}"

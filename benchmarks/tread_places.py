@@ -17,9 +17,9 @@ from benchmarks.tread_widths import bars
 from underfoot import Case
 from underfoot.compute.position_draws import TreadPlace
 from underfoot.compute.positions import TURNED, place_numbers, places
-from underfoot.compute.prepare import Prepared, prepared
+from underfoot.compute.prepare import Prepared, prepare_case
 from underfoot.compute.sole import tread_on_sole
-from underfoot.compute.solve import continued, solved_at
+from underfoot.compute.solve import continue_contact, solved_at
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array
 
@@ -85,7 +85,7 @@ def of_turned(parts: Prepared, name: str) -> None:
         shift = tuple(period * share)
         here, contact = solved_at(parts, TreadPlace(shift), parts.spacing)
         for turned in TURNED:
-            (end,) = continued(contact, here, turn=turned.turn)[-1:]
+            (end,) = continue_contact(contact, here, turn=turned.turn)[-1:]
             _, march = solved_at(parts, TreadPlace(shift, turned.turn), parts.spacing)
             print(
                 f"{name:<22}{share:>8.2f}{math.degrees(turned.turn):>+8.2f}"
@@ -109,7 +109,7 @@ def main(arguments: Sequence[str] = ()) -> None:
     def ready(case: Case) -> Prepared:
         numerics = case.numerics
         fine = "--run-grid" in arguments
-        return prepared(case, numerics.grid_spacing if fine else numerics.quick_grid_spacing)
+        return prepare_case(case, numerics.grid_spacing if fine else numerics.quick_grid_spacing)
 
     print(f"{'':<22}{'film N':>8}{'s N':>8}{'n':>6}{'rms N':>8}{'':>8}{'rule N':>8}{'s/√n':>8}")
     for name, case in treads.items():

@@ -22,14 +22,14 @@ from underfoot.studies.pair_law import (
     FEATURE_RIVALS,
     _covariance,
     features,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     log_likelihood,
     middle,
     one_reading,
     r2,
-    scored,
+    score_predictions,
     weights,
 )
 from underfoot.studies.sources import PublishedCondition, PublishedReading, Span
@@ -103,7 +103,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
         for drag in drags:
             truth = np.log(cof(viscosity=drag / 0.3)) + shared + generator.normal(0, 0.08)
             rows.append(made_up(f"lab {source}", drag, float(np.exp(truth))))
-    posterior = fitted(law_named("pair"), rows, steps=3000)
+    posterior = fit_law(law_named("pair"), rows, steps=3000)
     film, dry = np.exp(posterior.theta[:, 0]), np.exp(posterior.theta[:, 2])
     for draws, truth in ((film, 0.10), (dry, 0.35), (posterior.spreads[:, 0], 0.3)):
         low, high = np.quantile(draws, (0.01, 0.99))
@@ -111,7 +111,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
         assert high < 4 * low
     # an unseen laboratory lies inside the interval about as often as it says
     latent, noise = posterior.predicted(rows)
-    score = scored(latent + noise * generator.normal(size=latent.shape), rows)
+    score = score_predictions(latent + noise * generator.normal(size=latent.shape), rows)
     assert 0.9 <= score.inside_95.mean() <= 1.0
     assert 0.4 <= score.inside_50.mean() <= 0.8
 
@@ -119,7 +119,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
 def test_a_bound_scores_by_the_probability_beyond_it():
     draws = np.random.default_rng(0).normal(np.log(0.2), 0.5, (4000, 1))
     row = made_up("lab", 1e-3, 0.2, kind="lower")
-    score = scored(draws, [row])
+    score = score_predictions(draws, [row])
     assert np.exp(score.log_density[0]) == pytest.approx(0.5, abs=0.03)
     assert score.error[0] == pytest.approx(0.0, abs=0.03)
 
@@ -128,7 +128,7 @@ def test_a_bound_scores_by_the_probability_beyond_it():
 def test_a_bound_is_inside_by_the_share_of_the_draws_it_allows(median):
     """A bound of 0.2 below, at and above the median: half of an interval, less, or nothing."""
     draws = np.random.default_rng(0).normal(np.log(median), 0.5, (40_000, 1))
-    score = scored(draws, [made_up("lab", 1e-3, 0.2, kind="lower")])
+    score = score_predictions(draws, [made_up("lab", 1e-3, 0.2, kind="lower")])
     allowed = norm.sf(np.log(0.2), np.log(median), 0.5)
     for found, level in ((score.inside_50, 0.5), (score.inside_95, 0.95)):
         high, low = (1 + level) / 2, max((1 - level) / 2, 1 - allowed)
@@ -141,7 +141,7 @@ def test_two_studies_of_one_laboratory_are_two_testers():
     rows = [replace(row, laboratory="one laboratory", labels={**row.labels, "floor": str(at)})
             for at, row in enumerate(rows)]  # fmt: skip
     law = law_named("one constant")
-    posterior = fitted(law, [])
+    posterior = fit_law(law, [])
     fixed = replace(posterior, theta=np.zeros_like(posterior.theta),
                     spreads=np.tile([0.3, 0.1, 0.1, 0.0], (len(posterior.theta), 1)))  # fmt: skip
     latent, _ = fixed.predicted(rows)
@@ -152,7 +152,7 @@ def test_two_studies_of_one_laboratory_are_two_testers():
 
 def test_skewed_draws_score_by_mean_and_spread_and_err_by_their_median():
     draws = np.log([[0.1], [0.1], [0.1], [0.8]])
-    score = scored(draws, [made_up("lab", 1e-3, 0.2)])
+    score = score_predictions(draws, [made_up("lab", 1e-3, 0.2)])
     expected = norm.logpdf(np.log(0.2), draws.mean(), draws.std())
     assert score.log_density[0] == pytest.approx(expected)
     assert score.error[0] == pytest.approx(np.log(2))

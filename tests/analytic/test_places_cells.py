@@ -85,7 +85,7 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
     place = place_of(TABLE | treaded)
     case = place.case(place.shoes[0], place.floors[0], THICK)
     loads = iter(np.array([1 / 2, 2 / 3, 1 / 3]) * case.motion.normal_force)
-    monkeypatch.setattr(choice, "prepared", lambda *_: None)
+    monkeypatch.setattr(choice, "prepare_case", lambda *_: None)
     monkeypatch.setattr(choice, "places", lambda *_: [0, 1, 2])
     monkeypatch.setattr(choice, "solved_at", lambda *_: ())
     monkeypatch.setattr(choice, "place_numbers", lambda: {"fluid_load": next(loads)})

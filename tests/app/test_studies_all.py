@@ -22,7 +22,7 @@ from underfoot.studies import (
     g2,
     g3,
     headline,
-    judged,
+    judge_study,
     read_results,
     run_all,
     runner,
@@ -151,8 +151,8 @@ def documented():
 @pytest.mark.slow
 def test_the_documented_table_agrees_with_a_fresh_computation():
     rows = documented()
-    fresh = judged(study("g3").statements, g3.compute(Options()).quantities)
-    fresh += judged(study("g2").statements, g2.compute(Options(quick=True)).quantities)
+    fresh = judge_study(study("g3").statements, g3.compute(Options()).quantities)
+    fresh += judge_study(study("g2").statements, g2.compute(Options(quick=True)).quantities)
     assert len(fresh) > 35
     for one in fresh:
         s = one.statement

@@ -17,7 +17,7 @@ from underfoot.trials.readers import TrialsProfile
 from underfoot.trials.readers.c3d_writer import c3d_bytes
 from underfoot.trials.readers.seen import HELD, SIGN, STRAIGHT, unseen
 from underfoot.trials.readers.text import force_unit, si_unit
-from underfoot.trials.walking.describe import described, described_file
+from underfoot.trials.walking.describe import describe_trial, described_file
 from walk_forms import FORMS, RCOF, SHORT, written
 
 DATA = Path(__file__).parents[1] / "data"
@@ -309,7 +309,7 @@ def test_moments_and_pressure_of_a_plate_are_no_markers(tmp_path):
     (tmp_path / "a.csv").write_text("\n".join([labels, *lines]))
     trial = read_trial(tmp_path / "a.csv")
     assert not trial.markers
-    (step,) = described(trial).steps
+    (step,) = describe_trial(trial).steps
     assert step.measurement.value == pytest.approx(0.192, abs=0.002)
     assert step.stance.direction.source == "centre of pressure"
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from underfoot.studies import ComputedQuantity, Options, judged, study
+from underfoot.studies import ComputedQuantity, Options, judge_study, study
 from underfoot.studies.g1 import Settings, changes, matrix, outcomes, series_quantities
 
 pytestmark = pytest.mark.slow
@@ -64,7 +64,7 @@ def test_one_mesh_has_the_known_error_of_a_quick_grid(found):
     """What a mesh enters is judged on two; within the error of one alone it does not agree."""
     values = found | {"broad.hysteresis.largest": ComputedQuantity.of(0.02, levels=[(1e-3, 0.02)])}
     verdicts = {
-        one.statement.id: str(one.verdict) for one in judged(study("g1").statements, values)
+        one.statement.id: str(one.verdict) for one in judge_study(study("g1").statements, values)
     }
     assert verdicts["area_shoe_neolite"] in {"overlaps", "undecided", "not converged"}
     assert verdicts["hysteresis_shoe_neolite"] == "not comparable"

@@ -179,12 +179,12 @@ def test_printed_p_values_need_more_than_the_printed_loads():
 
 
 def test_figures_of_made_up_readings():
-    from underfoot.report.study_figures import drawn
+    from underfoot.report.study_figures import draw_figure
 
     readings = [as_printed(one) for one in PLAN]
-    loads = drawn(g4.load_figure(readings))
+    loads = draw_figure(g4.load_figure(readings))
     assert loads.axes[0].patches[0].get_height() == pytest.approx(201.0)
-    maps = drawn(g4.map_figure([readings[0], readings[6]]))
+    maps = draw_figure(g4.map_figure([readings[0], readings[6]]))
     assert maps.axes[0].get_title().startswith("work shoe: 201 N, peak 234 kPa")
     left, right = maps.axes[0].get_xlim()
     assert left > right  # left of the shoe on the left

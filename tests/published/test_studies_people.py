@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.slips import slip_setting
 from underfoot.slip import ReportG6
 from underfoot.slip.dynamics import FrictionDraws
@@ -16,7 +16,7 @@ from underfoot.studies.verdict import ComputedQuantity
 
 def law_cof(shore, law):
     case = g6.sole_case(shore, law)
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     pressure = np.array([266.1e3])
     parts = found(pressure, np.array([0.3]), np.array([1e-3]))
     return float((parts.adhesion + parts.hysteresis)[0] / 266.1e3)

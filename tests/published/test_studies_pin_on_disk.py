@@ -9,13 +9,13 @@ from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids, range_95
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import ONE_CURVE, OWN_BOUNDARY
-from underfoot.studies import Options, StatementKind, default_law, g2, g3, judged, study
+from underfoot.studies import Options, StatementKind, default_law, g2, g3, judge_study, study
 from underfoot.studies.mechanisms import (
     blind_test,
     calibrated_mechanism,
     compare_mechanisms,
     mechanism,
-    predicted,
+    predict_cof,
 )
 
 CATALOGUE = Catalogue.load()
@@ -57,7 +57,7 @@ def test_a_made_up_truth_is_recovered_from_one_fluid_and_carries_to_the_others()
     truth = {"cof_adhesion": 0.5, "cof_hysteresis": 0.12, "parameter": 20e-9}
 
     def made(one):
-        cof = predicted(chosen, truth, one, PIN, own_boundary=False)
+        cof = predict_cof(chosen, truth, one, PIN, own_boundary=False)
         return CofPoints(one.fluid, one.viscosity, one.speed, cof, "fit", one.rq, None)
 
     found = blind_test(
@@ -96,7 +96,7 @@ def found(comparison):
 
 
 def verdicts(name, computed):
-    judgements = judged(study(name).statements, computed.quantities)
+    judgements = judge_study(study(name).statements, computed.quantities)
     return {one.statement.id: str(one.verdict) for one in judgements}
 
 

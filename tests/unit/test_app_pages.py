@@ -709,7 +709,7 @@ def test_a_variant_that_can_not_be_read_is_looked_at_again_when_its_file_changed
     monkeypatch.setattr(Session, "follow", lambda _, *given: followed.append(given))
     monkeypatch.setattr(Session, "go", lambda _, route, **query: went.append((route, query)))
     found: Any = []
-    shown(lambda: found.append(repair.opened(session, "/design", name)), words_of)
+    shown(lambda: found.append(repair.open_variant(session, "/design", name)), words_of)
     state, again = followed[-1]
     assert found == [None]
     before = state()

@@ -171,7 +171,12 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
     ("package", "old", "new"),
     [
         ("core", "Range", "ValidityRange"),
+        ("calibrate", "calibrated", "calibrate_model"),
+        ("friction", "propagated", "propagate_spread"),
+        ("material", "reduced", "reduce_spectrum"),
         ("shoe", "Profile", "HeelProfile"),
+        ("slip.dynamics", "judged", "judge_slip"),
+        ("surface", "squared", "square_cells"),
         ("studies", "StudyResult", "PublishedStudyResult"),
         ("trials", "Profile", "TrialsProfile"),
         ("trials.readers", "Draft", "RecordingDraft"),
@@ -179,7 +184,7 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
         ("trials.study", "Table", "TrialTable"),
     ],
 )
-def test_an_old_name_of_a_class_answers_and_warns(package, old, new):
+def test_an_old_name_of_a_package_answers_and_warns(package, old, new):
     room = import_module(f"underfoot.{package}")
     with pytest.warns(FutureWarning, match=rf"{package}\.{old} is {new} now.* in 0.4") as told:
         assert getattr(room, old) is getattr(room, new)

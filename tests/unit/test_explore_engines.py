@@ -66,7 +66,7 @@ def test_answers_that_came_count_though_their_worker_was_lost_since():
 def test_who_waits_for_a_silent_process_says_for_whom_and_takes_over(tmp_path, monkeypatch):
     monkeypatch.setattr(study, "PAUSE", 0.01)
     monkeypatch.setattr(study, "PATIENCE", 0.05)
-    monkeypatch.setattr(study, "computed", lambda base, job: answer(job))
+    monkeypatch.setattr(study, "compute_job", lambda base, job: answer(job))
     plan = read_plan(TEXT, EXAMPLES)
     Store.made(tmp_path).adopt(plan)
     Study(plan, tmp_path)._begin_next()

@@ -18,7 +18,7 @@ from underfoot.core import DataError, InputError
 from underfoot.core.progress import silent
 from underfoot.explore import claims, records
 from underfoot.explore import store as store_module
-from underfoot.explore.lines import sealed
+from underfoot.explore.lines import seal_line
 from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.result import StudyResult
 from underfoot.explore.status import StudyStatus
@@ -73,7 +73,7 @@ def test_a_torn_line_is_not_read_and_goes_on_where_it_is_finished(store):
     reader = Store(store.folder)
     assert set(reader.records()) == {"a"}
     body = line.split(b"\t")[0].decode().replace('"key": "a"', '"key": "b"')
-    path.write_bytes(line + sealed(body))
+    path.write_bytes(line + seal_line(body))
     assert set(reader.records()) == {"a", "b"}
 
 

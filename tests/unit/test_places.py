@@ -15,7 +15,7 @@ import pytest
 
 import underfoot as uf
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, RangeError
@@ -24,12 +24,12 @@ from underfoot.film import wedge_film
 from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
-from underfoot.places.choice import _count, _read_floors, chosen, slip_share
+from underfoot.places.choice import _count, _read_floors, choose_shoe, slip_share
 from underfoot.places.evidence import (
     _floor_rq,
     evidence,
     floor_likeness,
-    learned,
+    learn_machine,
     machine_scores,
     score,
 )
@@ -68,7 +68,7 @@ def small_place():
 
 @pytest.fixture(scope="module")
 def choice():
-    return chosen(place_of(small_place()))
+    return choose_shoe(place_of(small_place()))
 
 
 @pytest.mark.parametrize(("cof", "ptv"), [(0.31, 31), (0.54, 50), (1.00, 82), (0.37, 36)])
@@ -120,7 +120,7 @@ def test_a_rougher_floor_reads_higher_wet_and_a_dry_one_higher_still(name):
 @pytest.mark.parametrize("name", [name for name, one in machines().items() if one.learned])
 def test_what_a_set_up_has_learned_is_what_its_readings_teach(name):
     device = machine(name)
-    assert dataclasses.astuple(learned(device)) == pytest.approx(
+    assert dataclasses.astuple(learn_machine(device)) == pytest.approx(
         dataclasses.astuple(device.learned), abs=0.002
     )
 
@@ -222,7 +222,7 @@ def test_published_readings_are_predicted_without_their_source():
     assert scored.constant_error == pytest.approx(14, abs=0.5)
     assert scored.rank == pytest.approx(0.60, abs=0.02)
     one = pendulum[0].evidence
-    assert learned(one.machine, one.source) != learned(one.machine)
+    assert learn_machine(one.machine, one.source) != learn_machine(one.machine)
 
 
 @pytest.mark.parametrize("name", list(machines()))
@@ -267,7 +267,7 @@ def test_a_reading_is_foretold_again_and_named_where_it_was_not(floor):
         case = case if floor is None else case.replace({"floor": floor})
         told = method_prediction(case, "pendulum-96")
         assert told.low <= ptv <= told.high
-        law = case.friction.build(resolved(case))
+        law = case.friction.build(resolve_context(case))
         shoes.append(np.median(law.joint_draws(1000, 0)["pair"]))
         before = method_prediction(case.replace({"friction": {"model": "pair"}}), "pendulum-96")
         outside = not before.low <= ptv <= before.high
@@ -317,7 +317,7 @@ def test_a_reading_of_the_floor_in_a_case_narrows_every_shoe_on_it(shoe):
     rough, cofs = [], []
     for ptv in (15, 60):
         case = read_case(ptv_96=ptv).replace({"shoe": shoe})
-        law = case.friction.build(resolved(case))
+        law = case.friction.build(resolve_context(case))
         share = law.draws.errors[f"floor_rq {law.pair.floor_rq[0]:.3g} {law.pair.floor_rq[1]:.3g}"]
         rough.append(np.quantile(share, (0.025, 0.5, 0.975)))
         cofs.append(law.medians["kappa"])
@@ -330,12 +330,12 @@ def test_a_reading_of_the_floor_in_a_case_narrows_every_shoe_on_it(shoe):
 def test_readings_of_a_case_go_beside_those_of_its_shoe(tmp_path):
     """Draws of calibrate pair are narrowed further, with what they determined of the shoe."""
     plain = read_case(ptv_96=40)
-    law = plain.friction.build(resolved(plain))
+    law = plain.friction.build(resolve_context(plain))
     error = {"laboratory": np.linspace(-0.1, 0.1, law.draws.count)}
     path = tmp_path / "own.csv"
     dataclasses.replace(law.draws, errors=error).write(path)
     both = read_case(ptv_96=40, draws_file=str(path))
-    kept = both.friction.build(resolved(both)).draws.errors["laboratory"]
+    kept = both.friction.build(resolve_context(both)).draws.errors["laboratory"]
     assert np.abs(kept).max() <= 0.1
 
 
@@ -507,9 +507,9 @@ def test_a_floor_that_is_as_rough_is_not_offered_another():
         {"name": "kitchen", "from": "quarry_tile"},
         {"name": "hall", "roughness": {"rq": "2 um"}},
     ]
-    names = [each.name for each in chosen(place_of(small_place() | {"floor": floors})).levers]
+    names = [each.name for each in choose_shoe(place_of(small_place() | {"floor": floors})).levers]
     assert any("clay quarry tile" in name and "(hall)" in name for name in names)
-    rough = chosen(place_of(small_place() | {"floor": floors[:1]}))
+    rough = choose_shoe(place_of(small_place() | {"floor": floors[:1]}))
     assert not any("quarry tile" in each.name for each in rough.levers)
 
 
@@ -523,7 +523,7 @@ def test_another_floor_is_none_that_was_read_whatever_its_name():
         floor["reading"] = [{"machine": "pendulum-96", "value": 15}]
         table = small_place() | {"floor": [floor], "fluids": {"dry": 0.8, "water": 0.2}}
         table["shoe"] = table["shoe"][:1]
-        ends.append(chosen(place_of(table)).levers[0].left[2])
+        ends.append(choose_shoe(place_of(table)).levers[0].left[2])
     assert abs(np.log(ends[1] / ends[0])) < np.log(2)  # it was a fifth
 
 
@@ -541,7 +541,7 @@ def test_a_cell_is_the_whole_run_of_its_case(choice):
 @pytest.mark.slow
 def test_how_often_the_fluid_is_there_changes_no_step_in_it(choice):
     table = small_place() | {"fluids": {"dry": 0.8, "glycerol_90pct": 0.2}}
-    twice = chosen(place_of(table))
+    twice = choose_shoe(place_of(table))
     for one, two in zip(choice.shoes, twice.shoes, strict=True):
         assert two.slips.value == pytest.approx(one.slips.value, rel=1e-9)
         assert two.best == pytest.approx(one.best)
@@ -555,7 +555,7 @@ def test_the_order_of_floors_and_shoes_changes_nothing():
     turned = copy.deepcopy(table)
     turned["floor"].reverse()
     turned["shoe"].reverse()
-    one, two = ({each.shoe.name: each for each in chosen(place_of(each)).shoes}
+    one, two = ({each.shoe.name: each for each in choose_shoe(place_of(each)).shoes}
                 for each in (table, turned))  # fmt: skip
     for name, answer in one.items():
         # a contact is continued from another one: the numbers differ by the solver's error
@@ -575,7 +575,7 @@ def ranking(quick, shift):
             ("work_shoe_untreaded", False),
         )
     ]
-    told = chosen(place_of(table), quick=quick)
+    told = choose_shoe(place_of(table), quick=quick)
     return {each.shoe.name: each.best for each in told.shoes}
 
 
@@ -600,7 +600,7 @@ def test_a_larger_worn_region_carries_more_load_on_its_film():
         {"name": f"{side} mm", "from": "work_shoe_full_tread", "worn_region": [f"{side} mm"] * 2}
         for side in (10, 25, 40)
     ]
-    told = chosen(place_of(table), quick=False)
+    told = choose_shoe(place_of(table), quick=False)
     films = [row[-1] for row in told.cofs]
     assert films[2] > 1.2 * max(films[:2])  # 10 mm is less than a lug
     assert all(each.replaced for each in told.shoes)
@@ -611,7 +611,7 @@ def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_no_row():
     table = small_place()
     table["fluids"] = {"dry": 0.8, "canola_oil": 0.1, "water": 0.1}
     table["shoe"] = table["shoe"][:1]
-    left = {one.name: one.left for one in chosen(place_of(table)).levers}
+    left = {one.name: one.left for one in choose_shoe(place_of(table)).levers}
     assert not any("rinsed" in name for name in left)
     halved = [value for name, value in left.items() if "half the steps" in name]
     assert all(0.5 <= low <= high <= 1 for low, _, high in halved)
@@ -623,7 +623,7 @@ def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_no_row():
 def test_the_same_shoe_twice_shares_its_chance():
     table = small_place()
     table["shoe"] = [{**table["shoe"][1], "name": name} for name in ("one", "two")]
-    answer = chosen(place_of(table))
+    answer = choose_shoe(place_of(table))
     assert [each.best for each in answer.shoes] == pytest.approx([0.5, 0.5])
     assert answer.shoes[0].slips == answer.shoes[1].slips
     assert any("same shoe twice" in text for text in answer.cautions())
@@ -645,7 +645,7 @@ def test_what_a_pendulum_read_goes_into_a_case(tmp_path):
         path = tmp_path / f"{told.readings[0].value:g}.csv"
         told.draws.write(path)
         named = case.replace({"friction.draws_file": str(path)})
-        law = named.friction.build(resolved(named))
+        law = named.friction.build(resolve_context(named))
         drawn = law.joint_draws(1000, 0)
         cofs.append(float(np.median(drawn["kappa"])))
     assert cofs[0] < cofs[1]

@@ -239,7 +239,9 @@ def test_the_error_of_a_pair_of_treads_is_half_of_what_two_thirds_of_its_draws_s
     """Draws whose logarithms are normal: their standard deviation."""
     share = (np.arange(4000) + 0.5) / 4000
     drawn = np.append(1.5, np.exp(0.4 + 0.3 * norm.ppf(share)))
-    monkeypatch.setattr(tread_pairs, "resolved", lambda _: SimpleNamespace(viscosity_value=0.2))
+    monkeypatch.setattr(
+        tread_pairs, "resolve_context", lambda _: SimpleNamespace(viscosity_value=0.2)
+    )
     monkeypatch.setattr(tread_pairs, "_place", lambda _: ())
     pair = tread_pairs._pair("made", "up", cast(Any, None), (0.1, 0.2), drawn, np.zeros(6))
     assert pair.sd == pytest.approx(0.3, rel=0.01)

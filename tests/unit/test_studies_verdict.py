@@ -14,7 +14,7 @@ from underfoot.studies import (
     Verdict,
     counts,
     judge,
-    judged,
+    judge_study,
     read_study,
     studies,
     study,
@@ -312,7 +312,7 @@ def test_the_headline_counts_independent_statements_alone():
         {"quantity": "f", "kind": "alternative", "of": "s0"},
     )  # fmt: skip
     values = dict.fromkeys("acdef", ComputedQuantity.of(1.0)) | {"b": ComputedQuantity.of(2.0)}
-    found = counts(judged(statements, values))
+    found = counts(judge_study(statements, values))
     assert found[Verdict.AGREES] == 1
     assert found[Verdict.DISAGREES] == 1
     assert sum(found.values()) == 2
@@ -327,7 +327,7 @@ def test_a_rival_model_stands_apart():
             "tolerance": "digits", "quantity": "default", "alternatives": {"rival": "rival"},
         }],
     }  # fmt: skip
-    found = judged(
+    found = judge_study(
         read_study("g9", content).statements,
         {"default": ComputedQuantity.of(3.0), "rival": ComputedQuantity.of(1.0)},
     )

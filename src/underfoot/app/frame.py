@@ -53,7 +53,7 @@ def open_session(
     return Session(project, jobs, text, query, exchange, pages, theme, units, elsewhere)
 
 
-def framed(session: Session, page: Page) -> None:
+def build_framed_page(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")

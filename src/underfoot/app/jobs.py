@@ -49,7 +49,7 @@ class Lane:
 
     def __init__(self, preload: Sequence[str] = (), *, patient: bool = False) -> None:
         self._preload = preload
-        self._call = patiently if patient else named
+        self._call = patiently if patient else call_by_name
         self._worker: Worker | None = None
         self._turn = asyncio.Lock()
         self._stop = False
@@ -325,7 +325,7 @@ def _moved(content: Any, folder: str, to: str) -> Any:
     return content
 
 
-def named(
+def call_by_name(
     function: str,
     *args: Any,
     progress: Any,
@@ -343,4 +343,4 @@ def patiently(function: str, *args: Any, progress: Any, **options: Any) -> Any:
     """Return what a function ("module:name") answers, at low priority from now on."""
     if hasattr(os, "nice") and os.nice(0) < PATIENT:
         os.nice(PATIENT - os.nice(0))
-    return named(function, *args, progress=progress, **options)
+    return call_by_name(function, *args, progress=progress, **options)

@@ -21,7 +21,7 @@ from platformdirs import user_state_path
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
 
-from .frame import WORDS, framed, open_session
+from .frame import WORDS, build_framed_page, open_session
 from .gate import UPLOADS, Gate, own_name
 from .inputs import read_in_unit
 from .jobs import JobQueue
@@ -180,7 +180,7 @@ def _route(
     @ui.page(page.route)
     def show(request: Request) -> None:
         session = open_session(project, jobs, exchange, PAGES, elsewhere, request)
-        framed(session, page)
+        build_framed_page(session, page)
 
 
 def _server(application: FastAPI, token: str, port: int, name: str) -> uvicorn.Server:

@@ -40,7 +40,7 @@ from underfoot.trials.study.edit_table import (
 from underfoot.trials.study.file_result import parts
 from underfoot.trials.study.folder import recording_trials
 from underfoot.trials.study.record_signals import record_signals
-from underfoot.trials.study.tables import quantity_name, scaled, shown_unit
+from underfoot.trials.study.tables import quantity_name, scale_to_heading, shown_unit
 
 from .text import put_language
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
@@ -283,7 +283,7 @@ def _numbers(record: FileResult) -> list[str]:
     """Return the main numbers of a file in words, with units."""
     texts = []
     for name, value in record.main.items():
-        text = f"{scaled(name, value):.3g} {shown_unit(name)}".strip()
+        text = f"{scale_to_heading(name, value):.3g} {shown_unit(name)}".strip()
         if name in ("slip", "crossed_array"):
             text = "yes" if value else "no"
         texts.append(f"{quantity_name(name)} {text}")

@@ -14,7 +14,7 @@ from .assembly import (
     IMPACT_ALLOWED,
     MASS_SCALING_ALLOWED,
     ExplicitSettings,
-    assembled,
+    assemble_march,
     mass_scaling_error,
 )
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
@@ -77,7 +77,7 @@ def explicit_sliding(
     if output is not None:
         output = Path(output)
         check_writable_folder(output, overwrite=overwrite or restart is not None)
-    assembly = assembled(block, floor, material, loading, settings)
+    assembly = assemble_march(block, floor, material, loading, settings)
     march = BlockMarch(
         assembly=assembly,
         loading=loading,

@@ -9,7 +9,7 @@ import typer
 
 from underfoot.core import InputError
 
-from .guard import guarded, say
+from .guard import guard_command, say
 from .options import AsJson, OutFolder, Overwrite, Quick, ShowAll
 from .output import print_table, show
 
@@ -240,7 +240,7 @@ def _show_headline(results: Sequence[PublishedStudyResult]) -> None:
             say(f"{result.study.name} failed: {result.error}")
 
 
-studies_app.command("list")(guarded(list_studies))
-studies_app.command("run")(guarded(run_study))
-studies_app.command("summary")(guarded(summarise))
-studies_app.command("errata")(guarded(errata))
+studies_app.command("list")(guard_command(list_studies))
+studies_app.command("run")(guard_command(run_study))
+studies_app.command("summary")(guard_command(summarise))
+studies_app.command("errata")(guard_command(errata))

@@ -6,8 +6,8 @@ from typing import Any
 
 from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
-from underfoot.core.fields import Fields, labelled
-from underfoot.core.remark import Remark, joined, remarks
+from underfoot.core.fields import Fields, labelled_fields
+from underfoot.core.remark import Remark, join_lines, remarks
 from underfoot.film import NewtonianFilm
 
 from . import numbers
@@ -41,7 +41,7 @@ def answer(
     objects = object_texts(parts.objects)
     labels = dict(reading.labels)
     if objects:
-        labels["objects"] = joined(Remark.of(slot, text) for slot, text in objects.items())
+        labels["objects"] = join_lines(Remark.of(slot, text) for slot, text in objects.items())
     risk = reading.risk
     return Result(
         name=case.name,
@@ -147,7 +147,7 @@ def _fields(
     if sampled is not None:
         drawn = {"units": "1", "long_name": "draws of COF"}
         variables["cof_draws"] = ("draw", sampled.cof, drawn)
-    data = labelled(
+    data = labelled_fields(
         {
             **_sole_maps(parts, solution),
             "sensor_pressure": (

@@ -26,7 +26,7 @@ from .position_draws import (
 )
 from .positions import CLOSEST, RATES, remembers
 from .prepare import Prepared
-from .sensors import scanned
+from .sensors import scan_reading
 from .sole import RESOLVED, cells_along, tread_on_sole
 from .solve import Solution, solved_at
 
@@ -279,7 +279,7 @@ def _cells(parts: Prepared, columns: int) -> str:
 
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, parts.case.motion.speed)
-    sensor = scanned(parts.case, parts.sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(parts.case, parts.sole, contact, viscosity=parts.viscosity)
     return readings(contact, friction.cof.value or 0.0, sensor)
 
 

@@ -29,7 +29,7 @@ from .position_draws import (
     log_film_odds,
 )
 from .prepare import Prepared
-from .sensors import scanned
+from .sensors import scan_reading
 from .sole import bottom_surface, file_surface, landing_front, tread_on_sole
 from .steadiness import later_numbers
 
@@ -65,7 +65,7 @@ def further_angles(case: Case) -> tuple[TreadPlace, ...]:
 
     One to each side, as far as the angle of its bevel may go; none where that counts as exact.
     """
-    bevel = None if treaded(case) else UncertainBevel.of(case)
+    bevel = None if has_lugs(case) else UncertainBevel.of(case)
     if bevel is None:
         return ()
     return TreadPlace(turn=FURTHER * bevel.deviation), TreadPlace(turn=-FURTHER * bevel.deviation)
@@ -155,7 +155,7 @@ def tread_positions(
 
     All places are solved on the quick grid, every other one, of shoe angles the own, on the grid of
     the run too. The ratio of the means on both takes all to the grid of the run, and under lugs on
-    to that of ``FINEST``, where numbers move by the first order of the cells (``carried``).
+    to that of ``FINEST``, where numbers move by the first order of the cells (``carry_to_finer``).
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
     case's own position. A motion that ends is solved at the first place on the quick grid with
     twice the steps in time too.
@@ -165,7 +165,7 @@ def tread_positions(
     each on a grid (m), and gives the index of each with its numbers as they end, None where a
     contact did not converge.
     """
-    lugs, own = treaded(case), known[TreadPlace()]
+    lugs, own = has_lugs(case), known[TreadPlace()]
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
     angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
@@ -188,7 +188,7 @@ def tread_positions(
     compared = coarse > spacing
     onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and compared else 0.0
     rate = RATES[len(tread_on_sole(case)[0])] if lugs else 1.0
-    values, near = (carried(each, before, after, order) for order in (onward, 0.0))
+    values, near = (carry_to_finer(each, before, after, order) for order in (onward, 0.0))
     # of a flat sole the first order of the cells, as the quick grid and that of a run tell it
     onto = 1 + onward if lugs else USUAL_STEP * spacing / (coarse - spacing) if compared else 0.0
     between = {}
@@ -207,7 +207,7 @@ def tread_positions(
         by_film = float(odds[0] - odds[1]) / 2
     if not all((place, coarse) in at for place in further):
         further = ()
-    beyond = carried(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
+    beyond = carry_to_finer(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
     bevel_known = by_angle if lugs else further
     return (TreadPositions if lugs else ShoeAngles)(
         tuple(answers),
@@ -231,7 +231,7 @@ def _arrays(names: Iterable[str], numbers: Iterable[Mapping[str, float]]) -> dic
     return {name: np.array([each[name] for each in listed]) for name in names}
 
 
-def carried(
+def carry_to_finer(
     each: Mapping[str, Array], coarse: Mapping[str, Array], fine: Mapping[str, Array], onward: float
 ) -> dict[str, Array]:
     """Return numbers (n,) of a coarse grid on a finer one by name, by some of both (m,).
@@ -288,7 +288,7 @@ def _places_on_grids(
 ) -> tuple[tuple[TreadPlace, ...], tuple[TreadPlace, ...], float]:
     """Return the places of a run, those that the grid of the run solves, and that of all, m."""
     coarse = case.numerics.quick_grid_spacing
-    if treaded(case):
+    if has_lugs(case):
         all_places = case_places(case, quick=quick)
         if quick or coarse < CLOSEST * spacing:
             return all_places, all_places, spacing
@@ -306,12 +306,12 @@ def position_count(case: Case, *, quick: bool) -> int:
     count = case.numerics.tread_positions
     if count == 1:
         return 1
-    if not treaded(case):
+    if not has_lugs(case):
         return len(shoe_angles())
     return math.ceil(count / 2) if quick else count
 
 
-def treaded(case: Case) -> bool:
+def has_lugs(case: Case) -> bool:
     """Return whether the sole of a case has lugs."""
     if case.shoe.outsole is None:
         return _tread(case) is not None
@@ -325,7 +325,7 @@ def remembers(case: Case) -> bool:
 
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
-    count, lugs, numerics = position_count(case, quick=quick), treaded(case), case.numerics
+    count, lugs, numerics = position_count(case, quick=quick), has_lugs(case), case.numerics
     if count == 1:
         return 1.0
     share = numerics.grid_spacing / numerics.quick_grid_spacing
@@ -344,7 +344,7 @@ def run_cost(case: Case, *, quick: bool) -> Cost:
     """Return what a run will take, all places together."""
     numerics = case.numerics
     one = cost(case, numerics.quick_grid_spacing if quick else numerics.grid_spacing)
-    times = (1.0 if treaded(case) else WITHOUT_LUGS) / first_share(case, quick=quick)
+    times = (1.0 if has_lugs(case) else WITHOUT_LUGS) / first_share(case, quick=quick)
     low, high = (seconds * times for seconds in one.seconds)
     return replace(one, seconds=(low, high))
 
@@ -358,7 +358,7 @@ def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
     case, sole = parts.case, parts.sole
     friction = friction_sums(parts.local_law, contact, case.motion.speed)
-    sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(case, sole, contact, viscosity=parts.viscosity)
     numbers, _ = scalars(case, contact, friction, sensor)
     numbers |= later_numbers(parts, contact)
     values = {

@@ -63,7 +63,7 @@ def readings(
     case, contact = parts.case, solution.contact
     overload = overload_breaches(contact, parts.context.youngs_modulus)
     if not contact.status.usable:
-        nothing = numbers.undetermined(case, contact.status)
+        nothing = numbers.undetermined_numbers(case, contact.status)
         labels: dict[str, str] = {"no_result": numbers.no_result_words(contact, overload)}
         return ResultNumbers(nothing, labels, solution.friction.sampled, overload)
     friction, sampled = solution.friction.sums, solution.friction.sampled

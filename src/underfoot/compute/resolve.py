@@ -14,7 +14,7 @@ SOFTEST = 0.16e6
 """Pa, Young's modulus of Shore A 0 (Gent)."""
 
 
-def resolved(case: Case, progress: Progress = silent) -> Context:
+def resolve_context(case: Case, progress: Progress = silent) -> Context:
     """Return what the options of a case are built from."""
     modulus, beyond = youngs_modulus(case)
     surfaces = case.shoe.roughness, case.floor.roughness
@@ -61,7 +61,7 @@ def _soft_floor(case: Case, modulus: SourcedValue) -> list[Breach]:
     return breaches("floor", {"Shore A": rigid}, {"Shore A": case.floor.shore_a})
 
 
-def turned(context: Context, turn: float) -> Context:
+def turn_context(context: Context, turn: float) -> Context:
     """Return the context with ``turn`` (rad) added to the shoe angle."""
     angle = {"shoe_angle": context.motion.shoe_angle + turn}
     return replace(context, motion=context.motion.model_copy(update=angle))

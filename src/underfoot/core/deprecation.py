@@ -11,7 +11,7 @@ from typing import Any
 from warnings import warn
 
 
-def renamed(old: str, new: str, *, gone: str) -> Callable[..., Any]:
+def renamed_member(old: str, new: str, *, gone: str) -> Callable[..., Any]:
     """Return a method for a class to keep as ``old``: it warns and answers as its member ``new``.
 
     ``gone``: version without the old name. The warning is a FutureWarning, which people see who
@@ -38,7 +38,7 @@ def package_names(
         package: Its dotted name.
         homes: Module of each name, as ".module"; what a command imports stays light.
         gone: Version in which the old names go.
-        renamed: The new name of each class that had another.
+        renamed: The new name of each old one.
     """
 
     def answer(name: str) -> Any:

@@ -23,7 +23,7 @@ from .record import CaseJob, Ending, Record
 from .records import Records
 from .result import StudyResult
 from .store import Store
-from .surrogate import featured
+from .surrogate import feature_columns
 
 FEWEST = 3
 """Finished cases from which on a cost is estimated."""
@@ -60,14 +60,14 @@ class StudyCost:
 def spread_jobs(plan: StudyPlan, count: int) -> Iterator[CaseJob]:
     """Yield up to ``count`` jobs of the first batch, spread evenly over all that differs in it."""
     points = np.array(first_points(plan), dtype=float).reshape(-1, len(plan.dimensions))
-    places = featured(plan.dimensions, points)
+    places = feature_columns(plan.dimensions, points)
     count = min(count, len(points) * plan.cases_per_design)
     wanted = qmc.Sobol(points.shape[1] + 2, rng=plan.method.seed).random_base2(12)
     taken = set[tuple[int, int, int]]()
     for row in wanted:
         if len(taken) == count:
             return
-        away = np.abs(places - featured(plan.dimensions, row[None, :-2])).sum(axis=1)
+        away = np.abs(places - feature_columns(plan.dimensions, row[None, :-2])).sum(axis=1)
         state, draw = (
             int(share * size) for share, size in zip(row[-2:], _sizes(plan), strict=True)
         )
@@ -165,7 +165,7 @@ def _steady(pairs: Sequence[tuple[CaseJob, Record]]) -> Sequence[tuple[CaseJob, 
 def _features(
     plan: StudyPlan, points: Sequence[Sequence[float]], states: Sequence[int] | AnyArray
 ) -> Array:
-    inputs = featured(plan.dimensions, np.array(points, dtype=float))
+    inputs = feature_columns(plan.dimensions, np.array(points, dtype=float))
     conditions = np.equal.outer(np.asarray(states), np.arange(len(plan.states)))
     return np.column_stack([inputs, conditions])
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
-from underfoot.core.pool import TRIES, answered, available_processors
+from underfoot.core.pool import TRIES, answers_of, available_processors
 
 from .record import CaseJob, Record
 
@@ -46,7 +46,7 @@ def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> 
     """
     count = workers or available_processors()
     if on is None or on == "pool":
-        return lambda function, jobs, died: answered(function, jobs, count, died), count
+        return lambda function, jobs, died: answers_of(function, jobs, count, died), count
     kind, _, address = on.partition(":")
     if kind != DASK:
         raise InputError(

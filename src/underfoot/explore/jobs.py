@@ -19,7 +19,7 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.arrays import AnyArray
 
-from .lines import CURRENT, FORMAT, KEY, KEYED, sealed, unsealed, whole_lines, write_all
+from .lines import CURRENT, FORMAT, KEY, KEYED, seal_line, unseal_line, whole_lines, write_all
 from .record import CaseJob
 
 TOGETHER = 1000
@@ -93,7 +93,7 @@ def jobs_at(path: Path, places: Iterable[int]) -> list[CaseJob]:
     with path.open("rb") as stream:
         for place in places:
             stream.seek(int(place))
-            body = unsealed(stream.readline().removesuffix(b"\n"))
+            body = unseal_line(stream.readline().removesuffix(b"\n"))
             if body is None:
                 raise DataError(
                     f"the job at byte {place} is damaged",
@@ -118,12 +118,12 @@ def add_batch(path: Path, batch: int, jobs: Iterable[CaseJob], end: int) -> int:
             while some := list(islice(lines, TOGETHER)):
                 for line in some:
                     hashed.update(line.encode("utf-8"))
-                write_all(descriptor, b"".join(map(sealed, some)))
+                write_all(descriptor, b"".join(map(seal_line, some)))
                 count += len(some)
             if count:
                 closing = {"format": FORMAT, "closes": batch, "count": count}
                 text = json.dumps({**closing, "hash": hashed.hexdigest()})
-                write_all(descriptor, sealed(text))
+                write_all(descriptor, seal_line(text))
                 os.fsync(descriptor)
         except OSError:
             os.ftruncate(descriptor, end)

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 from underfoot.case import Case
 from underfoot.case.quantity import Flag
 from underfoot.case.section import Section
-from underfoot.compute.positions import position_count, treaded
+from underfoot.compute.positions import has_lugs, position_count
 from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
 
@@ -219,7 +219,7 @@ class StudyPlan:
         except InputError:  # no case: its record will say why
             return {}
         count = case.numerics.tread_positions
-        if count == 1 or not treaded(case):
+        if count == 1 or not has_lugs(case):
             return {}
         step = 1 if count < MOST_POSITIONS - 1 else -1
         first = position_count(case, quick=self.method.quick)

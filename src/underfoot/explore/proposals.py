@@ -28,7 +28,7 @@ from .goals import Goal
 from .plan import StudyPlan
 from .record import CaseJob
 from .result import StudyResult
-from .surrogate import FEWEST, Surrogate, featured
+from .surrogate import FEWEST, Surrogate, feature_columns
 
 FIRST = 0.4
 """Share of an optimisation's designs that are spread evenly first."""
@@ -158,8 +158,8 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
 
 def _apart(plan: StudyPlan, points: Array, taken: Sequence[float]) -> Mask:
     """Return which places make another design than one that is taken."""
-    own = featured(plan.dimensions, np.array([taken]))
-    return np.abs(featured(plan.dimensions, points) - own).max(axis=1) > SAME
+    own = feature_columns(plan.dimensions, np.array([taken]))
+    return np.abs(feature_columns(plan.dimensions, points) - own).max(axis=1) > SAME
 
 
 def _surrogate_front(

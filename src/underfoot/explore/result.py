@@ -28,7 +28,7 @@ from .jobs import BatchJobs
 from .plan import StudyPlan
 from .record import CaseJob, Ending, Record, program
 from .records import Records
-from .surrogate import FEWEST, Surrogate, fitted
+from .surrogate import FEWEST, Surrogate, fit_surrogate
 
 if TYPE_CHECKING:
     import xarray
@@ -233,7 +233,7 @@ class StudyResult(Presentable):
             errors = np.array([goal.error(run.records, self.plan.states) for run in runs])
             finer = np.array([run.again for run in runs], dtype=bool)
             own = points, self.values(runs, [goal])[:, 0], errors, finer
-            self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
+            self._fitted[goal] = fit_surrogate(str(goal), goal.unit, dimensions, *own)
         return self._fitted[goal]
 
     @cached_property

@@ -50,7 +50,9 @@ class DesignScan:
     programs: Collection[str]
 
 
-def scanned(records: Records, outputs: Collection[str] = (), *, draws: bool = False) -> DesignScan:
+def scan_cases(
+    records: Records, outputs: Collection[str] = (), *, draws: bool = False
+) -> DesignScan:
     """Return some outputs of all finished cases, and with ``draws`` those of COF.
 
     Raises:

@@ -17,7 +17,7 @@ from underfoot.core.progress import time_text
 from .record import Ending
 from .records import Records
 from .result import StudyResult
-from .scan import DesignScan, scanned
+from .scan import DesignScan, scan_cases
 from .study import Study
 
 USUAL = (Ending.OPEN, Ending.COMPUTED)
@@ -48,7 +48,7 @@ class StudyStatus(StudyResult):
     @cached_property
     def scan(self) -> DesignScan:
         """Numbers of all finished cases."""
-        return scanned(self.records)
+        return scan_cases(self.records)
 
     @property
     def case_seconds(self) -> float:

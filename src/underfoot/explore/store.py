@@ -45,7 +45,7 @@ from underfoot.core.text import harmless
 
 from .claims import Round, begin_round, clear, latest_round
 from .jobs import BatchJobs, add_batch, jobs_at
-from .lines import FORMAT, sealed, whole_lines, write_all, write_file
+from .lines import FORMAT, seal_line, whole_lines, write_all, write_file
 from .plan import StudyPlan
 from .record import CaseJob, Record
 from .records import DRAWS, LINES, Records
@@ -269,7 +269,7 @@ class Store:
     def _write(self, record: Record) -> None:
         draws, path = record.packed_draws, self.folder / f"{LINES}{self.name}.jsonl"
         first = self._append(self.folder / f"{DRAWS}{self.name}.f4", draws) if draws else 0
-        line = sealed(record.line((first, len(draws) // 4, crc32(draws))))
+        line = seal_line(record.line((first, len(draws) // 4, crc32(draws))))
         place = self._append(path, line)
         self.known.add(record.key, record.ending, path, place, place + len(line))
         if time.monotonic() - self._committed > COMMIT:
@@ -500,7 +500,9 @@ class Store:
         ended = {
             session["name"]: session for session in self.sessions() if session["ended"] is not None
         }
-        lines = [sealed(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()]
+        lines = [
+            seal_line(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()
+        ]
         if lines:
             write_file(self.folder / "sessions.jsonl", b"".join(lines))
         for name in ended:

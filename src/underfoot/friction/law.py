@@ -121,7 +121,7 @@ class UncertainInputs(Presentable):
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
         law: Any = self
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        pressure, velocity, film = check_arguments(contact_pressure, speed, film_thickness)
         adhesion, hysteresis, *fraction = self.contact_shear(pressure, velocity)
         viscous = viscous_shear(law.viscosity, velocity, film)
         return FrictionParts(adhesion, hysteresis, viscous, *fraction)
@@ -145,7 +145,7 @@ class UncertainInputs(Presentable):
             film_thickness: m.
         """
         law: Any = self
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        pressure, velocity, film = check_arguments(contact_pressure, speed, film_thickness)
         total = float(pressure.sum())
         values: dict[str, ArrayLike] = {"sliding speed": velocity}
         if total > 0:
@@ -219,7 +219,7 @@ def drawn_value(value: float, centre: float | None) -> float:
     return max(float(value), SMALLEST * (centre or 0.0))
 
 
-def checked(
+def check_arguments(
     contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
 ) -> tuple[Array, Array, Array]:
     """Return the arguments of a law as arrays of one shape; the speed as its magnitude."""

@@ -414,7 +414,7 @@ def _prony(
 
 def _toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(text.decoded(text.existing(path).read_bytes(), str(path)))
+        return tomllib.loads(text.decode_text(text.existing(path).read_bytes(), str(path)))
     except tomllib.TOMLDecodeError as error:
         raise DataError(f"not valid TOML: {error}", where=str(path)) from error
 

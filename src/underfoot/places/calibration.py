@@ -16,7 +16,7 @@ from underfoot.case.friction import PairOption
 from underfoot.case.quantity import Quantity, optional
 from underfoot.case.section import CaseView
 from underfoot.case.tables import meant_file
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
 from underfoot.friction import (
@@ -216,7 +216,7 @@ def pair_law(case: Case) -> PairContactLaw:
     Raises:
         InputError: It is none of a pair.
     """
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     if not isinstance(law, PairContactLaw):
         raise InputError(f'the law is "{law.name}"', where="friction", allowed='model = "pair"')
     return law
@@ -239,7 +239,7 @@ def calibrated_floor(
     law, read = pair_law(case), FloorReading(device, liquid, value, kind)
     beside: tuple[FloorReading, ...] = ()
     if isinstance(case.friction, PairReadOption):
-        beside, law = case.friction.floor_readings(), case.friction.unread(resolved(case))
+        beside, law = case.friction.floor_readings(), case.friction.unread(resolve_context(case))
     if any(floor_reading.machine == device for floor_reading in beside):
         raise InputError(
             f"the case holds what {device.title} read of this floor",

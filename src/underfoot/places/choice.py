@@ -27,12 +27,12 @@ from scipy.special import expit
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
-from underfoot.compute.positions import place_numbers, places, treaded
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.positions import has_lugs, place_numbers, places
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.sole import file_periods, sole_map
 from underfoot.compute.solve import solved_at
-from underfoot.compute.stated_spreads import ODDS, added, odds_changes
+from underfoot.compute.stated_spreads import ODDS, odds_changes, sum_of_draws
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
@@ -421,7 +421,9 @@ class _Solver:
             self.place.case(shoe, solved_floors[floor.name], fluid, worn) for floor, fluid in wanted
         ]
         # a thick film is where continuation begins from best
-        order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
+        order = sorted(
+            range(len(cases)), key=lambda i: -(resolve_context(cases[i]).viscosity_value or 0)
+        )
         sole, first = (shoe.name, worn), cases[order[0]]
         if sole not in self.marches:
             begun = Continuation(first, quick=self.quick)
@@ -458,7 +460,7 @@ class _Solver:
         moved: Array,
         tread: Array,
     ) -> Cell:
-        context = resolved(case)
+        context = resolve_context(case)
         law = case.friction.build(context)
         assert isinstance(law, PairContactLaw)
         joint, viscosity = self.joint, law.viscosity
@@ -486,10 +488,10 @@ class _Solver:
             for name, (less, more) in march.spreads.items():
                 normal = joint.normal(f"{name} of the rough contact on {floor.name}")
                 odds = odds + odds_changes(less, more, normal)
-            share = expit(odds + added(stated, ODDS))
+            share = expit(odds + sum_of_draws(stated, ODDS))
         acof = factor * mu * (1 - share) * np.exp(errors["tread_error"])
         if film > 0:
-            acof = acof + viscous * np.exp(added(stated, "cof_viscous")) * share / film
+            acof = acof + viscous * np.exp(sum_of_draws(stated, "cof_viscous")) * share / film
         return Cell(np.clip(acof, 0.0, law.highest), solved, film)
 
 
@@ -499,11 +501,11 @@ def film_odds_over_positions(case: Case) -> Array:
     (places,), the first 0: places half a period of the tread apart, on the quick grid. Of a sole
     without tread or film 0 alone.
     """
-    if not treaded(case) or case.contaminant is None:
+    if not has_lugs(case) or case.contaminant is None:
         return np.zeros(1)
     tread = case.shoe.tread and case.shoe.tread.build()
     spacing = case.numerics.quick_grid_spacing
-    parts, odds = prepared(case, spacing), []
+    parts, odds = prepare_case(case, spacing), []
     for place in places(tread.periods if tread else file_periods(case), POSITIONS):
         load = place_numbers(*solved_at(parts, place, spacing))["fluid_load"]
         share = float(np.clip(load / case.motion.normal_force, 1e-6, 0.999))
@@ -546,7 +548,7 @@ def tested_cof(
 
 
 @threads_limited(1)
-def chosen(
+def choose_shoe(
     place: Place, *, seed: int = 0, quick: bool = True, progress: Progress = silent
 ) -> ShoeChoice:
     """Return which shoe suits a place.
@@ -709,7 +711,7 @@ def _is_oil(place: Place, shoe: PlaceShoe, fluid: str) -> bool:
 
 
 def _law(case: Any) -> PairContactLaw:
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     assert isinstance(law, PairContactLaw)
     return law
 

@@ -150,7 +150,7 @@ def _of_file() -> Iterator[Evidence]:
                        entry["sentence"])  # fmt: skip
 
 
-def learned(device: Machine, left_out: str = "") -> Learned | None:
+def learn_machine(device: Machine, left_out: str = "") -> Learned | None:
     """Return what readings teach of a machine, those of one source left out.
 
         ln COF = ln COF of the law + f + u_source + v_floor + e
@@ -201,9 +201,9 @@ def learned(device: Machine, left_out: str = "") -> Learned | None:
 def floor_likeness(left_out: str = "") -> float:
     """Return how alike two machines find a floor beyond its roughness: a correlation of ln COF.
 
-    Its posterior mean over 0 to 1, by the restricted likelihood of all readings as in ``learned``,
-    with the machines' spreads as learned. Machines that read one floor share what is not known of
-    its roughness besides. A source is one laboratory whatever it reads with.
+    Its posterior mean over 0 to 1, by the restricted likelihood of all readings as in
+    ``learn_machine``, with the machines' spreads as learned. Machines that read one floor share
+    what is not known of its roughness besides. A source is one laboratory whatever it reads with.
 
     Parameters:
         left_out: A source whose readings do not count.
@@ -393,7 +393,7 @@ def machine_scores(seed: int = 0) -> MachineScores:
 
 
 def _scored(each: Evidence, seed: int) -> ScoredReading:
-    device = replace(each.machine, learned=learned(each.machine, each.source))
+    device = replace(each.machine, learned=learn_machine(each.machine, each.source))
     joint = PlaceDraws(count=DRAWS, seed=seed)
     read = device.read(joint, each.floor, each.rq, FLUIDS[device.fluids[0]])
     others = [

@@ -168,7 +168,9 @@ def read_place(path: Path) -> Place:
         InputError: No such file; an unknown key; shares that do not add to 1; a floor, shoe or
             reading that cannot be.
     """
-    return place_of(toml.parsed(toml.read(path), str(path)), name=path.stem, folder=path.parent)
+    return place_of(
+        toml.parse_toml(toml.read_text(path), str(path)), name=path.stem, folder=path.parent
+    )
 
 
 def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None = None) -> Place:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from underfoot.compute.numbers import undetermined
+from underfoot.compute.numbers import undetermined_numbers
 from underfoot.compute.run import run
 from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import ConvergenceError, Progress, SourcedValue, Status, content_hash, silent
@@ -160,5 +160,5 @@ def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> CaseOutc
         return CaseOutcome.of(run(case, quick=quick), maps)
     except ConvergenceError as error:  # one case without numbers, the others go on
         status = Status.NOT_CONVERGED
-        none = undetermined(case, status)
+        none = undetermined_numbers(case, status)
         return CaseOutcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)

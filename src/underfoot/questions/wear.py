@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.case.wear import USUAL_WEAR_RATE
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
-from underfoot.core.fields import Fields, labelled
+from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
 from underfoot.core.remark import Amount, Message, Remark
@@ -327,7 +327,7 @@ class WearSeries(Presentable):
             values = np.stack([each[name] for each in self.maps[:count]]).astype(np.float32)
             variables[name] = (axes, values, {"units": "Pa", "long_name": MAPS[name]})
         lost = {"units": "m", "long_name": "thickness lost at the most worn place"}
-        return labelled(
+        return labelled_fields(
             variables,
             {
                 "state": ("state", self.measured("removed_depth"), lost),

@@ -16,7 +16,7 @@ import numpy as np
 from underfoot.case import unit_at
 from underfoot.core import Progress, UnderfootError, silent
 from underfoot.core.fields import Fields
-from underfoot.core.html import embedded, environment, new_figure, png
+from underfoot.core.html import data_address, environment, new_figure, png
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
@@ -54,7 +54,7 @@ class ShownStudy(StudyResult):
     missing: str = ""
 
 
-def shown(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> ShownStudy:
+def shown_study(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> ShownStudy:
     """Return a result with its surrogates and indices, and the soles of some designs."""
     plan = result.plan
     goals: list[AnyGoal] = [*plan.goals] or [Goal("cof", "1")]
@@ -101,7 +101,7 @@ def write_study_report(
 ) -> Written:
     """Write results.csv, results.parquet, surrogate.json and report.html into a study's folder."""
     study.store.write_views(result.cases())
-    ready = shown(result, _soles(study, result, progress))
+    ready = shown_study(result, _soles(study, result, progress))
     if ready.models:
         models = [model.to_dict() for model in ready.models]
         with study.store.view("surrogate.json") as part:
@@ -148,13 +148,15 @@ def _study_sections(
         )
     if isinstance(result, ShownStudy):
         for k, index in enumerate(result.indices):
-            picture = Picture(index.heading(), embedded(pictures[f"effects_{k}"]), True)
+            picture = Picture(index.heading(), data_address(pictures[f"effects_{k}"]), True)
             parts.append(
                 PageSection(index.heading(), " ".join(index.headline()), pictures=[picture])
             )
             parts.append(PageSection(f"{index.output}: indices", table=index.table(), folded=True))
         if result.models:
-            picture = Picture("Slices through the surrogates", embedded(pictures["slices"]), True)
+            picture = Picture(
+                "Slices through the surrogates", data_address(pictures["slices"]), True
+            )
             words = [f"{model.name}: {model.reliability}" for model in result.models]
             intro = (
                 "Through the marked design; the band is one standard deviation of the surrogate."

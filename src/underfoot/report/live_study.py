@@ -32,7 +32,7 @@ from underfoot.explore.jobs import BatchJobs
 from underfoot.explore.record import Ending
 from underfoot.explore.records import ENDINGS
 from underfoot.explore.result import MOST_ROWS, Design, front_places
-from underfoot.explore.scan import DesignScan, scanned
+from underfoot.explore.scan import DesignScan, scan_cases
 from underfoot.explore.status import StudyStatus
 from underfoot.explore.study import Study
 
@@ -69,7 +69,7 @@ class LiveStudy(StudyStatus):
         """What is asked of all finished cases."""
         outputs = {goal.output for goal in self.plan.shown_goals}
         draws = any(goal.of_draws for goal in self.plan.shown_goals)
-        return scanned(self.records, outputs, draws=draws)
+        return scan_cases(self.records, outputs, draws=draws)
 
     @cached_property
     def _keys_of_runs(self) -> list[Sequence[str]]:
@@ -130,13 +130,13 @@ class LiveStudy(StudyStatus):
         ended = self.ended_runs
         if len(ended) <= MOST_SHOWN:
             return ended
-        chosen = {*thinned(self.front_runs, MOST_FRONT), *ended[-LATEST:]}
+        chosen = {*thin_evenly(self.front_runs, MOST_FRONT), *ended[-LATEST:]}
         for goal, sign in zip(self.plan.goals, self.plan.signs, strict=True):
             values = np.where(self._allowed_runs, sign * self._values_of_runs[goal], np.nan)
             order = np.argsort(values)[: np.count_nonzero(np.isfinite(values))]
             chosen |= {*order[:MOST_ROWS].tolist(), *order[-1:].tolist()}
         others = [k for k in ended if k not in chosen]
-        return sorted({*chosen, *thinned(others, MOST_SHOWN - len(chosen))})
+        return sorted({*chosen, *thin_evenly(others, MOST_SHOWN - len(chosen))})
 
     @cached_property
     def all_designs(self) -> list[Design]:
@@ -214,7 +214,7 @@ class LiveStudy(StudyStatus):
             return self.design_table(self.shown[:MOST_ROWS], "Designs")
         best = self.best(MOST_ROWS) if len(self.plan.goals) == 1 else self.front
         title = "Best designs, as run" if len(self.plan.goals) == 1 else "Front, as run"
-        return self.design_table(thinned(best, MOST_ROWS), title)
+        return self.design_table(thin_evenly(best, MOST_ROWS), title)
 
     def cost_table(self) -> Table:
         """Return what the study took so far, and what is left of it."""
@@ -251,7 +251,7 @@ class LiveStudy(StudyStatus):
         )
 
 
-def thinned(items: Sequence, count: int) -> list:
+def thin_evenly(items: Sequence, count: int) -> list:
     """Return ``count`` of some items, evenly from first to last; all where they are fewer."""
     places = np.linspace(0, len(items) - 1, min(max(count, 0), len(items))).round().astype(int)
     return [items[k] for k in places]

@@ -16,7 +16,7 @@ from underfoot.core.html import new_figure
 from underfoot.questions.comparison import LETTERS
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
-from .quantities import ColourScale, DrawnQuantity, drawn, inside, quantities, scale
+from .quantities import ColourScale, DrawnQuantity, drawn_values, inside, quantities, scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ _REACH = 0.995
 
 def colour_scale(datasets: Sequence[Fields], quantity: DrawnQuantity) -> ColourScale:
     """Return one colour scale for several results, so that they can be compared by eye."""
-    return scale([drawn(dataset, quantity) for dataset in datasets], quantity)
+    return scale([drawn_values(dataset, quantity) for dataset in datasets], quantity)
 
 
 def draw_map(
@@ -50,7 +50,7 @@ def draw_map(
     """
     limits = limits or colour_scale([dataset], quantity)
     x, y = dataset["x"].values * 1e3, dataset["y"].values * 1e3
-    values = drawn(dataset, quantity)
+    values = drawn_values(dataset, quantity)
     draw_field(axes, x, y, values, quantity, limits, bar=bar)
     draw_shape(axes, dataset)
     if sensors and quantity.name == _SENSED:

@@ -15,7 +15,7 @@ import numpy as np
 
 from underfoot.case import text as toml
 from underfoot.core.files import checksum
-from underfoot.core.html import embedded, new_figure
+from underfoot.core.html import data_address, new_figure
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.units import tread_unit, unit_system
@@ -170,7 +170,7 @@ def _area(area: float, metric: tuple[float, str]) -> str:
     return f"{area / factor:.4g} {name.replace('^2', '²')}"
 
 
-def inspected(file: Path, settings: FileSettings) -> OutsoleInspection:
+def inspect_outsole(file: Path, settings: FileSettings) -> OutsoleInspection:
     """Return an outsole file as it is read with ``settings``, with the measures of its tread."""
     from underfoot.shoe.files import outsole_from_file
 
@@ -188,7 +188,7 @@ def _figures(inspection: OutsoleInspection) -> FigureMakers:
 def _sections(
     inspection: OutsoleInspection, pictures: dict[str, bytes]
 ) -> tuple[Sequence[PageSection], str]:
-    drawn = [Picture(name, embedded(data), True) for name, data in pictures.items()]
+    drawn = [Picture(name, data_address(data), True) for name, data in pictures.items()]
     return [
         PageSection("The sole in three dimensions", html=scene_section(outsole_scene(inspection))),
         PageSection("Tread, seen from below", pictures=drawn),
@@ -370,4 +370,4 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
 
 def case_shoe(inspection: OutsoleInspection, out: Path) -> dict[str, Any]:
     """Return the shoe of ``case_text`` as plain data: what a case takes from a file."""
-    return dict(toml.parsed(case_text(inspection, out))["shoe"])
+    return dict(toml.parse_toml(case_text(inspection, out))["shoe"])

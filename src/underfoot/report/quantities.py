@@ -80,15 +80,15 @@ def quantities(datasets: Sequence[Fields]) -> tuple[DrawnQuantity, ...]:
     return tuple(_quantity(name, datasets) for name in common)
 
 
-def drawn(dataset: Fields, quantity: DrawnQuantity) -> NDArray[np.float64]:
+def drawn_values(dataset: Fields, quantity: DrawnQuantity) -> NDArray[np.float64]:
     """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
 
     A stress below 1e-3 of its peak counts as none.
     """
-    return shown(np.where(inside(dataset), raw(dataset, quantity.name), np.nan), quantity)
+    return shown_values(np.where(inside(dataset), raw(dataset, quantity.name), np.nan), quantity)
 
 
-def shown(field: NDArray[np.float64], quantity: DrawnQuantity) -> NDArray[np.float64]:
+def shown_values(field: NDArray[np.float64], quantity: DrawnQuantity) -> NDArray[np.float64]:
     """Return values (SI) in the shown unit, nan where a stress is below 1e-3 of its peak."""
     values = np.where(np.isfinite(field), field, np.nan) / quantity.factor
     if quantity.stress and np.nanmin(values, initial=0.0) >= 0.0:

@@ -14,8 +14,8 @@ from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import drawn_file, drawn_map, sole_shape
 from underfoot.core import UnderfootError, content_hash
-from underfoot.core.fields import Fields, labelled
-from underfoot.core.html import embedded, new_figure
+from underfoot.core.fields import Fields, labelled_fields
+from underfoot.core.html import data_address, new_figure
 from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
@@ -23,7 +23,7 @@ from underfoot.questions.risk import RiskAssessment
 from underfoot.shoe import SoleMap
 
 from .chart import line_chart
-from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
+from .dispatch import FigureMakers, figures, files, plot, sections, write_report, write_shown
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
 from .quantities import quantities
 from .surface_mesh import SurfaceMesh, surface_mesh
@@ -70,7 +70,7 @@ def _result_sections(
     parts += table_sections(result)
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
-        Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))
+        Picture(f"Map of {titles[name].lower()} on the sole", data_address(data))
         for name, data in pictures.items()
         if name in titles
     ]
@@ -114,7 +114,7 @@ def _write_result(
 
     data = files(result) | ({} if advice is None else data_writers(advice))
     drawn = None if maps else {}
-    return written(result, folder, data, text, makers=drawn, overwrite=overwrite)
+    return write_shown(result, folder, data, text, makers=drawn, overwrite=overwrite)
 
 
 @figures.register(Comparison)
@@ -142,7 +142,9 @@ def _comparison_sections(
             *ranking[1:],
             PageSection("Maps and differences", scale),
             *(
-                PageSection(titles[name], pictures=[Picture(titles[name], embedded(data), True)])
+                PageSection(
+                    titles[name], pictures=[Picture(titles[name], data_address(data), True)]
+                )
                 for name, data in pictures.items()
             ),
         ]
@@ -201,7 +203,7 @@ def sole_fields(case: Case, spacing: float | None = None) -> Fields:
 def map_fields(sole: SoleMap) -> Fields:
     """Return the height of a sole above the floor with its rim and its land."""
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
-    return labelled(
+    return labelled_fields(
         {
             "clearance": (("x", "y"), sole.clearance, labels),
             "inside": (("x", "y"), sole.inside),

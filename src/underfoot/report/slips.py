@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core.html import embedded, environment, new_figure
+from underfoot.core.html import data_address, environment, new_figure
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.questions.slips import SlipPopulation, shown_motion
 from underfoot.slip.dynamics import array_pressures
@@ -44,7 +44,7 @@ def _sections(
         .render(data=data, wet=shown.wet, walker=walker)
     )
     drawn = [
-        Picture("Heel path, pressures, speed and forces of one slip", embedded(p), True)
+        Picture("Heel path, pressures, speed and forces of one slip", data_address(p), True)
         for p in pictures.values()
     ]
     parts = [

@@ -20,7 +20,7 @@ from underfoot.core.presentation import quantity_text
 from .designed_sole import DesignedSole
 from .drawn_sole import DrawnSole, drawn_sole
 from .light_mesh import light_mesh, spacing_for
-from .quantities import AREAS, DrawnQuantity, quantities, raw, scale, shown
+from .quantities import AREAS, DrawnQuantity, quantities, raw, scale, shown_values
 from .results import designed_surface
 from .sole_mesh import UndersideMesh, sole_mesh
 from .surface_mesh import DRAWN, TOLERANCE, SurfaceMesh, surface_mesh
@@ -82,7 +82,7 @@ class _Scene:
     @cached_property
     def picture(self) -> NDArray[np.uint8]:
         """Colour (RGBA) of every cell, as the page shows the quantity."""
-        return _colours(shown(self.values[self.quantity.name], self.quantity), self.quantity)
+        return _colours(shown_values(self.values[self.quantity.name], self.quantity), self.quantity)
 
     @property
     def colours(self) -> NDArray[np.uint8]:

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from underfoot.core.html import embedded, environment
+from underfoot.core.html import data_address, environment
 
-from .study_figures import drawn
+from .study_figures import draw_figure
 
 if TYPE_CHECKING:
     from underfoot.studies.runner import PublishedStudyResult
@@ -44,7 +44,7 @@ def write_study(result: PublishedStudyResult, folder: Path) -> list[str]:
     _write_csv(folder / "errata.csv", ("where", "printed", "used", "why"), result.study.errata)
     columns = ("panel", "series", "x", "y", "low", "high")
     for name, figure in result.computed.figures.items():
-        drawn(figure).savefig(folder / f"{name}.png", dpi=130)
+        draw_figure(figure).savefig(folder / f"{name}.png", dpi=130)
         _write_csv(folder / f"{name}.csv", columns, figure.rows())
     return sorted(result.computed.figures)
 
@@ -74,7 +74,7 @@ def studies_page(
             ],
             "remarks": result.remarks(),
             "images": [
-                (name, embedded(data), remarks.get((study, name), ""), _broad(data))
+                (name, data_address(data), remarks.get((study, name), ""), _broad(data))
                 for (study, name), data in images.items()
                 if study == result.study.name
             ],

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core.html import embedded
+from underfoot.core.html import data_address
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.questions.wear import WearSeries
 
@@ -38,7 +38,7 @@ def _wear_sections(
     series: WearSeries, pictures: dict[str, bytes]
 ) -> tuple[Sequence[PageSection], str]:
     drawn = [
-        PageSection("Over the wear", pictures=[Picture(name, embedded(data), True)])
+        PageSection("Over the wear", pictures=[Picture(name, data_address(data), True)])
         for name, data in pictures.items()
     ]
     parts = [*drawn, *table_sections(series), *remark_sections(series)]

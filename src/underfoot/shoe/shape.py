@@ -113,7 +113,7 @@ class WearOnSole(Protocol):
         ...
 
 
-def fitted(wear: SoleWear | WearOnSole, shape: "SoleShape") -> SoleWear:
+def fit_wear(wear: SoleWear | WearOnSole, shape: "SoleShape") -> SoleWear:
     """Return the wear as it is on a sole.
 
     Raises:
@@ -175,7 +175,7 @@ class SoleShape(ABC):
     def worn(self, wear: SoleWear | WearOnSole | None) -> Self:
         """Return the sole with other wear."""
         new = replace(cast("Any", self), wear=None)
-        return new if wear is None else replace(new, wear=fitted(wear, new))
+        return new if wear is None else replace(new, wear=fit_wear(wear, new))
 
     def centre_line(self) -> tuple[Array, Array]:
         """Return x and the unworn height (m) along y = 0."""

@@ -6,7 +6,7 @@ from .figure import Figure, Layer, Panel
 from .runner import Computed, Options, PublishedStudyResult, StudyTable, run_all, run_study
 from .statements import Claim, PublishedStudy, Statement, StatementKind, read_study, studies, study
 from .summary import headline, read_results, summary_markdown, write_summary
-from .verdict import ComputedQuantity, Judgement, Verdict, counts, judge, judged
+from .verdict import ComputedQuantity, Judgement, Verdict, counts, judge, judge_study
 
 __all__ = [
     "Claim",
@@ -26,7 +26,7 @@ __all__ = [
     "counts",
     "headline",
     "judge",
-    "judged",
+    "judge_study",
     "read_results",
     "read_study",
     "run_all",
@@ -40,6 +40,7 @@ __all__ = [
 __getattr__ = package_names(
     __name__,
     gone="0.4",
+    judged="judge_study",
     Kind="StatementKind",
     Quantity="ComputedQuantity",
     Study="PublishedStudy",

@@ -19,11 +19,11 @@ from underfoot.friction import viscous_decay
 from underfoot.questions.outcomes import outcomes
 from underfoot.questions.sensitivity import OPEN_INPUTS
 from underfoot.questions.slips import BANDS
-from underfoot.slip.dynamics import ReducedSole, SlipStudy, judged
+from underfoot.slip.dynamics import ReducedSole, SlipStudy, judge_slip
 
 from . import identifiability
 from .figure import OURS, PRINTED, Figure, Layer, Panel, level, line
-from .g4 import LOAD, PEAK, ShoeInFluid, printed
+from .g4 import LOAD, PEAK, ShoeInFluid, printed_value
 from .g5 import slip_case
 from .g6 import precision_of_published
 from .identifiability import Fixed, MisfitProfile, chi_square, model_error, profile
@@ -118,7 +118,10 @@ def compute(options: Options) -> Computed:
     at_contact = np.quantile(tread.by_friction.cof, [0.5, 0.025, 0.975]).tolist()
     # N and Pa of both untreaded shoes in glycerol
     data = np.array(
-        [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
+        [
+            [printed_value("fluid_load", k, "N"), printed_value("peak_pressure", k, "Pa")]
+            for k in KINDS
+        ]
     )
     misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data[0], READING * data[0])
     by_angle = profile("facet angle", "deg", facets, misfit, data=2)
@@ -230,7 +233,9 @@ def _published(name: str) -> tuple[float, float]:
 def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
     """Return the mean peak slipping speed (m/s) if the contact had one COF."""
     changed = replace(sole, cofs=np.full(sole.cofs.size, cof))
-    peaks = [judged(changed.motion(subject.walker)).peak_speed.value for subject in study.subjects]
+    peaks = [
+        judge_slip(changed.motion(subject.walker)).peak_speed.value for subject in study.subjects
+    ]
     return float(np.mean([0.0 if v is None else v for v in peaks]))
 
 

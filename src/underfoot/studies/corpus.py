@@ -34,15 +34,15 @@ from .pair_law import (
     LaboratoryScore,
     PairPosterior,
     corpus_score,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     middle,
     r2,
-    scored,
+    score_predictions,
 )
 from .runner import Computed, Options, StudyTable, cached_arrays, part
-from .slips import POINTS, predicted, published
+from .slips import POINTS, predict_shares, published_shares
 from .sources import PublishedCondition, PublishedReading, corpus
 from .verdict import ComputedQuantity
 
@@ -127,7 +127,7 @@ def compute(options: Options) -> Computed:
         fits("leaving one laboratory out", number / len(splits))
         own = tuple(c for c in conditions if c.laboratory == split.laboratory)
         results[split.law, split.laboratory] = LaboratoryScore(
-            split.laboratory, own, score=scored(arrays["draws"], own), **arrays
+            split.laboratory, own, score=score_predictions(arrays["draws"], own), **arrays
         )
 
     def score(name: str, left: Sequence[str]) -> CorpusScore:
@@ -135,7 +135,7 @@ def compute(options: Options) -> Computed:
 
     others = [one for one in laboratories if one != REPORT]
     scores = {name: (score(name, others), score(name, laboratories)) for name in names}
-    posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
+    posterior = fit_law(law_named(LAW), conditions, steps=steps, seed=options.seed)
     own = [results[LAW, one] for one in laboratories]
     (best, whole_best) = scores[LAW]
     rivals = [pair[0] for name, pair in scores.items() if name not in OWN_FORMS]
@@ -339,7 +339,7 @@ def _slips(options: Options) -> tuple[StudyTable, dict[str, ComputedQuantity]]:
     ((_, arrays),) = cached_arrays(
         CASES, whole_cof, [case], [_key(case)], processes=options.processes
     )
-    rows = predicted(published(arrays["draws"][::4]))
+    rows = predict_shares(published_shares(arrays["draws"][::4]))
     title = "Shares of steps that slipped: report's curve, and what the other sources say"
     worst: dict[str, float] = {}
     for row in rows:

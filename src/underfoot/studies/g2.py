@@ -17,7 +17,7 @@ from underfoot.friction import (
     BoundaryFriction,
     Pair,
     Propagated,
-    propagated,
+    propagate_spread,
     stribeck_cof,
     viscous_decay,
 )
@@ -48,7 +48,7 @@ from .mechanisms import (
     MechanismComparison,
     calibrated_mechanism,
     compare_mechanisms,
-    predicted,
+    predict_cof,
 )
 from .runner import Computed, Options, StudyTable
 from .verdict import ComputedQuantity
@@ -310,11 +310,13 @@ def intervals(
             own = values.get(name)
             point = replace(point, cof_boundary=own)
             found.append(
-                predicted(test.mechanism, fit, point, comparison.pin, own_boundary=own is not None)
+                predict_cof(
+                    test.mechanism, fit, point, comparison.pin, own_boundary=own is not None
+                )
             )
         return np.array(found)
 
-    return propagated(
+    return propagate_spread(
         all_fluids, inputs, model_deviation=test.deviation, samples=samples, seed=seed, shares=False
     )
 
@@ -340,7 +342,7 @@ def master_curve(
     fit = calibrated_mechanism(chosen, tuple(chosen_points), pin)
     product = np.geomspace(0.52e-3 * 0.03, 74.6e-3 * 1.2, 200)
     one = CofPoints("", 1.0, product, product, "fit", pin.sole_rq, None)
-    curve = predicted(chosen, fit.values, one, pin, own_boundary=False)
+    curve = predict_cof(chosen, fit.values, one, pin, own_boundary=False)
     place = np.concatenate([p.viscosity * p.speed for p in chosen_points])
     cof = np.concatenate([p.cof for p in chosen_points])
     order = np.argsort(place)

@@ -33,7 +33,7 @@ from .figure import (
     points,
 )
 from .runner import Computed, Options, StudyTable, part
-from .sampled import sampled
+from .sampled import sample_inputs
 from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g4.toml")
@@ -231,7 +231,7 @@ def _draws(name: str, outcome: CaseOutcome, varied: Sensitivity) -> Array:
         ends = [end for effect in varied.effects for end in (effect.low, effect.high)]
         highest = [one.number("peak_fluid_pressure") for one in (outcome, varied.nominal, *ends)]
         most = max(value * (1.0 + 1e-6), float(np.nanmax(highest)))
-    return sampled(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
+    return sample_inputs(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
 
 
 def inputs_of(condition: ShoeInFluid, *, quick: bool = False) -> list[OpenInput]:
@@ -502,7 +502,7 @@ def depth_table(depths: Sequence[tuple[float, CaseOutcome]]) -> StudyTable:
     )
 
 
-def printed(name: str, kind: str, unit: str) -> float:
+def printed_value(name: str, kind: str, unit: str) -> float:
     """Return what the report prints for an untreaded shoe in glycerol."""
     published = Catalogue.load().entry("published", "slip_tester_g4")
     return published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit).value or 0.0
@@ -513,7 +513,10 @@ def map_figure(readings: Sequence[GridReading]) -> Figure:
     panels = []
     for shown in readings:
         kind = shown.condition.kind
-        load, peak = printed("fluid_load", kind, "N"), printed("peak_pressure", kind, "Pa")
+        load, peak = (
+            printed_value("fluid_load", kind, "N"),
+            printed_value("peak_pressure", kind, "Pa"),
+        )
         x, y = shown.place
         layers = (
             Layer("map", 1e3 * shown.y, 1e3 * shown.x, shown.pressure.T / 1e3),
@@ -558,7 +561,7 @@ def load_figure(readings: Sequence[GridReading]) -> Figure:
             loads = [one.number(LOAD) for one in some]
             style: dict[str, Any] = {"label": fluid, "colour": colour, "width": 0.36}
             layers.append(Layer("bars", places, loads, low=low, high=high, **style))
-        load = printed("fluid_load", kind, "N")
+        load = printed_value("fluid_load", kind, "N")
         layers.append(points(-0.2, load, "report", colour=PRINTED, marker="D"))
         layers.append(level(SMALL, "report: all others below", colour=PRINTED, style="--"))
         panels.append(

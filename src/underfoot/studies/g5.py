@@ -26,7 +26,7 @@ from underfoot.trials.statistics.linear import all_subsets
 from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from .g4 import ROUGHNESS_BEYOND_CUTOFF
 from .g6 import PRINTED_ACOF, SOLES, sole_case
-from .runner import Computed, Options, StudyTable, cached_arrays, named, part
+from .runner import Computed, Options, StudyTable, cached_arrays, name_progress, part
 from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g5.toml")
@@ -94,7 +94,9 @@ def compute(options: Options) -> Computed:
         share = (0.8 + 0.04 * number, 0.8 + 0.04 * (number + 1))
         if options.processes == 1:
             share = (number / len(cases), (number + 1) / len(cases))
-        found[key] = slips(case, progress=named(part(options.progress, *share), ", ".join(key)))
+        found[key] = slips(
+            case, progress=name_progress(part(options.progress, *share), ", ".join(key))
+        )
     fine = {shoe: found[shoe, grids[-1]] for shoe in COUNTS}
     levels = {
         shoe: [(1e-3 * float(grid.split()[0]), numbers_of(found[shoe, grid])) for grid in grids]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.calibrate.least_squares import Calibration, Parameter, calibrated
+from underfoot.calibrate.least_squares import Calibration, Parameter, calibrate_model
 from underfoot.calibrate.stribeck_points import (
     CofPoints,
     Pin,
@@ -175,11 +175,11 @@ def calibrated_mechanism(
 
     def model(values: Mapping[str, float]) -> NDArray[np.float64]:
         return np.concatenate(
-            [predicted(chosen, values, point, pin, own_boundary=own_boundary) for point in points]
+            [predict_cof(chosen, values, point, pin, own_boundary=own_boundary) for point in points]
         )
 
     fluids = ", ".join(dict.fromkeys(point.label for point in points))
-    return calibrated(
+    return calibrate_model(
         model,
         np.concatenate([point.cof for point in points]),
         unknown,
@@ -187,7 +187,7 @@ def calibrated_mechanism(
     )
 
 
-def predicted(
+def predict_cof(
     chosen: Mechanism,
     values: Mapping[str, float],
     points: CofPoints,
@@ -270,7 +270,7 @@ def blind_test(
         fit,
         tuple(
             FluidPrediction(
-                other, predicted(chosen, fit.values, other, pin, own_boundary=own_boundary)
+                other, predict_cof(chosen, fit.values, other, pin, own_boundary=own_boundary)
             )
             for other in others
         ),
@@ -290,7 +290,7 @@ def leave_one_out(
         fit = calibrated_mechanism(chosen, rest, pin)
         found.append(
             FluidPrediction(
-                left_out, predicted(chosen, fit.values, left_out, pin, own_boundary=False)
+                left_out, predict_cof(chosen, fit.values, left_out, pin, own_boundary=False)
             )
         )
     return tuple(found)

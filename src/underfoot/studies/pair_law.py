@@ -385,7 +385,7 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
     return total
 
 
-def fitted(
+def fit_law(
     law: PairLaw,
     conditions: Sequence[PublishedCondition],
     *,
@@ -585,7 +585,7 @@ class DrawScore:
     width: Array
 
 
-def scored(draws: Array, conditions: Sequence[PublishedCondition]) -> DrawScore:
+def score_predictions(draws: Array, conditions: Sequence[PublishedCondition]) -> DrawScore:
     """Return the score of predictions; a bound counts by the probability beyond it.
 
     ``width`` is that of the 95 % interval of ln COF.
@@ -652,12 +652,14 @@ def laboratory_left_out(
     if isinstance(law, str):
         draws, expected = _regression(law, training, left_out, seed)
     else:
-        posterior = fitted(law, training, steps=steps, seed=seed, left=laboratory)
+        posterior = fit_law(law, training, steps=steps, seed=seed, left=laboratory)
         latent, noise = posterior.predicted(left_out, seed)
         generator = np.random.default_rng(seed)
         draws = latent + noise * generator.normal(size=latent.shape)
         expected, after = posterior.expected(left_out), one_reading(left_out, latent, noise)
-    return LaboratoryScore(laboratory, left_out, draws, expected, after, scored(draws, left_out))
+    return LaboratoryScore(
+        laboratory, left_out, draws, expected, after, score_predictions(draws, left_out)
+    )
 
 
 def _regression(
@@ -786,7 +788,7 @@ def r2(measured: Array, predicted: Array, weight: Array) -> float:
 def write_draws(path: Path, *, seed: int = 0) -> None:
     """Write draws of the law "pair" fitted to every reading, as a case takes them."""
     conditions = [c for source in corpus() if source.verified for c in source.conditions]
-    fitted(law_named("pair"), conditions, steps=3000, seed=seed).draws(1000, seed).write(path)
+    fit_law(law_named("pair"), conditions, steps=3000, seed=seed).draws(1000, seed).write(path)
 
 
 if __name__ == "__main__":

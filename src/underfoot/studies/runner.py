@@ -20,7 +20,7 @@ from underfoot.core.progress import part as part
 
 from .figure import Figure
 from .statements import PublishedStudy, studies, study, study_module
-from .verdict import ComputedQuantity, Judgement, Verdict, counts, judged, tables_by_kind
+from .verdict import ComputedQuantity, Judgement, Verdict, counts, judge_study, tables_by_kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ class PublishedStudyResult(Presentable):
     @property
     def judgements(self) -> list[Judgement]:
         """Every statement with its verdict; empty where the study failed."""
-        return [] if self.error else judged(self.study.statements, self.computed.quantities)
+        return [] if self.error else judge_study(self.study.statements, self.computed.quantities)
 
     def __repr__(self) -> str:
         return f"PublishedStudyResult({self.study.name}: {len(self.study.statements)} statements)"
@@ -211,7 +211,7 @@ def run_all(
     options, names = options or Options(), studies() if names is None else names
     for number, name in enumerate(names):
         share = part(options.progress, number / len(names), (number + 1) / len(names))
-        stage = named(share, name)
+        stage = name_progress(share, name)
         stage("begins", 0.0)
         try:
             yield run_study(study(name), replace(options, settings=None, progress=stage))
@@ -222,7 +222,7 @@ def run_all(
             yield PublishedStudyResult(study(name), Computed({}), options.quick, 0.0, 0.0, text)
 
 
-def named(progress: Progress, name: str) -> Progress:
+def name_progress(progress: Progress, name: str) -> Progress:
     """Return a receiver of progress that puts a name before every stage."""
 
     def report(stage: str, fraction: float, residual: float | None = None) -> None:

@@ -46,7 +46,7 @@ class SlipShare:
     own_scale: bool = False
 
 
-def published(computed: Array) -> tuple[SlipShare, ...]:
+def published_shares(computed: Array) -> tuple[SlipShare, ...]:
     """Return the four sources; ``computed`` are draws of ACOF of the shoe of G.5."""
     spread = np.linspace(0.0, 1.0, 9)
     return (
@@ -86,7 +86,7 @@ def share(slips: SlipShare, slope: Array, half: Array, u: Array) -> Array:
     return np.broadcast_to(np.array(shares), (slope.size, u.size))
 
 
-def predicted(sources: Sequence[SlipShare]) -> list[dict[str, Any]]:
+def predict_shares(sources: Sequence[SlipShare]) -> list[dict[str, Any]]:
     """Return each share as predicted from the other publications, with the report's own curve."""
     slope, half, prior = _grid()
     z = np.linspace(-2.5, 2.5, 15)

@@ -19,7 +19,7 @@ from typing import Any
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.files import read_toml
-from underfoot.core.registry import offered, offers
+from underfoot.core.registry import find_offer, offers
 
 Z95 = 1.959963984540054
 OURS = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
@@ -176,7 +176,7 @@ def study_module(name: str) -> Any:
     """
     if name in OURS:
         return import_module(f".{name}", __package__)
-    if (module := offered("studies", name)) is None:
+    if (module := find_offer("studies", name)) is None:
         raise unknown_name("study", name, studies())
     return module
 

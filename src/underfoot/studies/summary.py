@@ -84,16 +84,16 @@ def summary_markdown(results: Sequence[PublishedStudyResult]) -> str:
                 )
                 cells = (f"{s.text} ({s.place})", s.printed, s.tolerance_reason, *ours)
                 table.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
-            text += folded(f"Statements: {len(some)}", table)
+            text += folded_lines(f"Statements: {len(some)}", table)
         remarks = result.remarks()
         for key, title in (("Not taken as printed",) * 2, ("Assumptions", "Assumed")):
             if remarks[key]:
                 label = f"{title} ({len(remarks[key])})"
-                text += folded(label, (f"- {entry}" for entry in remarks[key]))
+                text += folded_lines(label, (f"- {entry}" for entry in remarks[key]))
     return "\n".join(text).rstrip() + "\n"
 
 
-def folded(label: str, lines: Iterable[str]) -> list[str]:
+def folded_lines(label: str, lines: Iterable[str]) -> list[str]:
     """Return lines of Markdown that a page hides until their label is opened."""
     return ["<details>", f"<summary>{label}</summary>", "", *lines, "", "</details>", ""]
 

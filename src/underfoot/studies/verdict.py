@@ -322,7 +322,7 @@ def _judged_order(statement: Statement, quantity: ComputedQuantity) -> Judgement
     return _judgement(statement, verdict, "", chance=chance, ours=ours)
 
 
-def judged(
+def judge_study(
     statements: Iterable[Statement], quantities: Mapping[str, ComputedQuantity]
 ) -> list[Judgement]:
     """Return the verdicts of a study."""

@@ -51,11 +51,11 @@ from .recording.trial import (
     PlateAccuracy,
     Trial,
     file_checksum,
-    joined,
+    join_trials,
 )
 from .walking.belts import Belt
 from .walking.body_weight import body_mass, body_weight
-from .walking.describe import Description, described, described_file
+from .walking.describe import Description, describe_trial, described_file
 from .walking.events import EditError, Stance, stances
 from .walking.gait import (
     DEFINITIONS,
@@ -134,7 +134,7 @@ __all__ = [
     "body_weight",
     "contact_from_heel",
     "contacts",
-    "described",
+    "describe_trial",
     "described_file",
     "file_checksum",
     "finished_plate",
@@ -143,7 +143,7 @@ __all__ = [
     "heel_candidates",
     "heel_motion",
     "heel_track",
-    "joined",
+    "join_trials",
     "low_passed",
     "mean_friction",
     "mean_of",
@@ -169,4 +169,6 @@ __all__ = [
     "walkway_of",
 ]  # fmt: skip
 
-__getattr__ = package_names(__name__, gone="0.4", Profile="TrialsProfile")
+__getattr__ = package_names(
+    __name__, gone="0.4", described="describe_trial", joined="join_trials", Profile="TrialsProfile"
+)

@@ -16,14 +16,14 @@ from underfoot.core.presentation import is_wide, percent, probability_text
 
 from ..components import (
     SoleView,
-    folded,
+    folded_section,
     interruption,
+    package_label,
     scale,
     sentences,
     table,
     task_line,
     title,
-    told,
 )
 from ..inputs import Input, sliders
 from ..jobs import DONE, QueuedTask
@@ -55,7 +55,7 @@ def build(session: Session) -> None:
     name = session.variant
     if name is None:
         no_variant(session, ROUTE, example)
-    elif (case := repair.opened(session, ROUTE, name)) is not None:
+    elif (case := repair.open_variant(session, ROUTE, name)) is not None:
         _Answer(session, name, case).show()
 
 
@@ -212,11 +212,11 @@ class _Answer:
             if not (self.folder / "report.html").exists():
                 cautions.insert(0, self.text("answer.no_report"))
             for caution in cautions:
-                told(caution).classes("caution")
+                package_label(caution).classes("caution")
         with self.reasons, ui.element("div").classes("answer-card"):
             self.beside = ui.element("div")
             self._beside(answer)
-            told(answer["limit"]).classes("soft")
+            package_label(answer["limit"]).classes("soft")
 
     def _under(self) -> dict[str, str]:
         """Return floor and contaminant of what was computed, which no name of a variant tells."""
@@ -255,15 +255,15 @@ class _Answer:
                 ui.link(self.text("answer.how_sure"), pair)
 
     def _tables(self, answer: dict[str, Any], current: bool) -> None:
-        with folded(self.text("answer.in_words")):
+        with folded_section(self.text("answer.in_words")):
             sentences(answer["headline"])
         cut = (self.text("answer.cut"), self._cut) if current and self.case.shoe.tread else None
         for shown in answer["tables"]:
-            with folded(shown["title"]):
+            with folded_section(shown["title"]):
                 untitled = {**shown, "title": ""}
                 table(untitled, cut, answer["advised"] if shown["shows"] == "lug" else ())
         for heading, lines in answer["remarks"].items():
-            with folded(heading):
+            with folded_section(heading):
                 sentences(lines, "soft")
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")

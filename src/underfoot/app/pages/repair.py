@@ -42,7 +42,7 @@ class FileReference:
 def references(project: Project, name: str) -> list[FileReference]:
     """Return the files of the project that a variant names, whether it can be read or not."""
     try:
-        return list(_references(toml.parsed(project.text(name))))
+        return list(_references(toml.parse_toml(project.text(name))))
     except UnderfootError:
         return []
 
@@ -55,7 +55,7 @@ def _references(table: Mapping[str, Any]) -> Iterator[FileReference]:
             yield FileReference(value, table.get("sha256") if key == "file" else None)
 
 
-def replaced(project: Project, name: str, reference: FileReference, path: Path) -> None:
+def replace_file(project: Project, name: str, reference: FileReference, path: Path) -> None:
     """Let a variant name another file: in its text, since it can't be read as a case."""
     text = project.text(name)
     new = f"../{path.relative_to(project.folder).as_posix()}"
@@ -66,7 +66,7 @@ def replaced(project: Project, name: str, reference: FileReference, path: Path) 
     project.write(name, text)
 
 
-def opened(session: Session, route: str, name: str) -> Case | None:
+def open_variant(session: Session, route: str, name: str) -> Case | None:
     """Return the case of a variant; where it can't be read, show the bar and what would mend it."""
     try:
         return session.project.case(name)
@@ -104,7 +104,7 @@ def _choices(
     same = [each for each in beside if reference.sha256 and checksum(each) == reference.sha256]
 
     def take(file: Path) -> None:
-        replaced(project, name, reference, file)
+        replace_file(project, name, reference, file)
         mended()
 
     async def arrived(paths: list[str]) -> None:

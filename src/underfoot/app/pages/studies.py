@@ -524,7 +524,7 @@ def _value(
     """
     read = read or (lambda key, reader: reader(fields[key]))
     if fields.get("values", "").strip():
-        each = partial(typed, path=path, comma=comma, names=True)
+        each = partial(typed_value, path=path, comma=comma, names=True)
         return read(
             "values", lambda text: [each(part) for part in SEPARATOR.split(text.strip()) if part]
         )
@@ -533,7 +533,7 @@ def _value(
         return None
     keys = KINDS[fields["kind"]] if section == "uncertain" else ends
     value = {
-        key: read(end, partial(typed, path="" if key == "factor" else path, comma=comma))
+        key: read(end, partial(typed_value, path="" if key == "factor" else path, comma=comma))
         for key, end in zip(keys, ends, strict=True)
     }
     if fields.get("steps", "").strip():
@@ -541,7 +541,7 @@ def _value(
     return value
 
 
-def typed(text: str, path: str, *, comma: bool, names: bool = False) -> Any:
+def typed_value(text: str, path: str, *, comma: bool, names: bool = False) -> Any:
     """Return what was typed of a value at a path as a study file writes it: a number, a quantity.
 
     Parameters:

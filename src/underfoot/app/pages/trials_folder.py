@@ -12,9 +12,9 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 
-from ..components import sentences, table, task_line, title, told
+from ..components import package_label, sentences, table, task_line, title
 from ..jobs import QueuedTask
 from ..session import Session
 from ..trials_study import TrialsFolder
@@ -162,7 +162,7 @@ class FolderView:
             words = [self.text("trials.edited", count=card["edits"])] if card["edits"] else []
             if card["verdict"] != "accepted":
                 words += card["reasons"][:1]
-            told(joined(words)).classes("reason")
+            package_label(join_lines(words)).classes("reason")
 
     async def report(self) -> None:
         """Write the report and show the way to it."""

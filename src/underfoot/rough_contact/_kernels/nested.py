@@ -69,7 +69,7 @@ def solve_nested(
             pressure = xp.clip(guess, 0.0, None)
             del guess
         else:
-            pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
+            pressure = repeat_cells(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
         guessed = operators.count - began
         states = solved_contacts(
             operators, heights, pressure, mean_pressure, workspace, search if last else coarse
@@ -102,7 +102,7 @@ def low_pass(
     return field / (factor[0] * factor[1])
 
 
-def repeated(field: AnyArray, factor: tuple[int, int], xp: Any) -> AnyArray:
+def repeat_cells(field: AnyArray, factor: tuple[int, int], xp: Any) -> AnyArray:
     """Return the field on the finer grid, constant over each coarse cell."""
     for axis in (-2, -1):
         if factor[axis] > 1:

@@ -125,7 +125,7 @@ class Mesh:
     unmet: tuple[Unmet, ...] = ()
 
 
-def assembled(file: MeshFile, where: str) -> Mesh:
+def assemble_mesh(file: MeshFile, where: str) -> Mesh:
     """Return the triangles of what is visible and model in a file, placed.
 
     Raises:

@@ -604,7 +604,7 @@ def _low_points(height: Array, spacing: float) -> Array:
     return np.asarray(np.column_stack([*places, low]), dtype=np.float64)
 
 
-def levelled(axes: Array, plane: tuple[float, float, float]) -> tuple[Array, float]:
+def level_axes(axes: Array, plane: tuple[float, float, float]) -> tuple[Array, float]:
     """Return the axes turned so that the plane is level, and the angle of the turn, rad."""
     slope_x, slope_y, _ = plane
     up = np.array([-slope_x, -slope_y, 1.0])

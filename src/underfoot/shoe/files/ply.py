@@ -9,7 +9,7 @@ from underfoot.core import DataError
 
 from .gltf import strip_faces
 from .mesh import AGAIN, FileBody, MeshFile
-from .polygons import triangulated
+from .polygons import triangulate_polygons
 from .text_meshes import _without_faces
 
 _TYPES = {
@@ -76,7 +76,7 @@ def read_ply(path: Path) -> MeshFile:
             continue
         counts = own["\0counts"]
         if not strips:
-            faces.append(triangulated(doubles, counts, corners, "PLY", where))
+            faces.append(triangulate_polygons(doubles, counts, corners, "PLY", where))
             continue
         for strip in np.split(corners, np.cumsum(counts)[:-1]):
             for piece in np.split(strip, np.flatnonzero(strip < 0)):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -377,7 +377,7 @@ def sheets(files: Sequence[FileResult]) -> Iterator[TileSheet]:
         empty = [
             (
                 result.file,
-                Tile(result.file, result.verdict, *_NO_CURVE, reason=joined(result.reasons)),
+                Tile(result.file, result.verdict, *_NO_CURVE, reason=join_lines(result.reasons)),
             )
             for result in files
             if not result.curves

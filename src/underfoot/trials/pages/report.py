@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Any
 
 from underfoot.core import Progress, silent
 from underfoot.core.files import check_writable_folder
-from underfoot.core.html import embedded, environment, png
+from underfoot.core.html import data_address, environment, png
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
@@ -135,7 +135,7 @@ def trials_page(
     for figure, picture in pictures:
         width = f"{5.3 * figure.figure.get_figwidth():.1f}"
         chapters[figure.chapter].append(
-            {"caption": figure.caption, "source": embedded(picture), "width": width}
+            {"caption": figure.caption, "source": data_address(picture), "width": width}
         )
     tables = {table.name: table for table in all_tables}
     return environment(__package__ or "").get_template("trials.html").render(
@@ -299,7 +299,7 @@ def page_table(table: TrialTable, *, limit: int = _LONG) -> dict[str, Any]:
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
         "rows": [[_shown(row[i], table.heads[i]) for i in filled] for row in rows],
-        "below": [joined(row[i] for i in below if row[i]) for row in rows],
+        "below": [join_lines(row[i] for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
             for i in filled

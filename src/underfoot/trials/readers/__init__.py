@@ -5,7 +5,7 @@ from pathlib import Path
 
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.deprecation import package_names
-from underfoot.core.registry import offered
+from underfoot.core.registry import find_offer
 
 from ..recording.trial import Trial, file_checksum
 from .draft import RecordingDraft
@@ -67,7 +67,7 @@ def read_trials(
         profile = read_profile(Path(profile))
     ending = path.suffix.casefold()
     data, file = _content(path, in_parts=ending in C3D.suffixes)
-    reader = None if ending in trial_suffixes() else offered("trial_readers", ending[1:])
+    reader = None if ending in trial_suffixes() else find_offer("trial_readers", ending[1:])
     if reader is None:
         kind = file_format(data, path)
         reader = (TABLE if kind.name == "BioWare" and profile.plates else kind).function

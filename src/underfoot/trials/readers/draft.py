@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
-from underfoot.core.missing import coded
-from underfoot.core.text import decoded
+from underfoot.core.missing import mask_of_codes
+from underfoot.core.text import decode_text
 
 from ..recording.axes import found_vertical
 from ..recording.marker_names import heel_candidates, toe_candidates
@@ -24,7 +24,7 @@ from .text import (
     rate_of,
     si_unit,
     table,
-    truncated,
+    truncation_error,
     unique_names,
     without_restarts,
 )
@@ -76,7 +76,7 @@ class RecordingDraft:
 
     def lines(self) -> list[str]:
         """Return the lines of a text file."""
-        return lines_of(decoded(self.data, self.name))
+        return lines_of(decode_text(self.data, self.name))
 
     def error(self, what: str, **more: str | None) -> DataError:
         """Return the error that names this file."""
@@ -121,7 +121,9 @@ class RecordingDraft:
         said = f"{key} is {written}" if key else f"{written} samples are announced"
         less = counted < int(written)
         if less and not rows:
-            raise truncated(f"truncated or damaged: {said}, the file holds {counted}", self.name)
+            raise truncation_error(
+                f"truncated or damaged: {said}, the file holds {counted}", self.name
+            )
         more = ": was the file cut short?" if less else ""
         self.notes.append(f"{said}, the file holds {counted}: all of them are read{more}")
 
@@ -144,7 +146,7 @@ class RecordingDraft:
             # What was read of a long file is not held twice.
             values = np.multiply(values, scale * factor, out=values if self.file else None)
             values += offset
-        if si == "N" and (lost := coded(values, least=1.0)).any():
+        if si == "N" and (lost := mask_of_codes(values, least=1.0)).any():
             values = np.where(lost, np.nan, values)
             self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)

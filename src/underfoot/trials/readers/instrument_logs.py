@@ -8,7 +8,7 @@ from underfoot.core import DataError
 
 from ..recording.trial import Trial
 from .draft import RecordingDraft
-from .text import is_number, name_and_unit, si_unit, split, truncated
+from .text import is_number, name_and_unit, si_unit, split, truncation_error
 
 _TEXT_COLUMNS = ("image file name", "comments")
 # Speeds are written without a unit; the rolling speed beside them is in mm/s.
@@ -39,7 +39,7 @@ def _all_steps(draft: RecordingDraft, starts: list[int], announced: str) -> None
         raise draft.error("truncated: there is no step")
     if announced.isdigit() and int(announced) > len(starts):
         words = f"truncated: {announced} steps announced, {len(starts)} found"
-        raise truncated(words, draft.name)
+        raise truncation_error(words, draft.name)
 
 
 def _cetr_step(lines: list[str], start: int, stop: int, step: RecordingDraft) -> Trial:

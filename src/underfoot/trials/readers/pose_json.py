@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from ..recording.trial import Event, Trial
 from .draft import RecordingDraft
@@ -30,7 +30,7 @@ def read_pose_json(draft: RecordingDraft) -> Trial:
     ``pose_keypoints_3d``. Points in pixels are refused: without a length there is no speed.
     """
     try:
-        content: Any = json.loads(decoded(draft.data, draft.name))
+        content: Any = json.loads(decode_text(draft.data, draft.name))
     except (ValueError, RecursionError) as error:
         raise draft.error("not valid JSON", remedy="Export it again") from error
     top: Mapping[str, Any] = content if isinstance(content, Mapping) else {"frames": content}

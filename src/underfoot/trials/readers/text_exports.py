@@ -8,7 +8,7 @@ from underfoot.core import DataError
 
 from ..recording.trial import Trial, Vertical
 from .draft import RecordingDraft
-from .text import delimiter_of, is_number, number_after, si_unit, split, truncated
+from .text import delimiter_of, is_number, number_after, si_unit, split, truncation_error
 
 
 def read_trc(draft: RecordingDraft) -> Trial:
@@ -36,7 +36,7 @@ def read_trc(draft: RecordingDraft) -> Trial:
     written = header.get("NumFrames", "")
     cut = len(rows) > 1 and rows[-1].count("\t") < min(row.count("\t") for row in rows[:-1])
     if cut and written.isdigit() and len(rows) <= int(written):
-        raise truncated("truncated: the last row is shorter than the others", draft.name)
+        raise truncation_error("truncated: the last row is shorter than the others", draft.name)
     rows = [row + "\t" * (columns - 1 - row.count("\t")) for row in rows]
     numbers = draft.table(rows, "\t", columns, first + 1)
     draft.count(written, len(numbers), "NumFrames", rows=True)

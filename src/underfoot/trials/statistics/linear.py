@@ -88,7 +88,7 @@ def parts(term: str) -> tuple[str, ...]:
     return tuple(term.split(":"))
 
 
-def crossed(*names: str, order: int | None = None) -> tuple[str, ...]:
+def crossed_terms(*names: str, order: int | None = None) -> tuple[str, ...]:
     """Return all terms of a crossed model: main effects, then interactions up to ``order``."""
     top = len(names) if order is None else min(order, len(names))
     return tuple(
@@ -322,7 +322,7 @@ def model_data(
         lost = int((~complete).sum())
         warnings.append(Message("{lost} rows without a response were left out", lost=lost))
     ready = {key: predictor(key, column, rows=complete) for key, column in predictors.items()}
-    terms = crossed(*ready) if terms is None else tuple(terms)
+    terms = crossed_terms(*ready) if terms is None else tuple(terms)
     built = design(ready, terms)
     for term in terms:
         cells = empty_cells(ready, term)

@@ -10,7 +10,7 @@ from underfoot.core import DataError
 from ..statistics import ROUNDING, mixed_model, person_means
 from .conditions import ORDERS
 from .file_result import FileResult
-from .tables import Cell, TrialColumn, TrialTable, grouped, mean_and_interval, plain_columns
+from .tables import Cell, TrialColumn, TrialTable, group_files, mean_and_interval, plain_columns
 
 _SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
 """p below which, relative difference of speed from which, and share of the variance of the places
@@ -34,7 +34,7 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
     the end of file names; nobody's where numbers repeat.
     """
     places: dict[str, float] = {}
-    for results in grouped(files, (person,)).values():
+    for results in group_files(files, (person,)).values():
         for key in (*ORDERS, ""):
             numbers = [_number(result, key) for result in results]
             known = [number for number in numbers if number is not None]

@@ -14,7 +14,7 @@ from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
 from underfoot.core.numbers_text import NumberForm, number_forms
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from ..readers import TrialsProfile, read_profile, trial_suffixes
 from ..readers.sheet import is_workbook, workbook_rows
@@ -544,7 +544,7 @@ def table_rows(path: Path) -> list[list[str]]:
         except DataError as error:
             raise InputError(error.what, where=path.name) from error
     try:
-        text = decoded(data, path.name)
+        text = decode_text(data, path.name)
     except DataError as error:
         raise InputError(error.what, where=path.name) from error
     lines = csv.reader(io.StringIO(text), delimiter=table_delimiter(text))

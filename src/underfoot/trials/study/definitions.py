@@ -9,7 +9,7 @@ import numpy as np
 from underfoot.core import Progress, UnderfootError, silent
 
 from ..readers import TrialsProfile, read_trials
-from ..recording.trial import Trial, joined
+from ..recording.trial import Trial, join_trials
 from ..walking.events import EditError
 from ..walking.gait import DEFINITIONS, required_friction, required_frictions
 from ..walking.walkway import walkway_of
@@ -34,7 +34,7 @@ def definition_tables(
     notes = []
     for number, recording in enumerate(recordings, start=1):
         try:
-            trial = reduce(joined, (read_trials(file, read)[0] for file in recording.paths))
+            trial = reduce(join_trials, (read_trials(file, read)[0] for file in recording.paths))
             trial = trial.with_edits(*edits.get(recording.name, []))
             rows += [(recording.name, *row) for row in _steps(trial, read)]
         except EditError:

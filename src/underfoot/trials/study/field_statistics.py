@@ -39,7 +39,7 @@ def person_columns(
     return columns
 
 
-def paired(
+def pair_values(
     columns: Mapping[str, Mapping[str, float]], first: str, second: str
 ) -> tuple[list[float], list[float], bool]:
     """Return the values of two levels: of the persons who have both, else of all, and which."""
@@ -54,7 +54,7 @@ def effect_cells(
     columns: Mapping[str, Mapping[str, float]], first: str, second: str
 ) -> tuple[Cell, ...]:
     """Return Hedges' g of two levels with its interval; None where it can't be estimated."""
-    a, b, same = paired(columns, first, second)
+    a, b, same = pair_values(columns, first, second)
     try:
         effect = statistics.effect_size(a, b, paired=same)
     except DataError:
@@ -176,7 +176,7 @@ def equivalence_findings(
         columns_of = person_columns(values, levels, persons or range(len(values)))
         rows: list[list[Cell]] = []
         for first, second in combinations(columns_of, 2):
-            a, b, same = paired(columns_of, first, second)
+            a, b, same = pair_values(columns_of, first, second)
             try:
                 test = statistics.equivalence(a, b, margin, kind="paired" if same else "welch")
             except DataError:

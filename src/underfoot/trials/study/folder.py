@@ -17,7 +17,7 @@ from ..readers import TrialsProfile, read_trials, with_channels
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FILE as CALIBRATION
 from ..recording.tester_calibration import read_calibration
-from ..recording.trial import Edit, Trial, file_checksum, joined
+from ..recording.trial import Edit, Trial, file_checksum, join_trials
 from ..walking.body_weight import body_mass
 from ..walking.events import EditError
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
@@ -276,7 +276,7 @@ def recording_trials(
         if not trials:
             trials = list(read)
         elif len(trials) == len(read) == 1:
-            trials = [joined(trials[0], read[0])]
+            trials = [join_trials(trials[0], read[0])]
         else:
             notes.append(
                 Message("{file} holds {count} trials: not joined", file=file.name, count=len(read))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.remark import NOTHING, Message, joined
+from underfoot.core.remark import NOTHING, Message, join_lines
 
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
@@ -201,7 +201,7 @@ def reading_results(
         refer_to(record, draft)
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
-        check_surfaces = joined(c.description for c in used) if used else NO_CHECKS
+        check_surfaces = join_lines(c.description for c in used) if used else NO_CHECKS
         kinds = [runs[i] for i in members]
         _one_sample(draft, values[members], kinds, quantity, protocol, check_surfaces)
         if boards is not None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.core.remark import Message, joined
+from underfoot.core.remark import Message, join_lines
 
 from ..machines.pressure_map import PressureScan, pressure_map
 from ..machines.stribeck_fit import METHODS as FIT_METHODS
@@ -69,7 +69,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("group"))
     rows, notes, fits = [], [], []
     parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
-    for group, members in tables.grouped(files, keys).items():
+    for group, members in tables.group_files(files, keys).items():
         label = ", ".join(group) or "all files"
         speed, cof = _speed_and_cof(members)
         try:
@@ -164,7 +164,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> TrialStudy:
         "hysteresis": [],
         "lubricated_adhesion": [],
     }
-    for pair, members in tables.grouped(files, keys).items():
+    for pair, members in tables.group_files(files, keys).items():
         by_fluid: dict[str, list[float]] = {}
         for f in members:
             if "friction_force" in f.main:
@@ -190,7 +190,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> TrialStudy:
             ("adhesion", split.adhesion),
             *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
         ):
-            rows.append((*pair, name, m.value, m.uncertainty, m.n, joined(m.flags)))
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, join_lines(m.flags)))
         for fluid, m in split.lubricated_adhesion.items():
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
@@ -258,7 +258,7 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("group"))
     notes, maps, rows = [], [], []
     wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
-    for group, members in tables.grouped(files, keys).items():
+    for group, members in tables.group_files(files, keys).items():
         label = ", ".join(group) or "all files"
         broken = wanted.broken_by(float(len(members))) if wanted is not None else None
         if broken:
@@ -278,8 +278,9 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> TrialStudy:
         place = (1e3 * (p.value or 0.0) for p in (mapped.peak_along, mapped.peak_lateral))
         rows.append(
             (label, len(scans), load.value, load.uncertainty,
-             tables.scaled("peak_pressure", mapped.peak.value), *place, 100 * mapped.outer_share,
-             None if change is None else 100 * change, joined(load.flags),
+             tables.scale_to_heading("peak_pressure", mapped.peak.value), *place,
+             100 * mapped.outer_share,
+             None if change is None else 100 * change, join_lines(load.flags),
              load.conventions.get("inlet", ""))
         )  # fmt: skip
         thin = max(1, len(mapped.along) // 200)
@@ -484,7 +485,7 @@ def _walkers(
     """Return each sample with the angle of all who walked on it, which gives its class."""
     others = tuple(k for k in keys if k != "operator")
     rows, corrected = [], False
-    for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
+    for level, members in tables.group_files(files, others).items() if "operator" in keys else ():
         boards = [f.sample.boards for f in members]
         changes = [
             board_correction(f.main["angle"], own, share)
@@ -535,7 +536,7 @@ def _lowest(
     heading = next((k for k in keys if k in NOTED["direction"]), "")
     others = tuple(k for k in keys if k != heading)
     rows = []
-    for level, members in tables.grouped(files, others).items() if heading else ():
+    for level, members in tables.group_files(files, others).items() if heading else ():
         values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
         low = min(members, key=lambda f: f.main[quantity])
         scheme, u = low.sample.scheme, low.measurements[0].uncertainty

@@ -123,7 +123,7 @@ def _crossed(
     """Return a crossed model; without the interactions that there are too few values for."""
     for order in (None, 2):
         try:
-            return fit(statistics.crossed(*factors, order=order))
+            return fit(statistics.crossed_terms(*factors, order=order))
         except DataError:
             continue
     return fit(tuple(factors))

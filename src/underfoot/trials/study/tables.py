@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.core.remark import Message, joined
+from underfoot.core.remark import Message, join_lines
 
 from .. import statistics
 from ..recording.measurement import MEAN_OF_STEPS
@@ -205,12 +205,12 @@ def heading(name: str, what: str = "") -> str:
     return quantity_name(name) + (f" {what}" if what else "") + tail
 
 
-def scaled(name: str, value: float | None) -> float | None:
+def scale_to_heading(name: str, value: float | None) -> float | None:
     """Return an SI value in the unit of its heading."""
     return None if value is None else value * _FACTORS.get(_UNITS.get(name, ""), 1.0)
 
 
-def grouped(
+def group_files(
     files: Iterable[FileResult], keys: Sequence[str]
 ) -> dict[tuple[str, ...], list[FileResult]]:
     """Return the files that have all the conditions ``keys``, by their levels."""
@@ -251,9 +251,9 @@ def file_table(files: Sequence[FileResult]) -> TrialTable:
         (
             file.file,
             file.verdict,
-            *(scaled(name, file.main.get(name)) for name in numbers),
+            *(scale_to_heading(name, file.main.get(name)) for name in numbers),
             *(file.conditions.get(name) for name in conditions),
-            joined(file.reasons),
+            join_lines(file.reasons),
         )
         for file in files
     )
@@ -275,7 +275,7 @@ def measurement_table(files: Sequence[FileResult]) -> TrialTable:
             str(file.conditions.get(person, "")),
             *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
             "yes" if m.caution_flags else "",
-            joined(flag.message for flag in m.flags),
+            join_lines(flag.message for flag in m.flags),
             "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
         for file in files
@@ -333,7 +333,7 @@ def steps_table(files: Iterable[FileResult]) -> TrialTable:
     for file in files:
         for step in file.steps:
             values = [getattr(step, name) for name in _STEP_COLUMNS]
-            texts = [joined(v) if isinstance(v, tuple) else v for v in values]
+            texts = [join_lines(v) if isinstance(v, tuple) else v for v in values]
             rows.append((file.file, *texts))
     heads = (TrialColumn("file", always=True), *_STEP_COLUMNS.values())
     note = "All that is known of a step is in tables/steps_wide.csv and steps_long.csv."
@@ -359,7 +359,7 @@ def condition_table(
     numbers = tuple(n for n in numbers if any(n in f.main for f in usable))
     if not usable or not numbers:
         return None
-    groups = grouped(usable, keys)
+    groups = group_files(usable, keys)
     if len(groups) > 1:
         groups[("all", *("" for _ in keys[1:]))] = usable
     unit = "persons" if person else "files"
@@ -374,7 +374,7 @@ def condition_table(
             for member, who in zip(members, people, strict=True):
                 if number in member.main:
                     values.setdefault(who, []).append(
-                        float(scaled(number, member.main[number]) or 0)
+                        float(scale_to_heading(number, member.main[number]) or 0)
                     )
             if number == "slip":
                 trials = [x for v in values.values() for x in v]
@@ -489,7 +489,7 @@ def step_tables(files: Iterable[FileResult]) -> list[TrialTable]:
         for step in file.steps:
             head = (file.file, file.verdict, *own, step.number)
             texts = [getattr(step, name) or "" for name in _TEXTS]
-            cautions = joined(step.cautions)
+            cautions = join_lines(step.cautions)
             wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
             long += [
                 (*head, step.side, step.verdict, name, getattr(step, name), unit)

@@ -14,7 +14,7 @@ from ..readers import TrialsProfile, read_profile, read_trials
 from ..recording.axes import LEVEL, Axes, DirectionSource, Ramp, axis_name
 from ..recording.marker_names import heel_candidates
 from ..recording.measurement import mean_of
-from ..recording.trial import Edit, Plate, Trial, joined
+from ..recording.trial import Edit, Plate, Trial, join_trials
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .walkway import walkway_of
 
@@ -155,7 +155,7 @@ class Description:
         return lines
 
 
-def described(
+def describe_trial(
     trial: Trial,
     *,
     definition: RcofDefinition | None = None,
@@ -214,9 +214,9 @@ def described_file(
         others = read_trials(companion, profile, subtract_baseline=subtract_baseline)
         if len(trials) != 1 or len(others) != 1:
             raise InputError("only files that hold one trial each can be joined", where="--with")
-        trials = (joined(trials[0], others[0]),)
+        trials = (join_trials(trials[0], others[0]),)
     chosen: Any = {"definition": DEFINITIONS[definition], "profile": profile, "ramp": ramp}
-    return tuple(described(t, vertical=vertical, walking=walking, **chosen) for t in trials)
+    return tuple(describe_trial(t, vertical=vertical, walking=walking, **chosen) for t in trials)
 
 
 def _baseline(plate: Plate) -> str:
