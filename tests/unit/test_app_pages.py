@@ -597,7 +597,7 @@ def test_results_of_a_study_are_those_of_its_end_or_of_its_live_page(monkeypatch
         for name, titles in sheets.items()
     }
     fakes = {
-        "Study": SimpleNamespace(load=lambda *_: study), "shown": lambda result: result,
+        "Study": SimpleNamespace(load=lambda *_: study), "shown_study": lambda result: result,
         "figures": lambda _: {"front": lambda: "figure"}, "png": lambda figure: f"png of {figure}",
         "sections": lambda result, pictures: [parts[result]], "live_study": lambda _: live,
         "live_sections": lambda _: parts["live"],

@@ -11,7 +11,7 @@ import pytest
 
 from underfoot.case import Case, CaseError
 from underfoot.case.friction import FrictionOption
-from underfoot.case.quantity import Friction, required_field
+from underfoot.case.quantity import Friction, required
 from underfoot.case.section import Option
 from underfoot.compute.run import run
 from underfoot.core import InputError
@@ -113,7 +113,7 @@ def test_a_law_of_ones_own_is_a_class_of_a_few_lines():
         """Twice what is given."""
 
         name: ClassVar[str] = "doubled"
-        half: Friction = required_field("half of it")
+        half: Friction = required("half of it")
 
         def build(self, context):
             return ConstantLaw(2 * self.half, 0.0, "given", context.viscosity_value)

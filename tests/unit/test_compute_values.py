@@ -304,7 +304,7 @@ def test_a_region_of_a_file_bends_at_its_ball_where_it_is_nearly_the_whole(
     whole, jointed = 0.3, []
     fakes = {
         "file_outsole": lambda _: SimpleNamespace(whole_length=whole),
-        "surface_map": lambda *_, **__: "map", "trimmed": lambda made, *_: made,
+        "surface_map": lambda *_, **__: "map", "trim_map": lambda made, *_: made,
         "_jointed": lambda case, made, length: jointed.append(length) or made,
         "check_load": lambda *_: None, "rolls": lambda _: 0.0, "_pressed": lambda case, made: made,
         "_with_cells": lambda case, made, again: made,

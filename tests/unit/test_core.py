@@ -186,7 +186,7 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
 )
 def test_an_old_name_of_a_package_answers_and_warns(package, old, new):
     room = import_module(f"underfoot.{package}")
-    with pytest.warns(FutureWarning, match=rf"{package}\.{old} is {new} now.* in 0.4") as told:
+    with pytest.warns(FutureWarning, match=rf"{package}\.{old} is {new} now.* in 0.5") as told:
         assert getattr(room, old) is getattr(room, new)
     assert told[0].filename == __file__
     with pytest.raises(AttributeError, match="has no attribute 'NoClass'"):

@@ -163,12 +163,12 @@ EXTENSIONS = {
     """,
     "paper": """
         from pathlib import Path
-        from underfoot.studies import Computed, Quantity
+        from underfoot.studies import Computed, ComputedQuantity
 
         STATEMENTS = Path(__file__).with_name("paper.toml")
 
         def compute(options):
-            return Computed({"answer": Quantity.of(0.31)}, conclusions=("It agrees.",))
+            return Computed({"answer": ComputedQuantity.of(0.31)}, conclusions=("It agrees.",))
     """,
     "question": """
         from dataclasses import dataclass

@@ -19,4 +19,4 @@ from .stribeck_points import pin_on_disk as pin_on_disk
 from .stribeck_points import roughness_series as roughness_series
 from .trial_laws import stribeck_law_from_fit as stribeck_law_from_fit
 
-__getattr__ = package_names(__name__, gone="0.4", calibrated="calibrate_model")
+__getattr__ = package_names(__name__, gone="0.5", calibrated="calibrate_model")

@@ -9,7 +9,7 @@ import numpy as np
 
 from underfoot.core import Breach, SourcedValue
 
-from .quantity import Quantity, Viscosity, default, required_field
+from .quantity import Quantity, Viscosity, default, required
 from .section import Option
 
 Fraction = Annotated[float, Quantity("1", 0.0, 1.0)]
@@ -50,7 +50,7 @@ class MeasuredFluid(ContaminantSection):
     name: ClassVar[str] = "measured"
     source: ClassVar[str] = "viscosity as given"
 
-    viscosity: Viscosity = required_field(
+    viscosity: Viscosity = required(
         "dynamic viscosity as measured",
         missing="neither a viscosity nor a share of glycerol is given",
         remedy='Write viscosity = "219 cP", or glycerol_fraction = "90 %" with its basis. Without '
@@ -78,7 +78,7 @@ class GlycerolWater(ContaminantSection):
     chosen_by: ClassVar[tuple[str, ...]] = ("glycerol_fraction",)
 
     glycerol_fraction: Fraction
-    fraction_basis: Literal["mass", "volume"] = required_field(
+    fraction_basis: Literal["mass", "volume"] = required(
         missing="is missing: the same percentage by mass and by volume differs by half in viscosity"
     )
     temperature: Temperature = default(293.15, "20 degC", "room temperature", assumed=True)

@@ -24,7 +24,7 @@ from .quantity import (
     Speed,
     Viscosity,
     optional,
-    required_field,
+    required,
 )
 from .section import CaseView, Option, Section
 from .surfaces import FLOOR_RQ, SOLE_RQ, WAVES, SurfaceRoughness
@@ -258,12 +258,12 @@ class AdhesionBlockingOption(FrictionOption):
         "constant with a measured friction"
     )
 
-    dry_adhesion_cof: Friction = required_field("adhesion part dry, measured", remedy=_remedy)
-    hysteresis_cof: Friction = required_field("hysteresis part, measured", remedy=_remedy)
-    alpha: Annotated[float, Quantity("N", 0.0, 1e4)] = required_field(
+    dry_adhesion_cof: Friction = required("adhesion part dry, measured", remedy=_remedy)
+    hysteresis_cof: Friction = required("hysteresis part, measured", remedy=_remedy)
+    alpha: Annotated[float, Quantity("N", 0.0, 1e4)] = required(
         "adhesion independent of the pair (Eq. 26)", remedy=_remedy
     )
-    beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required_field(
+    beta: Annotated[float, Quantity("1", 0.0, 1.0)] = required(
         "share of dry adhesion left (Eq. 26)", remedy=_remedy
     )
     load: Force | None = optional("at which alpha was measured; default: 20.9 N, that of Eq. 26")
@@ -293,7 +293,7 @@ class ConstantOption(FrictionOption):
     source: ClassVar[str] = "given in the case"
     dry: ClassVar[bool] = True
 
-    cof: Friction = required_field("measured coefficient of friction, all parts")
+    cof: Friction = required("measured coefficient of friction, all parts")
     hysteresis_cof: Friction | None = optional("its hysteresis part")
 
     def build(self, context: Context) -> FrictionLaw:
@@ -432,7 +432,7 @@ class BowdenTaborOption(FrictionOption):
     dry: ClassVar[bool] = True
     reads: ClassVar[tuple[str, ...]] = WAVES
 
-    shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] = required_field(
+    shear_strength: Annotated[float, Quantity("Pa", 0.0, 1e9)] = required(
         "of the real contact",
         remedy="Take it from a measured adhesion: COF times pressure over the share of real "
         'contact, as shear_strength = "0.3 MPa"',
@@ -481,7 +481,7 @@ class TableOption(FrictionOption):
         "file (CSV, XLSX) with columns speed, cof and, where known, sd, pressure, "
         "viscosity; the path counts from the case file's folder"
     )
-    readings: tuple[FrictionReading, ...] = required_field(
+    readings: tuple[FrictionReading, ...] = required(
         "the same readings written in the case",
         missing='are missing for friction.model = "table"',
         remedy='Write friction.table_file = "law.csv" (columns speed, cof, and sd where known), or '

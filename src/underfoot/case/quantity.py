@@ -139,7 +139,7 @@ def default(value: Any, text: Any, source: str, *, assumed: bool = False) -> Any
     return Field(default=value, json_schema_extra=extra)
 
 
-def required_field(
+def required(
     description: str = "", *, missing: str = "is missing", remedy: str | None = None
 ) -> Any:
     """Return a field without default; ``missing`` and ``remedy`` are the answer to its absence."""

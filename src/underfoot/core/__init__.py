@@ -55,4 +55,4 @@ _HOMES = {
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-__getattr__ = package_names(__name__, _HOMES, gone="0.4", Range="ValidityRange")
+__getattr__ = package_names(__name__, _HOMES, gone="0.5", Range="ValidityRange")

@@ -46,4 +46,4 @@ from .speed_effect import SpeedEffectLaw as SpeedEffectLaw
 from .speed_effect import cof_with_speed as cof_with_speed
 from .speed_table import SpeedTableLaw as SpeedTableLaw
 
-__getattr__ = package_names(__name__, gone="0.4", propagated="propagate_spread")
+__getattr__ = package_names(__name__, gone="0.5", propagated="propagate_spread")

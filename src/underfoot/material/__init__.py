@@ -43,4 +43,4 @@ from .spectrum_fit import fit_relaxation as fit_relaxation
 from .spectrum_fit import reduce_spectrum as reduce_spectrum
 from .write_decks import write_deck as write_deck
 
-__getattr__ = package_names(__name__, gone="0.4", reduced="reduce_spectrum")
+__getattr__ = package_names(__name__, gone="0.5", reduced="reduce_spectrum")

@@ -19,4 +19,4 @@ from .tread import Sipes as Sipes
 from .tread import Tread as Tread
 from .worn.forms import WearPlane as WearPlane
 
-__getattr__ = package_names(__name__, gone="0.4", Profile="HeelProfile")
+__getattr__ = package_names(__name__, gone="0.5", Profile="HeelProfile")

@@ -39,7 +39,7 @@ __all__ = [
 
 __getattr__ = package_names(
     __name__,
-    gone="0.4",
+    gone="0.5",
     judged="judge_study",
     Kind="StatementKind",
     Quantity="ComputedQuantity",

@@ -49,7 +49,7 @@ from .write import write_surface as write_surface
 
 __getattr__ = package_names(
     __name__,
-    gone="0.4",
+    gone="0.5",
     filled="fill_missing_heights",
     levelled="level_surface",
     periodised="make_periodic",

@@ -170,5 +170,5 @@ __all__ = [
 ]  # fmt: skip
 
 __getattr__ = package_names(
-    __name__, gone="0.4", described="describe_trial", joined="join_trials", Profile="TrialsProfile"
+    __name__, gone="0.5", described="describe_trial", joined="join_trials", Profile="TrialsProfile"
 )

@@ -41,4 +41,4 @@ from .walker import Population as Population
 from .walker import Spread as Spread
 from .walker import Walker as Walker
 
-__getattr__ = package_names(__name__, gone="0.4", judged="judge_slip", observed="observe_slip")
+__getattr__ = package_names(__name__, gone="0.5", judged="judge_slip", observed="observe_slip")

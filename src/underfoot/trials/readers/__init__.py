@@ -140,4 +140,4 @@ def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
     return data, None
 
 
-__getattr__ = package_names(__name__, gone="0.4", Draft="RecordingDraft", Profile="TrialsProfile")
+__getattr__ = package_names(__name__, gone="0.5", Draft="RecordingDraft", Profile="TrialsProfile")

@@ -73,7 +73,7 @@ from .shares import share_difference as share_difference
 
 __getattr__ = package_names(
     __name__,
-    gone="0.4",
+    gone="0.5",
     crossed="crossed_terms",
     resolved="merge_equal_values",
     Comparison="LevelDifference",

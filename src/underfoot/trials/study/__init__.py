@@ -35,4 +35,4 @@ _HOMES = {
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-__getattr__ = package_names(__name__, _HOMES, gone="0.4", Study="TrialStudy", Table="TrialTable")
+__getattr__ = package_names(__name__, _HOMES, gone="0.5", Study="TrialStudy", Table="TrialTable")
