@@ -70,13 +70,13 @@ def condition(name: str, spacing: float) -> dict[str, float]:
     """Return what one of the example cases took, in this process."""
 
     from underfoot.case import Case
-    from underfoot.compute.position_draws import Place
-    from underfoot.compute.prepare import prepared
+    from underfoot.compute.position_draws import TreadPlace
+    from underfoot.compute.prepare import prepare_case
     from underfoot.compute.solve import solved_at
 
     case = Case.load(f"examples/{name}.toml")
     began = time.process_time()
-    _, solved = solved_at(prepared(case, spacing), Place(), spacing)
+    _, solved = solved_at(prepare_case(case, spacing), TreadPlace(), spacing)
     counts = solved.counts
     return {
         "cells": counts.cells,

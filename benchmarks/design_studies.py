@@ -22,14 +22,14 @@ import psutil
 
 from underfoot.compute.run import run
 from underfoot.explore import Study, StudyResult
-from underfoot.explore.computing import crashed
+from underfoot.explore.computing import crash_record
 from underfoot.explore.engines import engine
 from underfoot.explore.plan import StudyPlan
-from underfoot.explore.record import Job, Record
+from underfoot.explore.record import CaseJob, Record
 from underfoot.explore.result import Design
 from underfoot.explore.status import study_status
 from underfoot.explore.study_file import read_plan
-from underfoot.explore.surrogate import fitted
+from underfoot.explore.surrogate import fit_surrogate
 
 from .study_store import jobs, record
 
@@ -230,7 +230,7 @@ def saturation() -> Iterator[str]:
         compute, _ = engine(f"dask:{cluster.scheduler_address}", None, print)
         for seconds, count in ((2.0, 400), (1.0, 600), (0.5, 800), (0.2, 800), (0.0, 800)):
             before, began = time.process_time(), time.monotonic()
-            done = len(list(compute(partial(_waited, seconds), jobs(count), crashed)))
+            done = len(list(compute(partial(_waited, seconds), jobs(count), crash_record)))
             wall, spent = time.monotonic() - began, time.process_time() - before
             busy = f", workers {seconds * count / WORKERS / wall:.0%} busy" if seconds else ""
             rate = f"{done / wall:.0f} a second{busy}, {1e3 * spent / done:.1f} ms of CPU a case"
@@ -256,7 +256,7 @@ def splits() -> Iterator[str]:
             order = np.random.default_rng(seed).permutation(len(every))
             fit, rest = every[order[:60]], every[order[60:]]
             own = fit.points, fit.values, fit.errors
-            one = fitted(str(goal), goal.unit, result.plan.dimensions, *own)
+            one = fit_surrogate(str(goal), goal.unit, result.plan.dimensions, *own)
             mean, deviation = one.predicted(rest.points)
             error = rest.values - mean
             q2 = 1 - np.mean(error**2) / np.var(rest.values)
@@ -379,7 +379,7 @@ def _told(name: str, result: StudyResult, design: Design, stated: float) -> str:
     )
 
 
-def _waited(seconds: float, job: Job) -> Record:
+def _waited(seconds: float, job: CaseJob) -> Record:
     time.sleep(seconds)
     return record(job)
 

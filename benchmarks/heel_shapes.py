@@ -14,9 +14,9 @@ import numpy as np
 from benchmarks import steadiness
 from underfoot import Case
 from underfoot.compute.numbers import FILM_ERROR
-from underfoot.compute.position_draws import Place, log_film_odds
-from underfoot.compute.positions import case_places, shoe_angles, treaded
-from underfoot.compute.prepare import prepared
+from underfoot.compute.position_draws import TreadPlace, log_film_odds
+from underfoot.compute.positions import case_places, has_lugs, shoe_angles
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import LEAST_FILM, film_odds, solved_at
 from underfoot.core import UnderfootError
 
@@ -49,15 +49,15 @@ SOLES, DRAWS, SEED = 40, 2, 51
 def march(case: Case, turn: float = 0.0) -> float:
     """Return the film's odds with the shoe turned by ``turn``, degrees."""
     spacing = case.numerics.quick_grid_spacing
-    place = Place(turn=math.radians(turn))
-    return film_odds(solved_at(prepared(case, spacing), place, spacing)[1])
+    place = TreadPlace(turn=math.radians(turn))
+    return film_odds(solved_at(prepare_case(case, spacing), place, spacing)[1])
 
 
 def mean_odds(case: Case) -> float:
     """Return the odds of the mean film of a quick run, over the places of its tread or angles."""
     spacing = case.numerics.quick_grid_spacing
-    parts = prepared(case, spacing)
-    places = case_places(case, quick=True) if treaded(case) else shoe_angles()
+    parts = prepare_case(case, spacing)
+    places = case_places(case, quick=True) if has_lugs(case) else shoe_angles()
     contacts = [solved_at(parts, place, spacing)[1] for place in places]
     if not all(contact.status.usable for contact in contacts):
         raise UnderfootError("a place did not converge")

@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks import steadiness
 from underfoot import Case
 from underfoot.compute.numerical_error import errors_by_steps
-from underfoot.compute.position_draws import LOADS, Place, TreadPositions, log_film_odds
+from underfoot.compute.position_draws import LOADS, TreadPlace, TreadPositions, log_film_odds
 from underfoot.compute.positions import place_numbers
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_at
 from underfoot.core import UnderfootError
 
@@ -62,9 +62,9 @@ def motions(seed: int) -> Any:
 
 def ends(case: Case) -> list[dict[str, float]]:
     """Return the numbers with the steps of a run, twice and four times as many."""
-    parts, found = prepared(case, SPACING), []
+    parts, found = prepare_case(case, SPACING), []
     for finer in (1, 2, 4):
-        here, contact = solved_at(parts, Place(finer=finer), SPACING)
+        here, contact = solved_at(parts, TreadPlace(finer=finer), SPACING)
         if not contact.status.usable:
             raise UnderfootError(f"not converged with {finer} times the steps")
         found.append(place_numbers(here, contact))
@@ -74,7 +74,7 @@ def ends(case: Case) -> list[dict[str, float]]:
 def over_printed(own: dict[str, float], finer: dict[str, float], finest: dict[str, float]) -> Any:
     """Return what four times the steps move ``NUMBERS``, over what is printed of the first two."""
     values = {name: np.array([value]) for name, value in own.items()}
-    one = TreadPositions((Place(),), values, 0, own, in_time=(own, finer))
+    one = TreadPositions((TreadPlace(),), values, 0, own, in_time=(own, finer))
     errors = errors_by_steps(one, NUMBERS, sum(own[load] for load in LOADS))
     return [abs(finest[name] - own[name]) / errors[name] for name in NUMBERS]
 

@@ -20,7 +20,7 @@ from underfoot.block import (
     MicroSurface,
 )
 from underfoot.block._kernels import generate, names
-from underfoot.block.assembly import Assembly, assembled
+from underfoot.block.assembly import Assembly, assemble_march
 from underfoot.material import RelaxationSpectrum
 
 MESHES = ((26, 16, 9), (64, 40, 20), (128, 80, 50))
@@ -42,7 +42,7 @@ def case(elements: tuple[int, int, int], precision: str, terms: int) -> Assembly
         roughness=MicroSurface.checkerboard(35.1e-6, 0.5e-3),
         roughness_layers=4 * elements[2] // 9,
     )
-    assembly = assembled(
+    assembly = assemble_march(
         block,
         MicroSurface.checkerboard(35.1e-6, 0.4e-3),
         MicroMaterial.from_poisson(shear, 0.499),

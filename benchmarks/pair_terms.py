@@ -21,12 +21,12 @@ from underfoot.studies.pair_law import (
     PairConstants,
     PairLaw,
     corpus_score,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     middle,
 )
-from underfoot.studies.sources import Condition, Span, corpus
+from underfoot.studies.sources import PublishedCondition, Span, corpus
 
 LENGTHS = {
     "pendulum": 2e-3,
@@ -161,10 +161,10 @@ TERMS = {
 }
 
 
-def conditions() -> list[Condition]:
+def conditions() -> list[PublishedCondition]:
     """Return every reading of the corpus with the length of its device."""
 
-    def with_length(condition: Condition) -> Condition:
+    def with_length(condition: PublishedCondition) -> PublishedCondition:
         length = LENGTHS[condition.labels["device"]]
         numbers = {**condition.numbers, "length": Span(length, length)}
         members = tuple(map(with_length, condition.members))
@@ -173,7 +173,7 @@ def conditions() -> list[Condition]:
     return [with_length(each) for source in corpus() for each in source.conditions]
 
 
-def learned(term: PairLaw, rows: Sequence[Condition]) -> str:
+def learned(term: PairLaw, rows: Sequence[PublishedCondition]) -> str:
     """Return what a law learns of its last parameter and of the film, with and without the report.
 
     ln of both, their sd, and by how much ln COF of the report's readings is too high in the mean.
@@ -182,7 +182,7 @@ def learned(term: PairLaw, rows: Sequence[Condition]) -> str:
     told = []
     for name, left in (("of all", ""), ("of everybody else", REPORT)):
         training = [row for row in rows if row.laboratory != left]
-        posterior = fitted(term, training, steps=STEPS, left=left)
+        posterior = fit_law(term, training, steps=STEPS, left=left)
         numbers = [
             f"{term.parameters[at]} {posterior.theta[:, at].mean():.2f} "
             f"± {posterior.theta[:, at].std():.2f}"

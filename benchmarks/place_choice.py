@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 
 from benchmarks._table import Row
-from underfoot.places.choice import chosen
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import place_of
 
 KITCHEN = Path(__file__).parents[1] / "examples" / "places" / "kitchen.toml"
@@ -27,7 +27,7 @@ def rows() -> list[Row]:
         floor["fluids"] = FLUIDS
     place = place_of(table)
     start = time.process_time()
-    chosen(place, quick=False)
+    choose_shoe(place, quick=False)
     seconds = time.process_time() - start
     shape = f"{len(place.shoes)} shoes x {len(place.floors)} floors x {len(place.fluids())} fluids"
     return [Row(f"choose, {shape}, fine grid", seconds)]

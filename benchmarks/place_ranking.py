@@ -3,7 +3,7 @@
 import tomllib
 from pathlib import Path
 
-from underfoot.places.choice import chosen
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import place_of
 
 FOLDER = Path(__file__).parents[1] / "examples" / "places"
@@ -32,7 +32,7 @@ def chances(text: str, *, quick: bool = True, shift: str = "0 mm") -> dict[str, 
     for shoe in table["shoe"]:
         if "untreaded" not in shoe.get("from", "untreaded"):
             shoe["tread"] = {**shoe.get("tread", {}), "offset_along": shift}
-    return {each.shoe.name: each.best for each in chosen(place_of(table), quick=quick).shoes}
+    return {each.shoe.name: each.best for each in choose_shoe(place_of(table), quick=quick).shoes}
 
 
 def ordered_alike(first: dict[str, float], other: dict[str, float]) -> bool:

@@ -49,7 +49,7 @@ def march(
 ) -> dict[str, float]:
     """Return what one march took, in this process."""
     from underfoot.case import Case
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
     from underfoot.compute.sole import sole_map
     from underfoot.compute.solve import solver_settings
     from underfoot.sole_contact.compliance import compliance_within
@@ -57,7 +57,7 @@ def march(
 
     case = Case.load(CASE).replace(changes)
     began = time.process_time()
-    context, sole = resolved(case), sole_map(case, spacing, shift=shift)
+    context, sole = resolve_context(case), sole_map(case, spacing, shift=shift)
     body = case.compliance.build(context, sole)
     settings = solver_settings(case)
     settings = replace(

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from underfoot import Case, run
-from underfoot.compute.positions import treaded
+from underfoot.compute.positions import has_lugs
 from underfoot.core import UnderfootError, to_si
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -110,7 +110,7 @@ def main(parts: Sequence[str] = ()) -> None:
                 began = time.process_time()
                 own = Numbers.of(case)
                 middle = time.process_time()
-                fine = Numbers.of(case.replace(FINE if treaded(case) else FINE_WITHOUT_LUGS))
+                fine = Numbers.of(case.replace(FINE if has_lugs(case) else FINE_WITHOUT_LUGS))
                 seconds = f"{middle - began:.0f}, {time.process_time() - middle:.0f}"
                 print(
                     f"{name:<34}{own.cof:>8.4f} ±{own.cof_error:6.4f}{fine.cof:>8.4f}"

@@ -17,7 +17,7 @@ import numpy as np
 from underfoot import Case
 from underfoot.case.sole import usual_tread
 from underfoot.compute.positions import place_numbers
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_motion
 from underfoot.core import UnderfootError
 from underfoot.shoe.tread import PATTERNS
@@ -43,7 +43,7 @@ class Numbers(NamedTuple):
     @classmethod
     def of(cls, case: Case, changes: Mapping[str, str]) -> Numbers:
         """Return the numbers of a march of the changed case; nan where it did not converge."""
-        parts = prepared(case.replace(changes), SPACING)
+        parts = prepare_case(case.replace(changes), SPACING)
         began = time.process_time()
         contact = solved_motion(parts)
         cpu = time.process_time() - began

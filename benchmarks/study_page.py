@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.explore.plan import StudyPlan
-from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
 from underfoot.explore.study_file import read_plan
@@ -60,7 +60,7 @@ budget = %d
 DRAWS = np.random.default_rng(0).normal(0.0, 0.02, 500)
 
 
-def jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
+def jobs(plan: StudyPlan, count: int) -> Iterator[CaseJob]:
     """Yield jobs as a plan sets them, with made-up keys: its own take a case each to hash."""
     number = 0
     for design, point in enumerate(plan.sampled_points(-(-count // plan.cases_per_design))):
@@ -68,11 +68,11 @@ def jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
         for state, draw in product(range(len(plan.states)), range(len(plan.draws))):
             key = f"{number * 2654435761 % 2**96:024x}"
             changes = {**own, **plan.draws[draw], **plan.states[state].changes}
-            yield Job(key, design, state, draw, 0, point, changes)
+            yield CaseJob(key, design, state, draw, 0, point, changes)
             number += 1
 
 
-def record(job: Job, number: int) -> Record:
+def record(job: CaseJob, number: int) -> Record:
     """Return a made-up end of a case; one in fifty has no numbers."""
     times = {"seconds": 1.4, "cpu_seconds": 1.3, "worker": "node-1", "ended": 1.7e9 + number}
     if number % 50 == 7:

@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
 from underfoot.explore.study_file import read_plan
@@ -48,7 +48,7 @@ DRAWS = np.random.default_rng(0).normal(0.2, 0.02, 500)
 CALLS = ["open", "write", "fsync", "rename", "replace", "unlink", "stat", "utime", "listdir"]
 
 
-def record(job: Job) -> Record:
+def record(job: CaseJob) -> Record:
     """Return what a made-up case gives."""
     numbers = {name: value * (1 + job.point[0]) for name, value in OUTPUTS.items()}
     units, spreads = dict.fromkeys(OUTPUTS, "1"), dict.fromkeys(list(OUTPUTS)[:5], 0.01)
@@ -63,13 +63,13 @@ def record(job: Job) -> Record:
     )
 
 
-def jobs(count: int) -> Iterator[Job]:
+def jobs(count: int) -> Iterator[CaseJob]:
     """Yield jobs of the study with made-up keys."""
     plan = read_plan(TEXT, EXAMPLES)
     for k in range(count):
         point = (k / count,)
         key = f"{k * 2654435761 % 2**96:024x}"
-        yield Job(key, k, 0, 0, 0, point, plan.design_changes(point))
+        yield CaseJob(key, k, 0, 0, 0, point, plan.design_changes(point))
 
 
 def counted(calls: dict[str, int]) -> Callable[[], None]:
@@ -101,7 +101,7 @@ def work(folder: Path) -> None:
         for store in stores:
             store.name = f"node-1-{len(store.name):06}-{id(store):x}"  # one that is far away
             stack.enter_context(store.working(1))
-        waiting: dict[Store, Iterator[Job]] = {store: iter(()) for store in stores}
+        waiting: dict[Store, Iterator[CaseJob]] = {store: iter(()) for store in stores}
         while waiting:
             for store in list(waiting):
                 job = next(waiting[store], None)

@@ -15,11 +15,11 @@ import numpy as np
 
 from benchmarks.tread_widths import bars
 from underfoot import Case
-from underfoot.compute.position_draws import Place
+from underfoot.compute.position_draws import TreadPlace
 from underfoot.compute.positions import TURNED, place_numbers, places
-from underfoot.compute.prepare import Prepared, prepared
+from underfoot.compute.prepare import Prepared, prepare_case
 from underfoot.compute.sole import tread_on_sole
-from underfoot.compute.solve import continued, solved_at
+from underfoot.compute.solve import continue_contact, solved_at
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array
 
@@ -39,7 +39,7 @@ def film_loads(parts: Prepared, at: Sequence[tuple[float, float]]) -> Array:
     loads = []
     for shift in at:
         try:
-            here, contact = solved_at(parts, Place(shift), parts.spacing)
+            here, contact = solved_at(parts, TreadPlace(shift), parts.spacing)
             usable = contact.status.usable
             loads.append(place_numbers(here, contact)["fluid_load"] if usable else math.nan)
         except ConvergenceError:
@@ -83,10 +83,10 @@ def of_turned(parts: Prepared, name: str) -> None:
     (period,) = tread_on_sole(parts.case)[0]
     for share in (0.0, 1 / 3, 2 / 3):
         shift = tuple(period * share)
-        here, contact = solved_at(parts, Place(shift), parts.spacing)
+        here, contact = solved_at(parts, TreadPlace(shift), parts.spacing)
         for turned in TURNED:
-            (end,) = continued(contact, here, turn=turned.turn)[-1:]
-            _, march = solved_at(parts, Place(shift, turned.turn), parts.spacing)
+            (end,) = continue_contact(contact, here, turn=turned.turn)[-1:]
+            _, march = solved_at(parts, TreadPlace(shift, turned.turn), parts.spacing)
             print(
                 f"{name:<22}{share:>8.2f}{math.degrees(turned.turn):>+8.2f}"
                 f"{contact.fluid_load:>8.1f}{end.fluid_load:>8.1f}{march.fluid_load:>8.1f}",
@@ -109,7 +109,7 @@ def main(arguments: Sequence[str] = ()) -> None:
     def ready(case: Case) -> Prepared:
         numerics = case.numerics
         fine = "--run-grid" in arguments
-        return prepared(case, numerics.grid_spacing if fine else numerics.quick_grid_spacing)
+        return prepare_case(case, numerics.grid_spacing if fine else numerics.quick_grid_spacing)
 
     print(f"{'':<22}{'film N':>8}{'s N':>8}{'n':>6}{'rms N':>8}{'':>8}{'rule N':>8}{'s/√n':>8}")
     for name, case in treads.items():

@@ -28,7 +28,7 @@ from underfoot.trials import (
     LowPass,
     Trial,
     finished_plate,
-    joined,
+    join_trials,
     low_passed,
     read_trial,
     required_frictions,
@@ -68,7 +68,7 @@ def recordings() -> Iterator[tuple[str, Trial]]:
         trial = read_trial(DATA / laboratory / name, subtract_baseline=False)
         if name.endswith(".trc"):
             forces = read_trial(DATA / laboratory / "walk1.forces", subtract_baseline=False)
-            trial = joined(trial, forces)
+            trial = join_trials(trial, forces)
         walk = walkway_of(trial)
         feet = {*walk.heels.values(), *walk.toes.values()}
         kept = {n: m for n, m in trial.markers.items() if n in feet or n in walk.pelvis}

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "docs"))
 from pages import ROOT, blocks_of, command_output, reader
 from web_app import begin, drawn, helped, page_of, served
 
-from underfoot.places.choice import chosen
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import read_place
 
 IMAGES = ROOT / "docs" / "images"
@@ -205,7 +205,7 @@ def place_picture() -> None:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "place"
         file = ROOT / "examples" / "places" / "hospital_corridor.toml"
-        chosen(read_place(file)).report(out)
+        choose_shoe(read_place(file)).report(out)
         page_picture("place_hospital", out / "report.html")
 
 

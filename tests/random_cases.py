@@ -14,7 +14,7 @@ import numpy as np
 from underfoot import Case, Result, run
 from underfoot.case.sole import usual_tread
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.core import UnderfootError
 from underfoot.friction.sampled_cof import HIGHEST, SAMPLES, VACUUM, sampled_points
 from underfoot.shoe.tread import PATTERNS
@@ -98,7 +98,10 @@ def beyond_physics(case: Case, result: Result) -> list[str]:
         said.append(f"film {float(film):.4g} N, {min(ends):.4g} to {max(ends):.4g} N of {load:g} N")
     if "cof_draws" not in result.data:
         return said
-    draws, parts = result.data["cof_draws"].values, prepared(case, case.numerics.quick_grid_spacing)
+    draws, parts = (
+        result.data["cof_draws"].values,
+        prepare_case(case, case.numerics.quick_grid_spacing),
+    )
     pressure = np.logspace(2.5, 8, 23)
     law = sampled_points(
         parts.law, contact_pressure=pressure, speed=case.motion.speed, film_thickness=1.0

@@ -70,7 +70,7 @@ def made_up() -> None:
         return [((shift + k / 41) % 1.0,) for k in range(count)]
 
     plan_module.StudyPlan._key = key
-    study.computed = computed
+    study.compute_job = computed
     proposals._promising = promising
     study.PAUSE, records.PACK = 0.05, 10**9
     live.PERIOD, live.SHARE = 0.2, 10.0  # pages are written as often as they can be

@@ -126,16 +126,16 @@ def _case(**more: Any) -> Any:
 
 
 def _viscosity(_: Path) -> Callable[[], object]:
-    from underfoot.compute.prepare import prepared
+    from underfoot.compute.prepare import prepare_case
 
-    return lambda: prepared(_case(), 5e-3)
+    return lambda: prepare_case(_case(), 5e-3)
 
 
 def _sole(_: Path) -> Callable[[], object]:
-    from underfoot.compute.prepare import prepared
+    from underfoot.compute.prepare import prepare_case
     from underfoot.compute.solve import solved_motion
 
-    return lambda: solved_motion(prepared(_case(), 5e-3))
+    return lambda: solved_motion(prepare_case(_case(), 5e-3))
 
 
 def _vertex(_: Path) -> Callable[[], object]:

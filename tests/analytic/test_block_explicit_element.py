@@ -17,7 +17,7 @@ from underfoot.block import (
     MicroSurface,
 )
 from underfoot.block._kernels import loops, names
-from underfoot.block.assembly import Assembly, assembled
+from underfoot.block.assembly import Assembly, assemble_march
 from underfoot.material import RelaxationSpectrum
 
 pytestmark = pytest.mark.slow  # the element loops are compiled on their first use, 20 s each
@@ -33,7 +33,7 @@ def block_at_rest(
     block = MicroBlock(
         size=(1e-3, 0.6e-3, 0.5e-3), elements=(9, 5, 4), bottom_layer=80e-6, roughness=ROUGH
     )
-    assembly = assembled(
+    assembly = assemble_march(
         block,
         MicroSurface(),
         material,
@@ -182,7 +182,7 @@ def test_wave_speeds(axis: int, which: int):
         roughness_layers=1,
         sides="periodic",
     )
-    assembly = assembled(block, MicroSurface(), ELASTIC, MicroLoading(), ExplicitSettings())
+    assembly = assemble_march(block, MicroSurface(), ELASTIC, MicroLoading(), ExplicitSettings())
     assembly.arrays[3][:] += 1.0
     z = assembly.mesh.nodes[2]
     assembly.displacement[axis] = 1e-9 * np.cos(0.5 * math.pi * z / height)
@@ -227,7 +227,7 @@ def test_bound_on_the_friction_of_scaled_inertia_is_that_of_the_largest_slope():
     floor = MicroSurface.checkerboard(20e-6, 0.25e-3)
     block = MicroBlock(size=(1e-3, 0.5e-3, 0.5e-3), elements=(16, 8, 4), bottom_layer=80e-6)
     loading = MicroLoading(mean_pressure=2e5, speed=0.4)
-    assembly = assembled(block, floor, ELASTIC, loading, ExplicitSettings(mass_scaling=3.0))
+    assembly = assemble_march(block, floor, ELASTIC, loading, ExplicitSettings(mass_scaling=3.0))
     slope = math.pi * 20e-6 / 0.25e-3
     exact = 3.0 * 1000.0 * 80e-6 * (0.4 * slope) ** 2 / (2e5 * 0.25e-3)
     assert assembly.impact_friction == pytest.approx(exact, rel=1e-9)

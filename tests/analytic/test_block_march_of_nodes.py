@@ -16,7 +16,7 @@ from underfoot.block import (
 )
 from underfoot.block._kernels import energy, generate, motion
 from underfoot.block._kernels import names as at
-from underfoot.block.assembly import assembled
+from underfoot.block.assembly import assemble_march
 from underfoot.block.compliance import CondensedBlock
 from underfoot.block.condensed import CondensedMarch, Moment
 from underfoot.block.march import BlockMarch
@@ -70,7 +70,7 @@ def test_the_floor_slides_by_the_speed_in_the_middle_of_each_step():
 def test_terms_of_an_explicit_block_decay_by_their_own_times():
     spectrum = RelaxationSpectrum(1e6, np.array([2e6, 0.0, 1e6]), np.array([1e-4, 1e-2, 5.0]))
     block, rubber = MicroBlock(elements=(4, 4, 6)), MicroMaterial(spectrum, 1e9)
-    made = assembled(block, MicroSurface(), rubber, MicroLoading(), ExplicitSettings())
+    made = assemble_march(block, MicroSurface(), rubber, MicroLoading(), ExplicitSettings())
     # a term without modulus has no history
     assert made.terms == pytest.approx(np.array([[2e6, 1e4], [1e6, 0.2]]))
     assert made.parameters[5:7] == pytest.approx([4e6, 1e9])
@@ -122,7 +122,7 @@ def element(spectrum, seed=0):
         size=(0.4e-3, 0.4e-3, 0.5e-3), elements=(4, 4, 4), bottom_layer=0.1e-3,
         roughness=MicroSurface.checkerboard(20e-6, 0.4e-3, offset=(0.1e-3, 0.2e-3)),
     )  # fmt: skip
-    made = assembled(
+    made = assemble_march(
         block, MicroSurface(), MicroMaterial(spectrum, 2e7), MicroLoading(), ExplicitSettings()
     )
     moved = 1e-5 * np.random.default_rng(seed).normal(size=made.nodes[0].size)

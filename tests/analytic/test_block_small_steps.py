@@ -10,7 +10,7 @@ from underfoot.block._kernels import names
 from underfoot.block.assembly import (
     SINKING,
     ExplicitSettings,
-    assembled,
+    assemble_march,
     critical_time_step,
     impact_friction,
 )
@@ -155,11 +155,11 @@ def test_the_contact_is_as_stiff_as_the_lowest_layer_where_the_load_asks_no_more
     block = MicroBlock(size, elements, bottom_layer=25e-6, roughness_layers=2)
     floor = MicroSurface("wave", 20e-6, WAVE) if rough else MicroSurface()
     load = MicroLoading(mean_pressure=pressure)
-    made = assembled(block, floor, rubber, load, ExplicitSettings())
+    made = assemble_march(block, floor, rubber, load, ExplicitSettings())
     assert pytest.approx(60e-9) == SINKING * 20e-6
     assert made.penalty == pytest.approx(factor * 1e9 / 25e-6, rel=1e-9)
     told = ExplicitSettings(penalty_factor=0.7)
-    assert assembled(block, floor, rubber, load, told).penalty == pytest.approx(0.7e9 / 25e-6)
+    assert assemble_march(block, floor, rubber, load, told).penalty == pytest.approx(0.7e9 / 25e-6)
 
 
 def test_friction_by_impacts_grows_as_the_speed_squared_and_falls_with_pressure():

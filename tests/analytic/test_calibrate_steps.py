@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from underfoot.calibrate import Parameter, calibrated, pair_readings
+from underfoot.calibrate import Parameter, calibrate_model, pair_readings
 from underfoot.calibrate.compound import _beside, _fit_warnings, relaxation_of
 from underfoot.calibrate.law_file import TrialReadings, law_table
 from underfoot.calibrate.pair_readings import (
@@ -52,7 +52,7 @@ def test_the_spread_of_a_fit_is_what_each_reading_moves_it_by():
 def test_a_parameter_that_comes_out_as_nothing_is_nothing():
     x = np.linspace(0, 1, 9)
     for start in (0.5, 0.0):
-        found = calibrated(lambda v: v["a"] * x, 0.0 * x, {"a": Parameter(start, -1.0, 1.0)})
+        found = calibrate_model(lambda v: v["a"] * x, 0.0 * x, {"a": Parameter(start, -1.0, 1.0)})
         assert found.values == pytest.approx({"a": 0.0}, abs=1e-9)
 
 

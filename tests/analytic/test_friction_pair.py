@@ -12,7 +12,7 @@ from scipy.special import erf
 from underfoot.calibrate.pair_readings import PairCalibration, PairReading, calibrated_pair
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.sole import sole_map
 from underfoot.core import DataError, InputError
 from underfoot.core.catalogue import Catalogue
@@ -30,7 +30,7 @@ from underfoot.rough_contact.contact_table import QUANTITIES, ContactTable
 from underfoot.shoe import Heel
 from underfoot.shoe.parametric import write_sole
 from underfoot.studies.corpus import readings
-from underfoot.studies.pair_law import fitted, law_named
+from underfoot.studies.pair_law import fit_law, law_named
 
 TILE = Pair(shore_a=65, sole_rq=(8e-6, 8e-6), floor_rq=(3e-6, 3e-6), family="aqueous")
 KNOWN = {
@@ -213,7 +213,7 @@ def test_hysteresis_of_a_spectrum_is_near_the_closed_form(tmp_path):
         contaminant="glycerol_50pct",
         motion={"from": "slip_tester_g4", "speed": 0.3},
     )
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     assert isinstance(found, PairContactLaw)
     assert found.pair.hysteresis == pytest.approx(0.0224, rel=0.25)
     assert not any("loss tangent" in line for line in found.assumptions)
@@ -275,7 +275,7 @@ def test_no_floor_of_the_catalogue_grips_more_wet_than_dry(floor, contaminant):
     )
     for speed in (0.02, 0.3, 1.0):
         one, other = (
-            contact_cof(case.friction.build(resolved(case)), speed) for case in (wet, dry)
+            contact_cof(case.friction.build(resolve_context(case)), speed) for case in (wet, dry)
         )
         assert one < other
 
@@ -317,7 +317,7 @@ def test_a_case_gives_the_loss_tangent_and_waves_beyond_the_stylus_leave_the_are
         Case(shoe=shoe, floor={"roughness": {"rq": rq, "cutoff": cutoff}}, **parts)
         for rq, cutoff in (("8 um", "0.8 mm"), ("20 um", "2.5 mm"))
     )
-    first, second = (case.friction.build(resolved(case)) for case in (short, long))
+    first, second = (case.friction.build(resolve_context(case)) for case in (short, long))
     assert first.pair.loss_tangent == (0.3, 0.3)
     assert second.pair.floor_rq[0] == pytest.approx(20e-6 * (0.8 / 2.5) ** 0.8)
     assert second.medians["full_contact"] == pytest.approx(first.medians["full_contact"], rel=0.02)
@@ -334,10 +334,10 @@ def test_another_compound_or_outsole_does_not_inherit_the_roughness_of_a_shoe(pa
         contaminant="water",
         motion="slip_tester_g4",
     )
-    pair = case.friction.build(resolved(case)).pair
+    pair = case.friction.build(resolve_context(case)).pair
     assert pair.sole_rq[1] > 3 * pair.sole_rq[0]
     own = case.replace("shoe.roughness.ra", "6 um")
-    low, high = own.friction.build(resolved(own)).pair.sole_rq
+    low, high = own.friction.build(resolve_context(own)).pair.sole_rq
     assert low == high == pytest.approx(7.52e-6, rel=1e-3)
 
 
@@ -345,7 +345,7 @@ def test_a_dry_case_is_computed_and_says_what_stands_behind_it():
     case = Case(
         shoe="work_shoe_full_tread", floor="vinyl_g4", contaminant="none", motion="slip_tester_g4"
     )
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     assert any("no dry reading" in line for line in found.assumptions)
     with pytest.raises(InputError, match='or None and "dry"'):
         PairContactLaw(TILE, None)
@@ -363,7 +363,7 @@ def test_a_contact_table_gives_hysteresis_and_dry_area(tmp_path):
         motion={"from": "slip_tester_g4", "speed": 0.3},
         friction={"model": "pair", "contact_table": str(tmp_path / "rubber.npz")},
     )
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     assert found.medians["hysteresis"] == pytest.approx(0.06, rel=2e-3)  # whatever the hardness
     assert erf(3e5 / found.pair.full_contact) == pytest.approx(0.1)
     assert any("0.060 from rubber.npz" in line for line in found.assumptions)
@@ -384,7 +384,7 @@ def test_a_compound_and_a_floor_of_the_catalogue_are_drawn_over_their_spread():
         contaminant="detergent",
         motion="slip_tester_g4",
     )
-    pair = case.friction.build(resolved(case)).pair
+    pair = case.friction.build(resolve_context(case)).pair
     assert (pair.polymer, pair.shore_a, pair.shore_a_deviation) == ("NBR", 66, 5)
     assert pair.family == "detergent"
     assert pair.floor_rq[1] > 2 * pair.floor_rq[0]
@@ -399,7 +399,7 @@ def test_packaged_draws_lie_on_the_safe_side_of_the_fit_to_every_reading():
 
     In 90 % glycerol they lie above, by a fifth: the readings that came later are lower there.
     """
-    posterior = fitted(law_named("pair"), readings(), steps=1500, seed=5)
+    posterior = fit_law(law_named("pair"), readings(), steps=1500, seed=5)
     assert posterior.effective > 500
     again = posterior.draws(1000, seed=1)
     assert isinstance(again, PairDraws)
@@ -501,7 +501,7 @@ def test_a_reading_of_one_tread_leaves_another_its_own_error():
     spreads = []
     for one in (case, other):
         place = place_of_tread(one, sole_map(one, 1e-3))
-        error = sole_errors(one, resolved(one))["tread_error"]
+        error = sole_errors(one, resolve_context(one))["tread_error"]
         drawn = error.draws(place, samples=1000, seed=0, known=law.known_errors(1000))
         laboratory = found.draws.errors["laboratory"]
         spreads.append(np.std(laboratory + drawn))

@@ -22,17 +22,17 @@ from underfoot.studies.pair_law import (
     FEATURE_RIVALS,
     _covariance,
     features,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     log_likelihood,
     middle,
     one_reading,
     r2,
-    scored,
+    score_predictions,
     weights,
 )
-from underfoot.studies.sources import Condition, Reading, Span
+from underfoot.studies.sources import PublishedCondition, PublishedReading, Span
 
 ONE = PairConstants(*(np.array([value]) for value in (0.10, 0.08, 0.35, 8e-4, 0.8, 1.2, 0.15)))
 PAIR = {"viscosity": 5e-3, "speed": 0.3, "sole_rq": 8e-6, "floor_rq": 2e-6, "shore_a": 60.0}
@@ -86,9 +86,11 @@ def made_up(source, drag, cof, kind="value"):
         name: Span(value, value) for name, value in {**PAIR, "viscosity": drag / 0.3}.items()
     }
     high = cof if kind == "value" else np.inf
-    reading = Reading(kind, cof, high, 0.05)
+    reading = PublishedReading(kind, cof, high, 0.05)
     name = f"{kind} {drag:g}"
-    return Condition(source, name, numbers, {"fluid": "aqueous"}, reading, laboratory=source)
+    return PublishedCondition(
+        source, name, numbers, {"fluid": "aqueous"}, reading, laboratory=source
+    )
 
 
 @pytest.mark.slow
@@ -101,7 +103,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
         for drag in drags:
             truth = np.log(cof(viscosity=drag / 0.3)) + shared + generator.normal(0, 0.08)
             rows.append(made_up(f"lab {source}", drag, float(np.exp(truth))))
-    posterior = fitted(law_named("pair"), rows, steps=3000)
+    posterior = fit_law(law_named("pair"), rows, steps=3000)
     film, dry = np.exp(posterior.theta[:, 0]), np.exp(posterior.theta[:, 2])
     for draws, truth in ((film, 0.10), (dry, 0.35), (posterior.spreads[:, 0], 0.3)):
         low, high = np.quantile(draws, (0.01, 0.99))
@@ -109,7 +111,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
         assert high < 4 * low
     # an unseen laboratory lies inside the interval about as often as it says
     latent, noise = posterior.predicted(rows)
-    score = scored(latent + noise * generator.normal(size=latent.shape), rows)
+    score = score_predictions(latent + noise * generator.normal(size=latent.shape), rows)
     assert 0.9 <= score.inside_95.mean() <= 1.0
     assert 0.4 <= score.inside_50.mean() <= 0.8
 
@@ -117,7 +119,7 @@ def test_the_fit_recovers_the_constants_of_made_up_sources():
 def test_a_bound_scores_by_the_probability_beyond_it():
     draws = np.random.default_rng(0).normal(np.log(0.2), 0.5, (4000, 1))
     row = made_up("lab", 1e-3, 0.2, kind="lower")
-    score = scored(draws, [row])
+    score = score_predictions(draws, [row])
     assert np.exp(score.log_density[0]) == pytest.approx(0.5, abs=0.03)
     assert score.error[0] == pytest.approx(0.0, abs=0.03)
 
@@ -126,7 +128,7 @@ def test_a_bound_scores_by_the_probability_beyond_it():
 def test_a_bound_is_inside_by_the_share_of_the_draws_it_allows(median):
     """A bound of 0.2 below, at and above the median: half of an interval, less, or nothing."""
     draws = np.random.default_rng(0).normal(np.log(median), 0.5, (40_000, 1))
-    score = scored(draws, [made_up("lab", 1e-3, 0.2, kind="lower")])
+    score = score_predictions(draws, [made_up("lab", 1e-3, 0.2, kind="lower")])
     allowed = norm.sf(np.log(0.2), np.log(median), 0.5)
     for found, level in ((score.inside_50, 0.5), (score.inside_95, 0.95)):
         high, low = (1 + level) / 2, max((1 - level) / 2, 1 - allowed)
@@ -139,7 +141,7 @@ def test_two_studies_of_one_laboratory_are_two_testers():
     rows = [replace(row, laboratory="one laboratory", labels={**row.labels, "floor": str(at)})
             for at, row in enumerate(rows)]  # fmt: skip
     law = law_named("one constant")
-    posterior = fitted(law, [])
+    posterior = fit_law(law, [])
     fixed = replace(posterior, theta=np.zeros_like(posterior.theta),
                     spreads=np.tile([0.3, 0.1, 0.1, 0.0], (len(posterior.theta), 1)))  # fmt: skip
     latent, _ = fixed.predicted(rows)
@@ -150,7 +152,7 @@ def test_two_studies_of_one_laboratory_are_two_testers():
 
 def test_skewed_draws_score_by_mean_and_spread_and_err_by_their_median():
     draws = np.log([[0.1], [0.1], [0.1], [0.8]])
-    score = scored(draws, [made_up("lab", 1e-3, 0.2)])
+    score = score_predictions(draws, [made_up("lab", 1e-3, 0.2)])
     expected = norm.logpdf(np.log(0.2), draws.mean(), draws.std())
     assert score.log_density[0] == pytest.approx(expected)
     assert score.error[0] == pytest.approx(np.log(2))
@@ -202,7 +204,7 @@ def test_a_laboratory_counts_once_and_a_curve_of_it_once():
 
 def test_a_bound_has_no_middle_and_a_range_its_own():
     lower, value = made_up("one", 1e-3, 0.2, kind="lower"), made_up("one", 1e-3, 0.3)
-    ranged = replace(value, reading=Reading("range", 0.1, 0.4, 0.1))
+    ranged = replace(value, reading=PublishedReading("range", 0.1, 0.4, 0.1))
     assert np.exp(middle([lower, value, ranged])) == pytest.approx([np.nan, 0.3, 0.2], nan_ok=True)
     assert features([value])[0] == pytest.approx(
         [np.log(1e-3), np.log(8e-6), np.log(2e-6), 60.0, 0.0]

@@ -9,7 +9,13 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import InputError
 from underfoot.friction import Pair, PairContactLaw, packaged_pair_draws
-from underfoot.friction.shoe_class import ShoeClass, certified, of_class, shoe_class, shoe_classes
+from underfoot.friction.shoe_class import (
+    ShoeClass,
+    certificate_line,
+    of_class,
+    shoe_class,
+    shoe_classes,
+)
 
 ON_VINYL = Pair(58, (5e-6, 12e-6), (1e-6, 3e-6), "aqueous")
 PLACE = np.array([4.4, 2.4, 2.0, 0.0, 0.0, 0.6])
@@ -43,7 +49,7 @@ def test_a_class_raises_and_its_absence_lowers_and_both_are_every_shoe():
     assert law.spread_basis == "without a measurement of this sole on this floor"
     assert any("at least 0.19" in line for line in passed.law.assumptions)
     stricter = replace(shoe_class("EN ISO 20345 SR"), readings=(
-        certified("tile_glycerine", 0.27, "lower", None, "here"),
+        certificate_line("tile_glycerine", 0.27, "lower", None, "here"),
     ))  # fmt: skip
     assert np.median(cof(of_class(law, stricter, PLACE, 0).law)) > before
 
@@ -61,7 +67,7 @@ def test_a_value_draws_the_sole_towards_itself_from_either_side():
     law = PairContactLaw(ON_VINYL, 0.2)
     medians = []
     for value in (0.08, 0.15, 0.30):
-        line = certified("tile_glycerine", value, "value", 0.02, "here")
+        line = certificate_line("tile_glycerine", value, "value", 0.02, "here")
         found = of_class(law, ShoeClass("certified", "a test", (line,)), PLACE, 0)
         assert not found.contradicted
         medians.append(float(np.median(cof(found.law))))

@@ -13,7 +13,7 @@ from underfoot.friction import (
     ShearStrength,
     ViscoelasticArea,
     modulus_exponent,
-    propagated,
+    propagate_spread,
     self_affine_scale,
     shear_strength_from_cof,
     spectrum_scale,
@@ -130,7 +130,7 @@ EXACT = SourcedValue(1.0, "1", "made up")
 
 
 def test_propagation_of_a_sum_is_that_of_variances():
-    found = propagated(
+    found = propagate_spread(
         lambda v: [v["a"] + v["b"], v["a"] - v["b"] + v["c"]], {"a": A, "b": B, "c": EXACT},
         model_deviation=0.3, samples=8000, seed=1,
     )  # fmt: skip
@@ -143,7 +143,10 @@ def test_propagation_of_a_sum_is_that_of_variances():
 
 
 def test_the_same_seed_gives_the_same_interval_and_another_one_does_not():
-    run = [propagated(lambda v: v["a"] ** 2, {"a": A}, samples=300, seed=s).low for s in (3, 3, 4)]
+    run = [
+        propagate_spread(lambda v: v["a"] ** 2, {"a": A}, samples=300, seed=s).low
+        for s in (3, 3, 4)
+    ]
     assert run[0] == run[1]
     assert run[0] != run[2]
 
@@ -151,7 +154,7 @@ def test_the_same_seed_gives_the_same_interval_and_another_one_does_not():
 def test_a_wide_positive_input_stays_positive():
     """tau of 50 % glycerol: 0.19 with a spread of 0.17 (G.2.2); a normal draw goes below 0."""
     tau = SourcedValue(0.19, "m/s", "report G.2.2", 0.17)
-    found = propagated(lambda v: v["tau"], {"tau": tau}, samples=20000, seed=0)
+    found = propagate_spread(lambda v: v["tau"], {"tau": tau}, samples=20000, seed=0)
     assert found.low > 0
     assert float(found.deviation) == pytest.approx(0.17, rel=0.05)
 
@@ -167,4 +170,4 @@ def test_a_wide_positive_input_stays_positive():
 )
 def test_bad_propagation_is_refused(function, inputs, options, word):
     with pytest.raises(InputError, match=word):
-        propagated(function, inputs, **options)
+        propagate_spread(function, inputs, **options)

@@ -13,7 +13,7 @@ from underfoot.material import (
     plane_strain_modulus,
     poisson_ratio_from_moduli,
     power_law_spectrum,
-    reduced,
+    reduce_spectrum,
     report_elastomer,
     shear_from_young,
     shear_modulus,
@@ -222,7 +222,7 @@ def test_a_reduced_spectrum_states_its_error():
     )
     errors = []
     for per_decade, most in ((1, 0.08), (2, 0.01)):
-        few = reduced(many, (1e2, 1e6), terms_per_decade=per_decade)
+        few = reduce_spectrum(many, (1e2, 1e6), terms_per_decade=per_decade)
         assert len(few.spectrum) <= 5 * per_decade + 1
         w = np.geomspace(1e2, 1e6, 333)
         np.testing.assert_allclose(
@@ -234,11 +234,11 @@ def test_a_reduced_spectrum_states_its_error():
         errors.append(few.loss_error)
     assert errors[1] < errors[0]
     with pytest.raises(InputError, match="lowest"):
-        reduced(many, (1e6, 1e2))
+        reduce_spectrum(many, (1e6, 1e2))
     with pytest.raises(InputError, match="terms"):
-        reduced(many, (1.0, 1e2), terms_per_decade=0)
+        reduce_spectrum(many, (1.0, 1e2), terms_per_decade=0)
     with pytest.raises(InputError, match="no loss"):
-        reduced(RelaxationSpectrum(1e6), (1.0, 1e2))
+        reduce_spectrum(RelaxationSpectrum(1e6), (1.0, 1e2))
 
 
 def test_spectrum_presents_itself():

@@ -14,7 +14,7 @@ from underfoot.friction.shoe_class import slip_tests
 from underfoot.places import choice
 from underfoot.places.choice import _Solver, film_odds_over_positions, tread_place
 from underfoot.places.evidence import _of_file
-from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
+from underfoot.places.joint import FLOOR_LIKENESS, CofReading, PlaceDraws
 from underfoot.places.machines import FLUIDS, predicted_reading
 from underfoot.places.place import place_of
 
@@ -30,7 +30,7 @@ TABLE = {
 def cell():
     """Return a function: the cell of a contact whose COF and film are said, not solved."""
     place = place_of(TABLE)
-    joint = JointDraws()
+    joint = PlaceDraws()
     shoe, floor = place.shoes[0], place.floors[0]
     cases = {fluid: place.case(shoe, floor, fluid) for fluid in (THICK, "water")}
     solver = _Solver(place, joint, True, {})
@@ -85,7 +85,7 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
     place = place_of(TABLE | treaded)
     case = place.case(place.shoes[0], place.floors[0], THICK)
     loads = iter(np.array([1 / 2, 2 / 3, 1 / 3]) * case.motion.normal_force)
-    monkeypatch.setattr(choice, "prepared", lambda *_: None)
+    monkeypatch.setattr(choice, "prepare_case", lambda *_: None)
     monkeypatch.setattr(choice, "places", lambda *_: [0, 1, 2])
     monkeypatch.setattr(choice, "solved_at", lambda *_: ())
     monkeypatch.setattr(choice, "place_numbers", lambda: {"fluid_load": next(loads)})
@@ -96,7 +96,7 @@ def test_the_film_over_positions_is_told_against_the_tread_where_it_lies(monkeyp
 
 
 def test_two_rubbers_find_one_wet_floor_alike_and_another_floor_not():
-    joint = JointDraws()
+    joint = PlaceDraws()
     one, two, away = (
         joint.beyond_roughness(floor, name)
         for floor, name in (("hall", "pair: a"), ("hall", "pair: b"), ("yard", "pair: c"))
@@ -111,12 +111,12 @@ def test_two_rubbers_find_one_wet_floor_alike_and_another_floor_not():
 
 
 def test_an_upper_bound_takes_away_what_is_above_it_and_a_lower_one_what_is_below():
-    joint, cof = JointDraws(count=2000), np.geomspace(0.05, 0.8, 2000)
-    upper = np.exp(joint.log_likelihood(cof, Reading(0.2, "upper")))
-    lower = np.exp(joint.log_likelihood(cof, Reading(0.2, "lower")))
+    joint, cof = PlaceDraws(count=2000), np.geomspace(0.05, 0.8, 2000)
+    upper = np.exp(joint.log_likelihood(cof, CofReading(0.2, "upper")))
+    lower = np.exp(joint.log_likelihood(cof, CofReading(0.2, "lower")))
     np.testing.assert_allclose(upper + lower, 1.0, atol=1e-9)
     assert upper[0] > 0.99 > 0.01 > upper[-1]
-    value = joint.log_likelihood(cof, Reading(0.2))
+    value = joint.log_likelihood(cof, CofReading(0.2))
     assert cof[value.argmax()] == pytest.approx(0.2, rel=0.05)  # repeats vary a little by draw
 
 

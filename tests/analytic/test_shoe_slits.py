@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.shoe import Heel, Sipes, Tread, heel_map, heel_surface, surface_map
@@ -214,7 +214,7 @@ def test_slits_work_as_the_same_slits_resolved_by_the_grid():
     found = []
     for grid in (0.5, 0.55):  # two cells across a sipe of 1 mm, and just not
         case = slipping(1.0, grid)
-        sole, context = sole_map(case, grid * MM), resolved(case)
+        sole, context = sole_map(case, grid * MM), resolve_context(case)
         assert (sole.slits is None) == (grid == 0.5)
         found.append(
             solve_sliding(

@@ -9,7 +9,7 @@ from underfoot.core import InputError
 from underfoot.shoe import Facet, Heel, SoleSurface, Tread, WearPlane, heel_map, heel_surface
 from underfoot.shoe import surface_map as tilted
 from underfoot.shoe._kernels.covering_discs import local_width
-from underfoot.shoe.files.orientation import levelled, other_rest, resting_plane
+from underfoot.shoe.files.orientation import level_axes, other_rest, resting_plane
 from underfoot.shoe.tread_measures import (
     QUIET,
     height_noise,
@@ -180,7 +180,7 @@ def test_resting_plane_is_that_of_three_points_under_the_centre():
     a, b, c = resting_plane(height, 0.5e-3)
     for at_x, at_y, z in studs:  # it touches the rims of their flat ends, 5 mm from the middle
         assert a * at_x + b * at_y + c == pytest.approx(z, abs=5e-3 * math.hypot(a, b) + 5e-5)
-    turned, angle = levelled(np.eye(3), (a, b, c))
+    turned, angle = level_axes(np.eye(3), (a, b, c))
     assert angle == pytest.approx(math.atan(math.hypot(a, b)), rel=1e-6)
     assert np.allclose(turned @ turned.T, np.eye(3), atol=1e-12)
 

@@ -158,7 +158,7 @@ def test_film_of_the_reduced_model_squeezes_as_h_over_root_of_time():
     load = np.full(times.size, 500.0)
     zero = np.zeros(times.size)
     table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
-    film = kernel.carried(
+    film = kernel.carry_slip(
         times, load, zero, zero, zero, 1.0, zero, 8.0, constants, 0.219, 6e-4, *table, 0.0
     )[1]
     rate = 1e5 * (500.0 / 1e-3) / (12 * 0.219)
@@ -175,7 +175,7 @@ def test_wedge_holds_the_film_that_its_inlet_draws_in():
     times = np.linspace(0, 3.0, 3001)
     load, zero, speed = (np.full(times.size, v) for v in (500.0, 0.0, 0.5))
     table = np.array([0.0, 1.0]), np.array([0.2, 0.2])
-    out = kernel.carried(
+    out = kernel.carry_slip(
         times, load, zero, zero, speed, 1.0, speed, 8.0, constants, 0.219, 6e-4, *table, 0.0
     )
     inlet = 30.0 * 0.219 * 0.5 / 5e5

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from underfoot.case import Case
 from underfoot.case.friction import PairOption
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.core.catalogue import Catalogue
@@ -349,7 +349,7 @@ def test_draws_and_map_hold_the_mean_of_both_states(pattern, least, most):
     """Grooves across wipe, grooves along do not; the law for draws has the sum of the map."""
     smooth = {"contaminant.viscosity": "1 cP", "shoe.roughness.ra": "1 um"}
     case = tread(pattern, **SIZES).replace({**smooth, "interface.roughness_beyond_cutoff": 1.0})
-    parts = prepared(case, 1e-3, {})
+    parts = prepare_case(case, 1e-3, {})
     law = parts.local_law
     pressure = np.where(parts.sole.land, 3e5, 0.0)
     film = np.full_like(pressure, 1e-3)
@@ -377,7 +377,7 @@ def test_laws_that_hold_no_real_area_have_one_state():
     case = tread("transverse", **SIZES).replace(
         {"friction.model": "stribeck", "contaminant": "water"}
     )
-    law = prepared(case, 1e-3, {}).local_law
+    law = prepare_case(case, 1e-3, {}).local_law
     pressure = np.where(law.edges.label > 0, 3e5, 0.0)
     assert not law.lugs(pressure, 0.3, np.full_like(pressure, 1e-3)).wiped.any()
 
@@ -387,7 +387,7 @@ def test_laws_that_hold_no_real_area_have_one_state():
 def test_no_floor_of_the_catalogue_grips_more_wet_than_dry_behind_an_edge(floor, fluid):
     """Wiped, with suction: a lug of the sharpest edge."""
     parts = {"shoe": "work_shoe_full_tread", "floor": floor, "motion": "slip_tester_g4"}
-    wet, dry = (resolved(Case(**parts, contaminant=name)) for name in (fluid, "none"))
+    wet, dry = (resolve_context(Case(**parts, contaminant=name)) for name in (fluid, "none"))
     lug = one_lug(length=5e-3, width=5e-3, height=2.5e-3)
     plain = PairOption().build(wet)
     edged = EdgedLaw(

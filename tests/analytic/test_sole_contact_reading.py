@@ -11,7 +11,7 @@ from underfoot.sole_contact import floor_sensor_reading
 from underfoot.sole_contact.reading import (
     _rim_quarter,
     conductance_over_cube,
-    lagged,
+    lag_pressure,
     pocket_pressure,
 )
 
@@ -179,12 +179,14 @@ def test_a_lagging_pocket_follows_a_step_and_a_ramp_as_it_should():
     rate, interval = 40.0, 2e-3
     time = interval * np.arange(80)
     ones = np.ones_like(time)
-    assert lagged(ones, rate * ones, interval) == pytest.approx(1 - np.exp(-rate * time), abs=1e-12)
+    assert lag_pressure(ones, rate * ones, interval) == pytest.approx(
+        1 - np.exp(-rate * time), abs=1e-12
+    )
     ramp = 5.0 * time
     exact = ramp - 5.0 / rate * (1 - np.exp(-rate * time))
-    assert lagged(ramp, rate * ones, interval) == pytest.approx(exact, abs=1e-12)
-    assert lagged(ramp, 1e9 * ones, interval) == pytest.approx(ramp, abs=1e-6)
-    assert np.abs(lagged(ramp, 0.0 * ones, interval)).max() < 1e-10
+    assert lag_pressure(ramp, rate * ones, interval) == pytest.approx(exact, abs=1e-12)
+    assert lag_pressure(ramp, 1e9 * ones, interval) == pytest.approx(ramp, abs=1e-6)
+    assert np.abs(lag_pressure(ramp, 0.0 * ones, interval)).max() < 1e-10
 
 
 def test_a_compliant_instrument_loses_peak_and_keeps_load_in_an_even_film():

@@ -12,13 +12,13 @@ from underfoot.surface import (
     autocorrelation,
     checkerboard,
     correlation_length,
-    filled,
+    fill_missing_heights,
     height_numbers,
     isotropic_from_profile,
     isotropic_spectrum,
-    levelled,
+    level_surface,
     long_waves,
-    periodised,
+    make_periodic,
     profile_from_positions,
     profile_roughness,
     profile_spectrum,
@@ -85,17 +85,17 @@ def test_lines_pass_the_regression_filter_to_the_very_ends():
 def test_levelling_removes_exactly_its_form():
     x = np.linspace(-1, 1, 301)
     cubic = Profile(1 + 2 * x + 3 * x**2 + 4 * x**3, UM)
-    assert np.abs(levelled(cubic, 3).heights).max() < 1e-13
-    assert np.abs(levelled(cubic, 2).heights).max() > 0.1
+    assert np.abs(level_surface(cubic, 3).heights).max() < 1e-13
+    assert np.abs(level_surface(cubic, 2).heights).max() > 0.1
     y = np.linspace(-1, 1, 77)
     form = HeightMap(1 + 2 * x[:, None] + 3 * y + x[:, None] * y + y**2, UM)
-    assert np.abs(levelled(form, 2).heights).max() < 1e-13
-    assert "polynomial of degree 2" in levelled(form, 2).processing[-1]
-    assert "plane" in levelled(form).processing[-1]
+    assert np.abs(level_surface(form, 2).heights).max() < 1e-13
+    assert "polynomial of degree 2" in level_surface(form, 2).processing[-1]
+    assert "plane" in level_surface(form).processing[-1]
     with pytest.raises(InputError, match="degree"):
-        levelled(cubic, -1)
+        level_surface(cubic, -1)
     with pytest.raises(InputError, match="coefficients"):
-        levelled(Profile([1.0, 2.0, 3.0], UM), 2)
+        level_surface(Profile([1.0, 2.0, 3.0], UM), 2)
 
 
 @pytest.mark.parametrize("standard", ["ISO 21920-2:2021", "ISO 4287:1997"])
@@ -459,19 +459,19 @@ def test_filling():
     z = np.add.outer(np.arange(20.0), 2 * np.arange(20.0))
     holed = z.copy()
     holed[5, 5] = holed[0, 0] = np.nan
-    whole, note = filled(holed)
+    whole, note = fill_missing_heights(holed)
     assert whole[5, 5] == pytest.approx(z[5, 5])
     assert np.isfinite(whole).all()
     assert "2 of 400" in note
-    assert filled(z)[1] == "no heights were missing"
+    assert fill_missing_heights(z)[1] == "no heights were missing"
     with pytest.raises(DataError, match="missing"):
-        filled(np.where(z > 30, np.nan, z))
+        fill_missing_heights(np.where(z > 30, np.nan, z))
 
 
 def test_periodised_maps_say_what_was_done():
     z = self_affine(128, 1 * UM, 1 * UM, 0.8, 128 * UM, 4 * UM, 3).heights[:100, :90]
     measured = HeightMap(z + 0.1 * np.arange(100)[:, None] * UM, 1 * UM)
-    tapered, mirrored = periodised(measured), periodised(measured, "mirror")
+    tapered, mirrored = make_periodic(measured), make_periodic(measured, "mirror")
     for made in (tapered, mirrored):
         assert made.periodic
         assert "made periodic" in made.processing[-1]
@@ -480,16 +480,16 @@ def test_periodised_maps_say_what_was_done():
         inside = np.abs(np.diff(made.heights, axis=0)).max()
         assert np.abs(made.heights[0] - made.heights[-1]).max() <= inside
     assert mirrored.shape == (200, 180)
-    assert mirrored.rms_height == pytest.approx(levelled(measured).rms_height, rel=1e-12)
-    assert tapered.rms_height < levelled(measured).rms_height
+    assert mirrored.rms_height == pytest.approx(level_surface(measured).rms_height, rel=1e-12)
+    assert tapered.rms_height < level_surface(measured).rms_height
     np.testing.assert_allclose(
-        tapered.heights[20:80, 20:70], levelled(measured).heights[20:80, 20:70], rtol=1e-12
+        tapered.heights[20:80, 20:70], level_surface(measured).heights[20:80, 20:70], rtol=1e-12
     )
-    assert periodised(tapered) is tapered
+    assert make_periodic(tapered) is tapered
     with pytest.raises(InputError, match="method"):
-        periodised(measured, "none")
+        make_periodic(measured, "none")
     with pytest.raises(InputError, match="share"):
-        periodised(measured, share=0.7)
+        make_periodic(measured, share=0.7)
 
 
 def test_a_map_from_a_profile_has_the_slopes_of_the_profile():

@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import freqz, savgol_coeffs
 
 from underfoot.trials.machines.slip_friction import (
-    calibrated,
+    apply_calibration,
     mean_friction,
     slide_friction,
     slide_plate,
@@ -61,7 +61,7 @@ def test_calibration_multiplies_forces_and_adds_its_uncertainty():
     (plain,), whole = slide().plates, slide_plate(slide(), UP, RECORD)
     np.testing.assert_allclose(whole.force, plain.force * [0.9, 0.9, 1.1])
     cof = replace(slide_friction(slide(), protocol("en_iso_13287")).cof, uncertainty=0.01)
-    added = calibrated(cof, RECORD)
+    added = apply_calibration(cof, RECORD)
     assert added.uncertainty == pytest.approx(np.hypot(0.01, 0.3 * np.hypot(0.03, 0.04)))
 
 

@@ -16,11 +16,11 @@ from underfoot.trials.statistics import (
     letters,
     linear_model,
     logistic_regression,
+    merge_equal_values,
     paired_curve_test,
     persons_needed,
     power,
     rank_test,
-    resolved,
     share_difference,
     t_test,
 )
@@ -120,7 +120,7 @@ def test_pairs_after_a_rank_test_have_letters():
 
 
 def test_values_that_differ_by_rounding_are_equal():
-    assert len(set(resolved([0.1 + 0.2, 0.3, 0.31]))) == 2
+    assert len(set(merge_equal_values([0.1 + 0.2, 0.3, 0.31]))) == 2
     readings = np.array([0.18, 0.19, 0.20, 0.21])
     for factor in (1.0, 1e-9, 1e9):
         with pytest.raises(DataError, match="scatter"):

@@ -9,7 +9,7 @@ import pytest
 from underfoot.trials.machines.pressure_map import PressureScan, pressure_map
 from underfoot.trials.pages.figures import sheets
 from underfoot.trials.readers.text import measurable
-from underfoot.trials.recording.signals import saturated, unloaded
+from underfoot.trials.recording.signals import is_saturated, unloaded_samples
 from underfoot.trials.simulator import walk
 from underfoot.trials.simulator.activities import activity
 from underfoot.trials.statistics.ranks import _of_two
@@ -71,14 +71,14 @@ def test_a_top_is_flat_where_the_signal_comes_from_further_away_than_it_dwells(
     rise = 500.0 - slope * every * (np.arange(100, 0, -1) // every + 1)
     fine = np.full(10, 2.0) if slope == 16.0 else []
     signal = np.concatenate([np.zeros(300), fine, rise[rise > 100], np.full(40, 500.0)])
-    assert saturated(side * np.concatenate([signal, np.zeros(300)]), 1000.0) == flat
+    assert is_saturated(side * np.concatenate([signal, np.zeros(300)]), 1000.0) == flat
 
 
 def test_the_level_of_an_empty_plate_is_the_fullest_within_a_few_newtons():
     """3 s of noise about 0, and 0.4 s in which a bag lies still on it with 60 N."""
     noise = np.random.default_rng(1).normal(0.0, 8.0, 3000)
     force = np.concatenate([noise, np.full(400, 60.0), np.full(600, 700.0)])
-    mask = unloaded(force, 1000.0)
+    mask = unloaded_samples(force, 1000.0)
     assert mask[:2900].mean() > 0.9
     assert not mask[3050:].any()
 

@@ -9,7 +9,7 @@ import pytest
 
 from commands import called, process
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.result import Result
 from underfoot.core import DataError, InputError
 from underfoot.rough_contact import ContactTable
@@ -35,7 +35,7 @@ def folder(tmp_path_factory):
 
 
 def law(case):
-    return case.friction.build(resolved(case))
+    return case.friction.build(resolve_context(case))
 
 
 @pytest.mark.slow
@@ -101,7 +101,7 @@ def test_the_floors_scan_moves_hysteresis_area_gap_and_flow_by_its_spectrum(fold
     given = {"floor.roughness.rq": "3 um"}
     case = Case.load(folder / "case.toml").replace(given)
     other = case.replace("floor.roughness.file", str(folder / "smooth.csv")).replace(given)
-    tables = [one.rough_contact.table(resolved(one)) for one in (case, other)]
+    tables = [one.rough_contact.table(resolve_context(one)) for one in (case, other)]
     at = 3e5, case.motion.speed
     area, loss, gap = (
         [float(getattr(table, name)(*at)) for table in tables]
@@ -128,7 +128,7 @@ def test_what_underfoot_contact_writes_is_taken_as_it_is(folder):
     case = Case.load(folder / "case.toml")
     filed = case.replace("rough_contact.file", str(folder / "contact.npz"))
     assert filed.rough_contact.name == "contact_table"
-    own = case.rough_contact.table(resolved(case))
+    own = case.rough_contact.table(resolve_context(case))
     made = ContactTable.load(folder / "contact.npz")
     for name in ("real_contact_fraction", "cof_hysteresis", "mean_gap"):
         assert made.values[name] == pytest.approx(own.values[name], rel=1e-6)
@@ -148,12 +148,12 @@ def test_what_underfoot_contact_writes_is_taken_as_it_is(folder):
 @pytest.mark.parametrize("theory", ["persson", "greenwood_williamson"])
 def test_theories_are_options_of_the_slot(folder, theory):
     case = Case.load(folder / "case.toml").replace("rough_contact.model", theory)
-    contact = case.rough_contact.build(resolved(case))
+    contact = case.rough_contact.build(resolve_context(case))
     gap = contact.mean_gap([1e4, 1e5])
     assert gap[0] > gap[1] > 0
     assert 0 < contact.flow_factor(gap)[1] < contact.flow_factor(gap)[0] <= 1
     rough = case.replace("floor.roughness.rq", "10 um")
-    assert rough.rough_contact.build(resolved(rough)).mean_gap(1e5) > gap[1]
+    assert rough.rough_contact.build(resolve_context(rough)).mean_gap(1e5) > gap[1]
     light = contact.breaches(pressure=2e6, speed=0.3)
     assert bool(light) == (theory == "greenwood_williamson")
 
@@ -171,10 +171,10 @@ def test_a_table_that_is_none_or_another_is_refused(folder):
     (folder / "none.npz").write_bytes(b"no archive")
     case = Case.load(folder / "case.toml").replace("rough_contact.file", str(folder / "none.npz"))
     with pytest.raises(DataError, match="is not a contact table"):
-        case.rough_contact.build(resolved(case))
+        case.rough_contact.build(resolve_context(case))
     (folder / "none.npz").write_bytes(b"other")
     with pytest.raises(InputError, match="has changed since the case was made"):
-        case.rough_contact.build(resolved(case))
+        case.rough_contact.build(resolve_context(case))
 
 
 def test_the_app_takes_compound_and_rubber_test(folder, monkeypatch):

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from underfoot.case import Case
 from underfoot.case.terms import TERMS
 from underfoot.cli.app import app
-from underfoot.cli.output import print_table, shortened
+from underfoot.cli.output import print_table, shorten_remark
 from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import Remark
 from underfoot.core.presentation import Table
@@ -183,7 +183,7 @@ def test_decisive_assumptions_come_first_one_section_after_the_other():
         Remark("interface", "effective_rq = 14 um (composite)"),
         Remark("", "Contact friction is proportional to the contact pressure."),
     )
-    assert [shortened(line) for line in ranked_assumptions(listed)] == [
+    assert [shorten_remark(line) for line in ranked_assumptions(listed)] == [
         "interface: roughness_beyond_cutoff = 2.0",
         "shoe.heel: length = 60 mm",
         "motion: duration = 0.12 s",

@@ -9,12 +9,12 @@ import typer
 from typer.testing import CliRunner
 
 from underfoot.cli.contact import contact
-from underfoot.cli.guard import guarded
+from underfoot.cli.guard import guard_command
 from underfoot.core import Status
 from underfoot.surface import self_affine
 
 APP = typer.Typer(pretty_exceptions_enable=False)
-APP.command()(guarded(contact))
+APP.command()(guard_command(contact))
 RANDOM = ["--rms", "4 um", "--points", "64"]
 
 
@@ -140,13 +140,13 @@ def test_a_file_that_is_no_spectrum(tmp_path):
 def test_what_did_not_converge_is_no_number(monkeypatch, tmp_path):
     import underfoot.questions.contact as command
 
-    honest = command.solved
+    honest = command.solve_contact
 
     def failing(*arguments):
         found, flow = honest(*arguments)
         return replace(found, status=Status.NOT_CONVERGED), flow
 
-    monkeypatch.setattr(command, "solved", failing)
+    monkeypatch.setattr(command, "solve_contact", failing)
     out = tmp_path / "result"
     found = run(*RANDOM, "--modulus", "5 MPa", "--json", "--out", str(out))
     assert found.exit_code == 4

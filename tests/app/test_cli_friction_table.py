@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from underfoot.calibrate import law_file_text, law_table, trial_readings
 from underfoot.case import Case
 from underfoot.cli.app import app
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import DataError, InputError
 from underfoot.friction import stribeck_cof
 
@@ -37,7 +37,7 @@ def loaded(folder, **settings):
 
 def test_the_table_beside_a_case_becomes_its_law(folder):
     case = loaded(folder)
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     assert law.source == "our rig, 3 May"
     assert law(1e5, [0.05, 0.5, 1.0], 1.0).adhesion == pytest.approx([5e4, 3e4, 2e4])
     assert [one.quantity for one in law.breaches(contact_pressure=1e5, speed=2.0, film_thickness=1)]
@@ -56,14 +56,14 @@ def test_a_table_read_under_another_fluid_counts_at_equal_viscosity_times_speed(
     text = "speed,cof,viscosity (cP)\n0.1,0.5,3.78\n0.2,0.4,3.78\n"
     (folder / "law.csv").write_text(text)
     case = loaded(folder)
-    law = case.friction.build(resolved(case))  # detergent of 1.89 cP
+    law = case.friction.build(resolve_context(case))  # detergent of 1.89 cP
     assert law(1.0, [0.2, 0.4], 1.0).adhesion == pytest.approx([0.5, 0.4])
     assert any("viscosity x speed" in note for note in law.assumptions)
 
 
 def test_a_dry_case_takes_a_table(folder):
     case = loaded(folder, contaminant="none")
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     assert float(law(1.0, 0.05, 1.0).total) == pytest.approx(0.5)
 
 

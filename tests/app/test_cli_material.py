@@ -9,7 +9,7 @@ import pytest
 from commands import called
 from underfoot.calibrate.compound import compound_from_files
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError, RangeError, to_si
 from underfoot.material import power_law_spectrum, shear_modulus
 
@@ -51,11 +51,11 @@ def test_sweeps_become_a_compound_that_a_case_takes(tmp_path):
     assert case.origins["shoe.material.modulus"].kind == "file"
     assert case.shoe.material.shore_a is None  # the catalogue's hardness is not beside a modulus
     # 5 MPa at 1 Hz and 25 C is what the file was made of: 5.1 MPa at 23 C
-    rubber = resolved(case).rubber()
+    rubber = resolve_context(case).rubber()
     assert float(rubber.complex_modulus(2 * np.pi).real) == pytest.approx(5.1e6, rel=0.02)
     tangent = [rubber.spectrum.loss_tangent(2 * np.pi * f) for f in (1, 1e3, 1e5)]
     assert tangent == pytest.approx([0.19] * 3, abs=0.005)
-    assert not resolved(case).modulus_breaches  # tested to 1e8 rad/s
+    assert not resolve_context(case).modulus_breaches  # tested to 1e8 rad/s
     assert "relaxation" not in case.to_toml()
 
 
@@ -149,7 +149,7 @@ def test_one_temperature_and_rates_never_tested_are_told(tmp_path):
     assert "One temperature was tested: no shift factors" in done.stdout.replace("\n", " ")
     assert "Its loss there is extrapolated" in done.stdout.replace("\n", " ")
     (tmp_path / "case.toml").write_text(CASE + '[shoe.material]\nfile = "c.toml"\n')
-    context = resolved(Case.load(tmp_path / "case.toml"))
+    context = resolve_context(Case.load(tmp_path / "case.toml"))
     assert [str(breach).split(":")[0] for breach in context.modulus_breaches] == ["compound"]
     # sliding starts at 5500 rad/s: the loss is that of a compound without a spectrum
     law = context_law(tmp_path)
@@ -210,7 +210,7 @@ def test_a_test_that_names_no_temperature_is_told(tmp_path, form, use, at):
 
 def context_law(folder):
     case = Case.load(folder / "case.toml")
-    return case.friction.build(resolved(case))
+    return case.friction.build(resolve_context(case))
 
 
 @pytest.mark.parametrize(

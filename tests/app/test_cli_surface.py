@@ -10,7 +10,7 @@ import pytest
 
 from commands import called
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import DataError, InputError
 from underfoot.surface import (
     Profile,
@@ -61,7 +61,7 @@ def folder(tmp_path):
 
 
 def law(case):
-    return case.friction.build(resolved(case))
+    return case.friction.build(resolve_context(case))
 
 
 def test_a_scan_is_read_and_its_lines_make_a_case(folder):

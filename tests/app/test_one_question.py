@@ -16,7 +16,7 @@ import pytest
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core.presentation import value_text
-from underfoot.places.choice import chosen
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import place_of
 from underfoot.questions.method import MethodPrediction, method_prediction
 from underfoot.questions.risk import risk_assessment
@@ -98,7 +98,7 @@ def test_pages_agree_on_how_often_a_person_slips(sole, fluid, floor, slope, peop
     # choose: a place of this floor and fluid alone
     if fluid == "none":
         return
-    one = chosen(place_of(place(case, floor, slope, fluid, people)))
+    one = choose_shoe(place_of(place(case, floor, slope, fluid, people)))
     (answer,) = one.shoes
     assert answer.slips.value == pytest.approx(slip.value, abs=CHANCE)
     for end, whole in zip(answer.slips.interval, slip.interval, strict=True):

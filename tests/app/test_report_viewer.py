@@ -15,7 +15,7 @@ from underfoot.core import SourcedValue, Status, display
 from underfoot.core.fields import from_xarray
 from underfoot.core.html import environment
 from underfoot.questions.comparison import case_differences, compare
-from underfoot.questions.outcomes import Outcome
+from underfoot.questions.outcomes import CaseOutcome
 from underfoot.questions.wear import WearSeries
 from underfoot.questions.wear_limit import WearPoint
 from underfoot.report import page_text, write_report
@@ -364,7 +364,7 @@ def worn_series():
     )  # fmt: skip
     depths = (0.0, 1e-3, 2e-3)
     soles = [heel.worn(WearPlane(depth) if depth else None) for depth in depths]
-    failed = Outcome(
+    failed = CaseOutcome(
         "", "", {"cof": SourcedValue(None, "1")}, {}, Status.NOT_CONVERGED, "", (), (), 0.0
     )
     points = tuple(WearPoint(wear_measures(sole), failed) for sole in soles)

@@ -13,7 +13,7 @@ import typer
 pytest.importorskip("nicegui")
 
 from underfoot.app.inputs import Input, read_in_unit
-from underfoot.app.pages.studies import typed
+from underfoot.app.pages.studies import typed_value
 from underfoot.case import Case
 from underfoot.case.tables import table_columns
 from underfoot.case.template import template
@@ -125,7 +125,7 @@ def in_a_box(path, text, unit, si, comma):
 
 
 def in_a_study(path, text, unit, si, comma):
-    return to_si(typed(text, path, comma=comma), si, where="")
+    return to_si(typed_value(text, path, comma=comma), si, where="")
 
 
 def test_there_are_forty_spellings_of_ten_quantities():

@@ -12,17 +12,17 @@ from underfoot.core.errors import Cancelled
 from underfoot.report.studies_page import studies_page, write_study
 from underfoot.studies import (
     Computed,
+    ComputedQuantity,
     Figure,
     Layer,
     Options,
     Panel,
-    Quantity,
-    StudyResult,
-    Table,
+    PublishedStudyResult,
+    StudyTable,
     g2,
     g3,
     headline,
-    judged,
+    judge_study,
     read_results,
     run_all,
     runner,
@@ -40,15 +40,17 @@ def result(name):
     """Every quantity a study is asked for, as the number 1 on one grid; a figure, a table."""
     asked = {one.quantity: one for one in study(name).statements if one.quantity}
     values = {
-        path: Quantity.of([3.0 - k for k in range(len(one.names))], one.si_unit, names=one.names)
+        path: ComputedQuantity.of(
+            [3.0 - k for k in range(len(one.names))], one.si_unit, names=one.names
+        )
         if one.names
-        else Quantity.of(1.0, one.si_unit)
+        else ComputedQuantity.of(1.0, one.si_unit)
         for path, one in asked.items()
     }
     figure = Figure((Panel((Layer("points", [1.0], [2.0]),)),), "so <it> is")
-    table = Table("t", "A table of <words>", ("x", "y"), (("a", 1.5), ("b", None)))
+    table = StudyTable("t", "A table of <words>", ("x", "y"), (("a", 1.5), ("b", None)))
     computed = Computed(values, (table,), {"made_up": figure}, ("it holds",), ("n",), ("as",))
-    return StudyResult(study(name), computed, True, 1.0, 1.0)
+    return PublishedStudyResult(study(name), computed, True, 1.0, 1.0)
 
 
 @pytest.fixture(scope="module")
@@ -149,8 +151,8 @@ def documented():
 @pytest.mark.slow
 def test_the_documented_table_agrees_with_a_fresh_computation():
     rows = documented()
-    fresh = judged(study("g3").statements, g3.compute(Options()).quantities)
-    fresh += judged(study("g2").statements, g2.compute(Options(quick=True)).quantities)
+    fresh = judge_study(study("g3").statements, g3.compute(Options()).quantities)
+    fresh += judge_study(study("g2").statements, g2.compute(Options(quick=True)).quantities)
     assert len(fresh) > 35
     for one in fresh:
         s = one.statement

@@ -137,7 +137,7 @@ def test_a_stopped_study_takes_no_further_case_and_goes_on_when_it_is_run(robust
         monkeypatch.setattr(module, "PAUSE", -1.0)  # every look is due
         return record(job, 1)
 
-    monkeypatch.setattr(module, "computed", computed)
+    monkeypatch.setattr(module, "compute_job", computed)
     before = len(study.store.records())
     with pytest.raises(Stopped, match=r"every finished case is kept.*underfoot study run goes on"):
         study.run(workers=1)

@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 from underfoot.core import InputError
-from underfoot.trials import Profile
+from underfoot.trials import TrialsProfile
 from underfoot.trials.pages.report import STORE, write_trials_report
 from underfoot.trials.recording.protocols import QUANTITIES, protocol, protocol_names
 from underfoot.trials.simulator import simulated_folder
@@ -60,10 +60,12 @@ def test_spreadsheet_holds_the_numbers_and_no_formulas(tmp_path):
     import openpyxl
 
     from underfoot.trials.pages.report import csv_text, write_spreadsheet
-    from underfoot.trials.study import Table
+    from underfoot.trials.study import TrialTable
 
     rows = (("=1+1", 1.5, None, ""), ("plain", float("nan"), 3, "-x"))
-    table = Table.of("odd: name/1", "A title", ("text", "number", "count", "more"), rows, "note")
+    table = TrialTable.of(
+        "odd: name/1", "A title", ("text", "number", "count", "more"), rows, "note"
+    )
     write_spreadsheet([table, table], ["How it was done."], tmp_path / "a.xlsx")
     book = openpyxl.load_workbook(tmp_path / "a.xlsx")
     assert len(book.sheetnames) == 3
@@ -136,7 +138,7 @@ class _Deadly:
 def test_a_file_that_kills_its_process_is_refused_alone(tester):
     files = sorted(tester.glob("work_none*.csv"))
     jobs = [
-        (path.name, (path,), {}, [], Profile(), protocol("report_g4"), "base", None)
+        (path.name, (path,), {}, [], TrialsProfile(), protocol("report_g4"), "base", None)
         for path in files
     ]
     deadly = (
@@ -144,7 +146,7 @@ def test_a_file_that_kills_its_process_is_refused_alone(tester):
         (tester / "deadly.csv",),
         _Deadly(),
         [],
-        Profile(),
+        TrialsProfile(),
         None,
         "b",
         None,

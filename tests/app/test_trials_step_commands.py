@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from underfoot.cli.trials import trials_app
-from underfoot.trials import joined, read_trial, required_frictions, walkway_of
+from underfoot.trials import join_trials, read_trial, required_frictions, walkway_of
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.study import analyse_folder
 
@@ -64,7 +64,7 @@ def test_export_of_text_files_keeps_the_numbers(tmp_path):
     files = DATA / "bmc" / "walk1.trc", DATA / "bmc" / "walk1.forces"
     assert _run("export", files[0], "--with", files[1], "--out", out).exit_code == 0
     trial = read_trial(out)
-    source = joined(*(read_trial(file) for file in files))
+    source = join_trials(*(read_trial(file) for file in files))
     steps = [s.stance for s in required_frictions(walkway_of(source)) if s.measurement.estimated]
     strikes = [event.time for event in trial.events if event.name == "heel contact"]
     assert strikes == pytest.approx([stance.contact for stance in steps], abs=1e-4)

@@ -22,7 +22,7 @@ from underfoot.app.project import Project
 from underfoot.app.uploads import received
 from underfoot.case import Case
 from underfoot.core import InputError, silent
-from underfoot.report.outsole import case_text, inspected
+from underfoot.report.outsole import case_text, inspect_outsole
 from underfoot.shoe.files import FileSettings
 
 SOLES = "input[type=file][accept*=stl]"
@@ -244,7 +244,7 @@ def test_a_file_in_the_app_is_the_case_that_inspect_writes(tmp_path, own):
     variants = str(project.inside("variants"))
     answer = work_sole.inspected_sole(str(file), {}, variants, progress=silent)
     sole_file._Inspection._use(page, ["heel"], answer["shoe"])
-    text = case_text(inspected(file, FileSettings()), project.folder / "variants")
+    text = case_text(inspect_outsole(file, FileSettings()), project.folder / "variants")
     by_command = project.folder / "variants" / "command.toml"
     by_command.write_text(text)
     expected = Case.load(by_command).replace({**COARSE, **own})

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("nicegui")
 
 from machine import slowness
-from underfoot.app.jobs import Jobs, Lane
+from underfoot.app.jobs import JobQueue, Lane
 from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
 
@@ -43,7 +43,7 @@ def path(monkeypatch):
 
 
 async def with_jobs(folder, work):
-    jobs = Jobs(folder)
+    jobs = JobQueue(folder)
     runner = asyncio.create_task(jobs.run())
     try:
         return await work(jobs)
@@ -118,10 +118,10 @@ def test_a_restart_shows_what_finished_and_what_was_interrupted(tmp_path):
             await asyncio.sleep(0.01)
 
     asyncio.run(with_jobs(tmp_path, work))
-    again = Jobs(tmp_path)
+    again = JobQueue(tmp_path)
     states = {task.about: task.state for task in again.tasks.values()}
     assert states == {"x": "done", "y": "interrupted", "z": "interrupted"}
-    assert {task.about: task.state for task in Jobs(tmp_path).tasks.values()} == states
+    assert {task.about: task.state for task in JobQueue(tmp_path).tasks.values()} == states
 
     async def once_more(jobs):
         return await jobs.finished(jobs.again(jobs.tasks[1]))
@@ -196,5 +196,5 @@ def test_a_long_queue_that_a_kill_interrupted_is_read_again(tmp_path):
     lines += [{"number": n, "title": "run", "about": str(n), "state": "waiting"}
               for n in range(60, 63)]  # fmt: skip
     (tmp_path / "jobs.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    tasks = Jobs(tmp_path).tasks
+    tasks = JobQueue(tmp_path).tasks
     assert [tasks[n].state for n in (60, 61, 62)] == ["interrupted"] * 3

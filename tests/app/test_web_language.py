@@ -14,7 +14,7 @@ from package_messages import filled
 from web_app import coarsened, drawn, page_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
-from underfoot.core.remark import Message, Remark, joined
+from underfoot.core.remark import Message, Remark, join_lines
 
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright.sync_api")
@@ -343,7 +343,7 @@ def test_messages_are_put_in_by_their_template_and_values(tmp_path, monkeypatch)
         hole: "1 Loch von zusammen 3,25 mm² aus der Fläche ringsum gefüllt.",
         Remark("by hand", "the step is on {plate} ({why})", plate="B <1>", why="no plate A"):
         "von Hand: der Schritt ist auf B <1> (no plate A)",
-        joined([Message("body weight"), "3.5 N"]): "des Körpergewichts; 3,5 N",
+        join_lines([Message("body weight"), "3.5 N"]): "des Körpergewichts; 3,5 N",
     }  # fmt: skip
     page_file = tmp_path / "page.html"
     lines = "".join(f"<p>{line.__html__()}</p>" for line in said)

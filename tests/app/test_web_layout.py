@@ -24,7 +24,7 @@ def project(tmp_path_factory):
     from underfoot.core import silent
     from underfoot.questions.wear import wear_series
     from underfoot.report import write_report
-    from underfoot.report.outsole import inspected
+    from underfoot.report.outsole import inspect_outsole
     from underfoot.shoe.files import FileSettings
 
     folder = tmp_path_factory.mktemp("layout")
@@ -39,7 +39,7 @@ def project(tmp_path_factory):
     work_studies.computed(str(study), str(study.with_suffix("")), progress=silent)
     write_report(wear_series(made.case("Heel"), mode="plane", steps=2, band=False), folder / "wear")
     sole = write_stl(made.folder / "soles" / "sole.stl", triangles(heel_body(grooved(pitch=10e-3))))
-    write_report(inspected(sole, FileSettings()), folder / "file")
+    write_report(inspect_outsole(sole, FileSettings()), folder / "file")
     return made
 
 

@@ -13,7 +13,7 @@ from underfoot.block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot.block.assembly import Assembly, assembled
+from underfoot.block.assembly import Assembly, assemble_march
 from underfoot.block.march import BlockMarch
 from underfoot.core import Status, silent
 from underfoot.material import RelaxationSpectrum
@@ -39,7 +39,7 @@ def pressed(
     loading = MicroLoading(
         mean_pressure=pressure, speed=0.0, press_time=1e-4, hold_time=5e-5, slide_distance=0.0
     )
-    assembly = assembled(block, floor, MATERIAL, loading, settings)
+    assembly = assemble_march(block, floor, MATERIAL, loading, settings)
     confined = MATERIAL.bulk_modulus + 4.0 / 3.0 * G
     BlockMarch(assembly, loading, LENGTH**2, LENGTH, 100, confined, "", silent).run()
     plane = (n + 1) ** 2

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from underfoot.case import Case
-from underfoot.compute.position_draws import Place
+from underfoot.compute.position_draws import TreadPlace
 from underfoot.compute.positions import place_numbers
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_at
 from underfoot.core import InputError
 from underfoot.film import Conductance
@@ -160,8 +160,8 @@ def test_the_deflection_of_fine_cells_is_that_of_rectangles_on_a_half_space():
 def numbers(shoe: str, spacing: float, cells_along: int) -> dict[str, float]:
     case = Case.load(EXAMPLES / f"{shoe}_shoe_untreaded_glycerol.toml")
     case = case.replace("numerics.cells_along", cells_along)
-    parts = prepared(case, spacing)
-    _, contact = solved_at(parts, Place(), spacing)
+    parts = prepare_case(case, spacing)
+    _, contact = solved_at(parts, TreadPlace(), spacing)
     assert contact.status.usable
     mirrored = contact.fluid_pressure[:, ::-1]
     assert np.abs(contact.fluid_pressure - mirrored).max() < 1e-3 * contact.fluid_pressure.max()

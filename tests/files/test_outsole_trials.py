@@ -353,10 +353,10 @@ def test_layers_of_an_assembly_tell_where_the_ground_is(tmp_path):
 
 
 def test_outsole_of_a_file_keeps_its_options_in_the_case(tmp_path):
-    from underfoot.report.outsole import case_text, inspected
+    from underfoot.report.outsole import case_text, inspect_outsole
 
     path = TRIALS["OBJ with the last above"].write(tmp_path)
-    inspection = inspected(path, FileSettings(spacing=5e-4, solid="a", cut_floor=True))
+    inspection = inspect_outsole(path, FileSettings(spacing=5e-4, solid="a", cut_floor=True))
     text = case_text(inspection, tmp_path)
     assert 'solid = "a"' in text
     assert "cut_floor = true" in text

@@ -13,11 +13,11 @@ from commands import called
 from underfoot.core import DataError
 from underfoot.trials import Channel, Trial, read_trial, read_trials
 from underfoot.trials.machines.pin_on_disk import friction_point
-from underfoot.trials.readers import Profile
+from underfoot.trials.readers import TrialsProfile
 from underfoot.trials.readers.c3d_writer import c3d_bytes
 from underfoot.trials.readers.seen import HELD, SIGN, STRAIGHT, unseen
 from underfoot.trials.readers.text import force_unit, si_unit
-from underfoot.trials.walking.describe import described, described_file
+from underfoot.trials.walking.describe import describe_trial, described_file
 from walk_forms import FORMS, RCOF, SHORT, written
 
 DATA = Path(__file__).parents[1] / "data"
@@ -277,7 +277,7 @@ def test_lengths_in_words_and_lengths_that_contradict_them(tmp_path):
     assert near.vertical.axis == (0.0, 1.0, 0.0)
     with pytest.raises(DataError, match="As m it would fit"):
         read_trial(OWN / "metres_under_mm.trc")
-    stated = read_trial(OWN / "metres_under_mm.trc", Profile(length_unit="m"))
+    stated = read_trial(OWN / "metres_under_mm.trc", TrialsProfile(length_unit="m"))
     assert stated.marker("SACR").positions[0] == pytest.approx([0.0, 0.95, 0.0])
     (tmp_path / "a.trc").write_text(walk_forms.trc("furlongs"))
     with pytest.raises(DataError, match='"furlongs", which is no known length'):
@@ -309,7 +309,7 @@ def test_moments_and_pressure_of_a_plate_are_no_markers(tmp_path):
     (tmp_path / "a.csv").write_text("\n".join([labels, *lines]))
     trial = read_trial(tmp_path / "a.csv")
     assert not trial.markers
-    (step,) = described(trial).steps
+    (step,) = describe_trial(trial).steps
     assert step.measurement.value == pytest.approx(0.192, abs=0.002)
     assert step.stance.direction.source == "centre of pressure"
 

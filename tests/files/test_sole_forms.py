@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import sole_forms as made
 from underfoot.core import DataError
 from underfoot.shoe.files import FileSettings, outsole_from_file, read_mesh
-from underfoot.shoe.files.polygons import triangulated
+from underfoot.shoe.files.polygons import triangulate_polygons
 from underfoot.shoe.tread_measures import tread_measures
 
 HALF = FileSettings(spacing=0.5e-3)
@@ -166,7 +166,7 @@ def _area(points, faces):
 def test_a_polygon_has_its_area_whichever_corner_comes_first(star, start, back):
     points, area = star
     ring = np.roll(np.arange(len(points)), start)[:: -1 if back else 1]
-    faces = triangulated(points, np.array([len(ring)]), ring, "OBJ", "made here")
+    faces = triangulate_polygons(points, np.array([len(ring)]), ring, "OBJ", "made here")
     own = _area(points, faces)
     assert len(faces) == len(ring) - 2
     assert np.linalg.norm(own, axis=1).sum() == pytest.approx(area, rel=1e-6)
@@ -178,7 +178,7 @@ def test_a_polygon_has_its_area_whichever_corner_comes_first(star, start, back):
 def test_corners_that_do_not_turn_keep_their_edges():
     points = np.array([(0, 0), (1, 0), (2, 0), (4, 0), (4, 4), (2, 4), (0, 4), (0, 2)], float)
     points = np.c_[points, np.zeros(8)]
-    faces = triangulated(points, np.array([8]), np.arange(8), "OFF", "made here")
+    faces = triangulate_polygons(points, np.array([8]), np.arange(8), "OFF", "made here")
     edges = {tuple(sorted(edge)) for a, b, c in faces for edge in ((a, b), (b, c), (c, a))}
     assert all(tuple(sorted((k, (k + 1) % 8))) in edges for k in range(8))
     assert (np.linalg.norm(_area(points, faces), axis=1) > 0).all()
@@ -190,7 +190,7 @@ KEYHOLE = np.array([(0, 0), (10, 0), (10, 10), (0, 10), (0, 0), (3, 3), (3, 6), 
 
 def test_a_polygon_around_a_hole_is_cut_around_it():
     points = np.c_[KEYHOLE, np.zeros(10)]
-    faces = triangulated(points, np.array([10]), np.arange(10), "OBJ", "made here")
+    faces = triangulate_polygons(points, np.array([10]), np.arange(10), "OBJ", "made here")
     assert np.linalg.norm(_area(points, faces), axis=1).sum() == pytest.approx(91)
 
 
@@ -205,7 +205,9 @@ def test_a_polygon_around_a_hole_is_cut_around_it():
 def test_a_polygon_that_crosses_itself_is_named(ring):
     points = np.c_[np.array(ring, float), np.zeros(len(ring))]
     with pytest.raises(DataError, match=rf"face 1, a polygon of {len(ring)} corners, crosses"):
-        triangulated(points, np.array([len(ring)]), np.arange(len(ring)), "OBJ", "made here")
+        triangulate_polygons(
+            points, np.array([len(ring)]), np.arange(len(ring)), "OBJ", "made here"
+        )
 
 
 @settings(

@@ -7,7 +7,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.result import Result
 from underfoot.core import DataError
 from underfoot.report.quantities import AREAS, raw, spacing
@@ -89,7 +89,7 @@ def test_calculix_presses_the_sole_as_the_run_does(deck, worn_shoe_result, worn_
     work = float(force @ rise[nodes])
     data, side = worn_shoe_result.data, spacing(worn_shoe_result.data)
     pressure = sum(raw(data, name) * raw(data, area) for name, area in AREAS.items())
-    parts = prepared(worn_shoe_case, side)
+    parts = prepare_case(worn_shoe_case, side)
     ours = float((parts.compliance.apply(pressure) * pressure).sum() * side**2)
     assert work == pytest.approx(ours, rel=0.1)
 

@@ -15,18 +15,18 @@ from hypothesis import strategies as st
 
 from commands import called
 from underfoot.core import DataError
-from underfoot.core.missing import coded
+from underfoot.core.missing import mask_of_codes
 from underfoot.surface import (
     HeightMap,
     Profile,
-    levelled,
+    level_surface,
     profile_roughness,
     profile_spectrum,
     read_instrument,
     read_scan,
     read_surface,
     self_affine,
-    squared,
+    square_cells,
     write_surface,
 )
 from underfoot.surface.lay import texture
@@ -202,7 +202,7 @@ def test_profiles_of_x3p_and_quoted_text():
     profile = read_surface(FORMS / "profile.x3p")
     assert isinstance(profile, Profile)
     assert profile.spacing == pytest.approx(16e-6)
-    assert np.std(levelled(profile).heights) == pytest.approx(5.29e-6, rel=1e-3)
+    assert np.std(level_surface(profile).heights) == pytest.approx(5.29e-6, rel=1e-3)
     quoted = read_surface(FORMS / "quoted_decimal_comma.csv")
     assert quoted.spacing == pytest.approx(2e-6)
     assert quoted.heights[:2] == pytest.approx([1.2811e-6, 2.1374e-6])
@@ -295,7 +295,7 @@ def test_codes_for_missing_heights_are_no_heights(tmp_path, code, count):
 
 @pytest.mark.parametrize("heights", [[0, 1, 2, 3, 9], [0, 5, 5, 0], [1, 1, 1], [0, 1, 2, 9, 9]])
 def test_steps_and_peaks_are_no_codes(heights):
-    assert not coded(np.array(heights, dtype=float)).any()
+    assert not mask_of_codes(np.array(heights, dtype=float)).any()
 
 
 @pytest.mark.parametrize(
@@ -418,7 +418,7 @@ def test_sliding_along_a_lay_loses_less_than_across(tmp_path):
 def test_a_case_slides_along_the_x_of_a_scanned_floor(tmp_path):
     from underfoot.calibrate.compound import compound_from_files
     from underfoot.case import Case
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
 
     dma = Path(__file__).parents[2] / "examples" / "measured" / "dma.csv"
     (tmp_path / "compound.toml").write_text(compound_from_files([dma]).toml())
@@ -433,7 +433,7 @@ def test_a_case_slides_along_the_x_of_a_scanned_floor(tmp_path):
         case = Case.load(tmp_path / "case.toml")
         assert case.value("floor.roughness.rq") == pytest.approx(3.42e-6, rel=0.01)
         assert case.value("floor.roughness.rt") == pytest.approx(9.67e-6, rel=0.01)
-        losses[degrees] = case.friction.build(resolved(case)).pair.hysteresis
+        losses[degrees] = case.friction.build(resolve_context(case)).pair.hysteresis
     assert losses[90] > 5 * losses[0] > 0
 
 
@@ -459,7 +459,7 @@ def test_oblong_cells_keep_their_axes_and_can_be_made_square(tmp_path):
     spectrum = profile_spectrum(found, axis=1)
     highest = spectrum.wavenumber[np.argmax(spectrum.density)]
     assert 2 * np.pi / highest == pytest.approx(320e-6, rel=0.02)
-    square = squared(found)
+    square = square_cells(found)
     assert square.spacings == pytest.approx((1e-5, 1e-5))
     y = np.arange(square.shape[1]) * 1e-5
     wave = 5e-6 * np.sin(2 * np.pi * -y / 320e-6)

@@ -10,7 +10,7 @@ from underfoot.surface import (
     HeightMap,
     Profile,
     height_numbers,
-    levelled,
+    level_surface,
     profile_roughness,
     profile_spectrum,
     read_dektak,
@@ -38,7 +38,7 @@ def test_the_stylus_file_gives_its_instruments_own_numbers():
     assert "rounded in print" in profile.processing[0]
     printed = {result.name: result for result in results}
     part = printed["Ra"]
-    numbers = height_numbers(levelled(profile.section(part.start, part.end)).heights)
+    numbers = height_numbers(level_surface(profile.section(part.start, part.end)).heights)
     # The header prints Ra 0.00525 um, Rq 0.01143 um, skewness 6.96: half a digit.
     assert numbers.ra == pytest.approx(printed["Ra"].value, abs=0.9e-11)
     assert numbers.rq == pytest.approx(printed["Rq"].value, abs=0.9e-11)

@@ -15,7 +15,7 @@ from underfoot.block import (
     MicroSurface,
     explicit_sliding,
 )
-from underfoot.block.assembly import assembled, mass_scaling_error
+from underfoot.block.assembly import assemble_march, mass_scaling_error
 from underfoot.block.result import EDGE_EXCESS, edge_excess_area
 from underfoot.core import Cancelled, ConvergenceError, DataError, InputError, Status
 from underfoot.material import Elastomer, RelaxationSpectrum
@@ -184,8 +184,10 @@ def test_mass_is_scaled_within_both_bounds():
     neolite = MicroMaterial.from_poisson(RelaxationSpectrum(30e6), 0.49)
     for speed in (0.1, 1.0):
         loading = replace(FAST, speed=speed)
-        plain = assembled(BLOCK, FLOOR, neolite, loading, ExplicitSettings())
-        scaled = assembled(BLOCK, FLOOR, neolite, loading, ExplicitSettings(mass_scaling="auto"))
+        plain = assemble_march(BLOCK, FLOOR, neolite, loading, ExplicitSettings())
+        scaled = assemble_march(
+            BLOCK, FLOOR, neolite, loading, ExplicitSettings(mass_scaling="auto")
+        )
         assert scaled.mass_scaling > 1.2
         assert scaled.impact_friction == pytest.approx(1e-4, rel=1e-9)
         assert scaled.impact_friction == pytest.approx(

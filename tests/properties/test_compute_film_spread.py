@@ -13,8 +13,8 @@ from underfoot.case.surfaces import BEYOND_DEVIATION, FLOOR_RQ
 from underfoot.compute import solve
 from underfoot.compute.continuation import Continuation
 from underfoot.compute.numbers import FILM_ERROR, GRID_NAMES, with_film_spread
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.solve import film_spreads, solved_motion
 from underfoot.core import SourcedValue
 from underfoot.friction.propagation import normal_draws
@@ -52,14 +52,14 @@ def odds(contact) -> float:
 
 def test_an_assumed_factor_lies_between_one_and_four():
     assert 2 * math.exp(1.96 * BEYOND_DEVIATION) == pytest.approx(4)
-    assert resolved(heel()).leak_deviation == pytest.approx(BEYOND_DEVIATION)
-    assert resolved(heel("full_tread", **{FACTOR: 2.0})).leak_deviation == 0
+    assert resolve_context(heel()).leak_deviation == pytest.approx(BEYOND_DEVIATION)
+    assert resolve_context(heel("full_tread", **{FACTOR: 2.0})).leak_deviation == 0
     given = heel("full_tread", **{FACTOR: {"value": 2.0, "uncertainty": 0.5}})
-    assert resolved(given).leak_deviation == pytest.approx(0.25)
+    assert resolve_context(given).leak_deviation == pytest.approx(0.25)
     own = heel(
         "full_tread", **{"interface.effective_rq": {"value": "12 um", "uncertainty": "3 um"}}
     )
-    assert resolved(own).leak_deviation == pytest.approx(0.25)
+    assert resolve_context(own).leak_deviation == pytest.approx(0.25)
 
 
 def test_roughness_that_is_not_given_is_drawn_over_what_is_usual():
@@ -73,7 +73,7 @@ def test_roughness_that_is_not_given_is_drawn_over_what_is_usual():
     sole, usual = math.sqrt(math.pi / 2) * 4e-6, math.sqrt(math.prod(FLOOR_RQ))
     share = usual**2 / (usual**2 + sole**2)
     expected = share * math.log(FLOOR_RQ[1] / FLOOR_RQ[0]) / (2 * 1.96)
-    assert resolved(Case.from_text(text)).leak_deviation == pytest.approx(expected)
+    assert resolve_context(Case.from_text(text)).leak_deviation == pytest.approx(expected)
 
 
 # steady marches end 0.4 to 10 s from the start, by rounding, up to 2 % of film apart: one instant
@@ -91,11 +91,11 @@ def test_the_spread_is_that_of_marches_on_other_roughness(case):
     spacing = case.numerics.quick_grid_spacing
 
     def march(factor: float):
-        return solved_motion(prepared(case.replace(FACTOR, 2 * factor), spacing))
+        return solved_motion(prepare_case(case.replace(FACTOR, 2 * factor), spacing))
 
     width = math.exp(BEYOND_DEVIATION)
     contact = march(1.0)
-    spreads = film_spreads(prepared(case, spacing), contact)
+    spreads = film_spreads(prepare_case(case, spacing), contact)
     expected = [odds(march(factor)) - odds(contact) for factor in (1 / width, width)]
     assert expected[0] > 0.1 > -0.1 > expected[1]  # a rougher pair leaks more
     assert spreads[LEAK] == pytest.approx(expected, rel=0.1)
@@ -119,14 +119,14 @@ def test_a_history_on_the_quick_grid_is_marched_with_the_changes_alone(monkeypat
 
     monkeypatch.setattr(solve, "solved_motion", march)
     told = []
-    parts = prepared(case, case.numerics.quick_grid_spacing)
+    parts = prepare_case(case, case.numerics.quick_grid_spacing)
     spreads = film_spreads(parts, contact(100.0), lambda _, done, *__: told.append(done))
     assert len(marched) == 2
     assert told == [0.0, 0.5, 0.5, 1.0]  # one after the other, not each from the start
     expected = [math.log(6 * film / (700 - film)) for film in (200.0, 50.0)]
     assert spreads[LEAK] == pytest.approx(expected)
     marched.clear()
-    film_spreads(prepared(case, 2 * case.numerics.quick_grid_spacing), contact(100.0))
+    film_spreads(prepare_case(case, 2 * case.numerics.quick_grid_spacing), contact(100.0))
     assert len(marched) == 3  # another grid: what it is compared with, too
 
 

@@ -15,13 +15,13 @@ from underfoot.compute.position_draws import (
     ANGLE_BAND,
     ANGLE_DEVIATION,
     COF_PARTS,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
 )
 from underfoot.compute.positions import (
     YAW,
-    carried,
+    carry_to_finer,
     case_places,
     places,
     position_count,
@@ -93,7 +93,7 @@ def test_even_positions_are_the_same_from_any_of_them(count, step):
 @given(st.integers(1, 64))
 def test_positions_cover_both_directions_evenly_at_the_angle_of_the_case(count):
     found = places(np.eye(2), count)
-    assert found[0] == Place()
+    assert found[0] == TreadPlace()
     assert len({place.shift[0] for place in found}) == count
     assert not any(place.turn for place in found)
     for wave in ((1, 0), (0, 1)) if count > 1 else ():
@@ -153,15 +153,15 @@ def test_numbers_of_two_grids_are_carried_on_by_the_first_order_of_the_cells(
 
     contact = 0.2 * (300.0 - coarse) / 300.0
     before = numbers(coarse, contact, coarse)
-    same = carried(before, before, before, onward)
+    same = carry_to_finer(before, before, before, onward)
     for name, each in before.items():
         assert same[name] == pytest.approx(each), name
-    found = carried(before, before, numbers(coarse, contact, fine), onward)
+    found = carry_to_finer(before, before, numbers(coarse, contact, fine), onward)
     assert found["cof_viscous"] == pytest.approx(coarse * even)
     assert found["peak"] == pytest.approx(fine)  # not carried on
     assert found["cof"] == pytest.approx(found["cof_adhesion"] + found["cof_viscous"])
     film = np.minimum(fine, 299.0)
-    loads = carried(before, before, numbers(film, 0.2 * (1 - film / 300.0), coarse), onward)
+    loads = carry_to_finer(before, before, numbers(film, 0.2 * (1 - film / 300.0), coarse), onward)
     assert loads["fluid_load"] + loads["contact_load"] == pytest.approx(300.0)
     assert ((loads["fluid_load"] >= 0) & (loads["fluid_load"] <= 300.0)).all()
     # the contact has the friction that its newtons have, however many the film takes
@@ -184,7 +184,7 @@ def test_a_place_where_all_floats_says_nothing_of_the_friction_of_a_contact():
     before = {name: np.append(a, b) for (name, a), b in zip(
         numbers(floats).items(), numbers(touches).values(), strict=True)}  # fmt: skip
     fine = numbers(np.array([290.0]))
-    found = carried(before, numbers(floats), fine, 1.0)
+    found = carry_to_finer(before, numbers(floats), fine, 1.0)
     assert found["cof_adhesion"].max() == pytest.approx(0.2)
     own = {name: float(each[0]) for name, each in before.items()}
     law = np.random.default_rng(0).lognormal(0, 0.3, 1000)
@@ -305,7 +305,7 @@ def test_the_angle_adds_half_of_what_toe_up_and_toe_down_differ_by(bars):
     spacing = bars.numerics.quick_grid_spacing / 2
     made = tread_positions(
         bars,
-        {Place(): numbers(Place())},
+        {TreadPlace(): numbers(TreadPlace())},
         lambda asked: ((k, numbers(place)) for k, (place, _) in enumerate(asked)),
         spacing=spacing,
         quick=False,
@@ -632,7 +632,7 @@ def test_a_turned_shoe_that_can_t_go_on_is_marched_and_one_without_answer_is_sai
 
     coarse = bars.replace({"numerics.quick_grid_spacing": "2 mm", "numerics.tread_positions": 4})
     going_on = run(coarse, quick=True)
-    monkeypatch.setattr(solve, "continued", refused)
+    monkeypatch.setattr(solve, "continue_contact", refused)
     marched = run(coarse, quick=True)
     assert marched.value("cof") == going_on.value("cof")
     assert marched.value("cof_shoe_angle") == pytest.approx(
@@ -721,7 +721,7 @@ def test_a_sole_whose_bars_float_converges_at_every_place(tmp_path):
     """
     from benchmarks.tread_widths import bars as bars_in_glycerol
 
-    from underfoot.compute.prepare import prepared
+    from underfoot.compute.prepare import prepare_case
     from underfoot.compute.sole import file_periods, new_sole
     from underfoot.shoe.parametric import write_sole
 
@@ -732,7 +732,7 @@ def test_a_sole_whose_bars_float_converges_at_every_place(tmp_path):
     parts = {"shoe.heel": None, "shoe.tread": None, "shoe.sole": None}
     case = base.replace({**parts, "shoe.outsole": {"file": str(path)}})
     spacing = case.numerics.grid_spacing
-    ready, rejected = prepared(case, spacing), []
+    ready, rejected = prepare_case(case, spacing), []
     for place in places(file_periods(case), 16)[2:8]:
         _, contact = solved_at(ready, place, spacing)
         assert contact.status is Status.CONVERGED

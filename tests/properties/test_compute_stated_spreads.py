@@ -68,7 +68,7 @@ def test_the_film_s_part_is_that_of_runs_at_one_standard_deviation(plain, path, 
     case = stated(heel(), path, spread)
     (only,) = stated_spreads(case)
     ends = [run(case.replace(change), quick=True) for change in only.changes]
-    result = solve.solved(solve.prepared(case, case.numerics.quick_grid_spacing))
+    result = solve.solve_case(solve.prepare_case(case, case.numerics.quick_grid_spacing))
     assert not result.stated.left_out
     (effect,) = result.stated.effects
 
@@ -149,7 +149,7 @@ def test_no_draw_of_the_film_bears_more_than_the_load():
 def test_a_hardness_counts_once():
     """The law draws it without the effects; with them its draws come from contact and film."""
     case = stated(heel(), "shoe.material.shore_a", 6.0)
-    parts = solve.prepared(case, case.numerics.quick_grid_spacing)
+    parts = solve.prepare_case(case, case.numerics.quick_grid_spacing)
     effects = solve.stated_effects(parts, solve.solved_motion(parts))
     exact: Any = solve.law_without(parts, effects)
     pair, own = exact.law.pair, parts.law.pair

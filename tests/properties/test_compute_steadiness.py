@@ -8,9 +8,9 @@ from underfoot.case import CaseError
 from underfoot.compute import solve
 from underfoot.compute.numerical_error import numerical_errors
 from underfoot.compute.positions import place_numbers
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.read import _last_instant
-from underfoot.compute.solve import averaged, solved, solved_motion, start_film
+from underfoot.compute.solve import average_positions, solve_case, solved_motion, start_film
 from underfoot.compute.summary import headline
 from underfoot.core import SourcedValue, Status
 from underfoot.studies.g6 import sole_case
@@ -50,7 +50,7 @@ def untreaded(**changes):
 
 
 def numbers(case):
-    parts = prepared(case, 1e-3)
+    parts = prepare_case(case, 1e-3)
     contact = solved_motion(parts)
     assert contact.status is Status.CONVERGED
     return place_numbers(parts, contact), contact
@@ -154,7 +154,7 @@ def test_the_place_where_a_step_lands_changes_nothing():
 @pytest.mark.parametrize("shoe", ["work_shoe_half_tread", "work_shoe_untreaded"])
 def test_a_step_of_walking_takes_steps_short_enough(shoe):
     """With as many as a held load its COF was up to 3.9 % too high."""
-    parts = prepared(untreaded(shoe=shoe, motion="heel_strike_to_flat"), 1e-3)
+    parts = prepare_case(untreaded(shoe=shoe, motion="heel_strike_to_flat"), 1e-3)
     cofs = [place_numbers(parts, solved_motion(parts, finer=finer))["cof"] for finer in (1, 2)]
     assert cofs[0] == pytest.approx(cofs[1], rel=0.01)
 
@@ -189,9 +189,9 @@ BRAKING = {
 def test_the_numerical_error_of_a_motion_holds_its_steps_in_time(shoe, fluid, motion, monkeypatch):
     """0.8 % of COF were beside it. Four times the steps at all places lie within 95 % of it."""
     case = untreaded(shoe=shoe, contaminant=fluid).replace(motion)
-    parts = prepared(case, case.numerics.quick_grid_spacing)
-    solution = solved(parts)
-    positions = averaged(parts, solution, quick=True)
+    parts = prepare_case(case, case.numerics.quick_grid_spacing)
+    solution = solve_case(parts)
+    positions = average_positions(parts, solution, quick=True)
     errors = numerical_errors(parts, solution, positions, quick=True)
     settings = solve.solver_settings
     monkeypatch.setattr(
@@ -199,7 +199,7 @@ def test_the_numerical_error_of_a_motion_holds_its_steps_in_time(shoe, fluid, mo
         "solver_settings",
         lambda *given, finer=1: settings(*given, finer=4 * finer),
     )
-    finest = averaged(parts, solved(parts), quick=True)
+    finest = average_positions(parts, solve_case(parts), quick=True)
     for name in ("cof", "fluid_load"):
         off = abs(finest.answer(name) - positions.answer(name))
         assert off < 1.96 * errors.steps[name], name
@@ -221,7 +221,7 @@ def test_a_history_may_begin_under_its_load(fluid):
         (("0 s", "300 N"), ("0.15 s", "300 N")),
         (("0 s", "0 N"), ("0.01 s", "300 N"), ("0.16 s", "300 N")),
     ):
-        parts = prepared(case.replace("motion", held(*loads)), 1.2e-3)
+        parts = prepare_case(case.replace("motion", held(*loads)), 1.2e-3)
         contact = solved_motion(parts)
         assert contact.status is Status.CONVERGED
         found.append(place_numbers(parts, contact))
@@ -240,7 +240,7 @@ def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
 
     def landed(changes):
         changed = case.replace(changes)
-        return solved_motion(prepared(changed, changed.numerics.grid_spacing))
+        return solved_motion(prepare_case(changed, changed.numerics.grid_spacing))
 
     high, low = landed({}), landed({"motion.start_film": "50 um"})
     assert high.counts.rejected > 0

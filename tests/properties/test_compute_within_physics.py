@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from underfoot import Case, run
-from underfoot.compute.position_draws import Place
-from underfoot.compute.prepare import prepared
+from underfoot.compute.position_draws import TreadPlace
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_at
 from underfoot.core import UnderfootError
 
@@ -57,7 +57,7 @@ def test_a_tread_worn_through_has_an_answer_at_every_speed():
     worn = Case(**pair, motion="slip_tester_g4").replace("shoe.wear.depth", "4 mm")
     for speed in ("0.64 m/s", "0.76 m/s", "0.88 m/s"):
         case = worn.replace("motion.speed", speed)
-        _, contact = solved_at(prepared(case, 1.2e-3), Place(), 1.2e-3)
+        _, contact = solved_at(prepare_case(case, 1.2e-3), TreadPlace(), 1.2e-3)
         assert contact.status.usable
 
 

@@ -7,7 +7,7 @@ from scipy.stats import qmc
 from underfoot.explore.goals import WEAR, Condition, Goal, Requirement, WearLife
 from underfoot.explore.inputs import Range
 from underfoot.explore.result import front_places
-from underfoot.explore.surrogate import fitted
+from underfoot.explore.surrogate import fit_surrogate
 
 WEARS = (0.0, 1e-3, 2e-3)
 STATES = [
@@ -123,11 +123,11 @@ NEW = qmc.Sobol(2, rng=7).random(16)
 
 @pytest.fixture(scope="module")
 def surrogate():
-    return fitted("cof", "1", BOX, POINTS, VALUES)
+    return fit_surrogate("cof", "1", BOX, POINTS, VALUES)
 
 
 def test_a_surrogate_knows_no_unit(surrogate):
-    large = fitted("cof", "1", BOX, POINTS, 1e3 * VALUES)
+    large = fit_surrogate("cof", "1", BOX, POINTS, 1e3 * VALUES)
     for one, other in zip(surrogate.predicted(NEW), large.predicted(NEW), strict=True):
         np.testing.assert_allclose(other, 1e3 * one, rtol=1e-3)
     assert large.error == pytest.approx(1e3 * surrogate.error, rel=1e-3)
@@ -137,9 +137,9 @@ def test_a_surrogate_knows_no_unit(surrogate):
 def test_a_surrogate_knows_no_order_of_runs_nor_of_inputs(surrogate):
     mean, deviation = surrogate.predicted(NEW)
     order = np.random.default_rng(8).permutation(32)
-    mixed = fitted("cof", "1", BOX, POINTS[order], VALUES[order])
-    turned = fitted("cof", "1", BOX[::-1], POINTS[:, ::-1], VALUES)
-    back = fitted("cof", "1", BOX, 1 - POINTS, VALUES)
+    mixed = fit_surrogate("cof", "1", BOX, POINTS[order], VALUES[order])
+    turned = fit_surrogate("cof", "1", BOX[::-1], POINTS[:, ::-1], VALUES)
+    back = fit_surrogate("cof", "1", BOX, 1 - POINTS, VALUES)
     for other, places in ((mixed, NEW), (turned, NEW[:, ::-1]), (back, 1 - NEW)):
         np.testing.assert_allclose(other.predicted(places)[0], mean, rtol=0.01)
         # what was left out together differs
@@ -150,7 +150,7 @@ def test_a_surrogate_knows_no_order_of_runs_nor_of_inputs(surrogate):
 def test_an_idle_input_moves_no_prediction(surrogate):
     idle = Range("floor.roughness.rq", 0.0, 1.0)
     noise = qmc.Sobol(1, rng=9).random(32)
-    more = fitted("cof", "1", (*BOX, idle), np.column_stack([POINTS, noise]), VALUES)
+    more = fit_surrogate("cof", "1", (*BOX, idle), np.column_stack([POINTS, noise]), VALUES)
     for place in (0.1, 0.9):
         mean = more.mean(np.column_stack([NEW, np.full(16, place)]))
         np.testing.assert_allclose(mean, surrogate.mean(NEW), rtol=0.03)
@@ -158,5 +158,5 @@ def test_an_idle_input_moves_no_prediction(surrogate):
 
 def test_runs_without_a_number_are_as_if_they_were_not_there(surrogate):
     points = np.vstack([POINTS, qmc.Sobol(2, rng=10).random(4)])
-    some = fitted("cof", "1", BOX, points, np.append(VALUES, [np.nan] * 4))
+    some = fit_surrogate("cof", "1", BOX, points, np.append(VALUES, [np.nan] * 4))
     np.testing.assert_allclose(some.mean(NEW), surrogate.mean(NEW), rtol=1e-9)

@@ -17,7 +17,7 @@ from underfoot.explore.proposals import next_batch
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.result import StudyResult
 from underfoot.explore.study_file import read_plan
-from underfoot.explore.surrogate import Model, Runs, Surrogate, fitted
+from underfoot.explore.surrogate import Model, Runs, Surrogate, fit_surrogate
 from underfoot.friction.propagation import probability_higher
 
 DEPTH = Range("shoe.tread.depth", 1e-3, 4e-3)
@@ -32,7 +32,7 @@ def bend(x):
 @pytest.fixture(scope="module")
 def model():
     points = qmc.Sobol(3, rng=1).random(64)
-    return fitted("cof", "1", (DEPTH, SPEED, PATTERN), points, bend(points))
+    return fit_surrogate("cof", "1", (DEPTH, SPEED, PATTERN), points, bend(points))
 
 
 @settings(max_examples=30, deadline=None)
@@ -49,7 +49,7 @@ def test_what_was_left_out_was_predicted_without_it(model):
     """A run that is far from all others moves the model, not its own prediction."""
     values = model.runs.values.copy()
     values[17] += 50.0
-    other = fitted("cof", "1", model.dimensions, model.runs.points, values)
+    other = fit_surrogate("cof", "1", model.dimensions, model.runs.points, values)
     assert other.error > 50.0 / np.sqrt(64) * 0.9
     assert other.q2 < 0.1
 
@@ -79,7 +79,7 @@ def test_stated_errors_are_those_of_fresh_runs(function, noise, tells):
         errors = noise * np.exp(0.5 * generator.standard_normal(110))
         values = function(points) + errors * generator.standard_normal(110)
         stated_errors = 2 * errors[:60] if tells else None  # half of it is common to all runs
-        one = fitted("cof", "1", four, points[:60], values[:60], stated_errors)
+        one = fit_surrogate("cof", "1", four, points[:60], values[:60], stated_errors)
         mean, deviation = one.predicted(points[60:])
         rest = values[60:] - mean
         stated.append(one.q2)
@@ -99,7 +99,7 @@ def test_a_run_counts_by_its_noise():
         noise = errors * np.random.default_rng(seed).standard_normal(64)
         values = np.sin(4 * points[:, 0]) + points[:, 1] + noise
         blind, told = (
-            fitted("cof", "1", (DEPTH, SPEED), points, values, one) for one in (None, errors)
+            fit_surrogate("cof", "1", (DEPTH, SPEED), points, values, one) for one in (None, errors)
         )
         missed.append([np.mean((one.mean(fresh) - true) ** 2) for one in (blind, told)])
         deviation = told.predicted(fresh, noise=False)[1]
@@ -114,7 +114,7 @@ def test_runs_on_a_finer_grid_move_the_surrogate_to_it():
     again = np.vstack([points, points[::8]])
     finer = np.arange(72) >= 64
     values = np.sin(4 * again[:, 0]) + again[:, 1] - 0.3 * finer
-    one = fitted("cof", "1", (DEPTH, SPEED), again, values, None, finer)
+    one = fit_surrogate("cof", "1", (DEPTH, SPEED), again, values, None, finer)
     assert one.mean(fresh) == pytest.approx(np.sin(4 * fresh[:, 0]) + fresh[:, 1] - 0.3, abs=0.05)
     assert one.q2 > 0.98
     again = Surrogate.from_dict(one.to_dict(), one.dimensions)
@@ -158,8 +158,10 @@ def test_how_much_of_the_stated_error_is_noise_is_learned(share):
 def test_the_form_is_that_of_the_function():
     points = qmc.Sobol(2, rng=4).random(32)
     two = (DEPTH, SPEED)
-    power = fitted("cof", "1", two, points, np.exp(points[:, 0] - 2 * points[:, 1]))
-    waves = fitted("cof", "1", two, points, np.sin(6 * points[:, 0]) + np.cos(5 * points[:, 1]))
+    power = fit_surrogate("cof", "1", two, points, np.exp(points[:, 0] - 2 * points[:, 1]))
+    waves = fit_surrogate(
+        "cof", "1", two, points, np.sin(6 * points[:, 0]) + np.cos(5 * points[:, 1])
+    )
     assert power.model.form != "process"
     assert waves.model.form != "quadratic"
     assert min(power.q2, waves.q2) > 0.95
@@ -185,7 +187,7 @@ def test_error_is_honest_on_new_points_and_grows_with_noise(model):
     assert true < 2 * model.error
     assert model.q2 > 0.98
     noisy = bend(model.runs.points) + np.random.default_rng(0).normal(0, 0.5, 64)
-    rough = fitted("cof", "1", model.dimensions, model.runs.points, noisy)
+    rough = fit_surrogate("cof", "1", model.dimensions, model.runs.points, noisy)
     assert rough.q2 < 0.9
     assert "too much to rank designs by" in rough.reliability
 
@@ -203,7 +205,7 @@ def test_a_surrogate_refuses_what_lies_outside_its_box_and_too_few_runs(model):
     with pytest.raises(RangeError, match=r"shoe.tread.depth.*ends before 5 mm.*1 mm to 4 mm"):
         model.mean(np.array([[4 / 3, 0.4, 0.1]]))
     with pytest.raises(DataError, match="too few"):
-        fitted("cof", "1", model.dimensions, model.runs.points[:9], model.runs.values[:9])
+        fit_surrogate("cof", "1", model.dimensions, model.runs.points[:9], model.runs.values[:9])
 
 
 def test_shared_draws_decide_an_order_that_wide_intervals_hide():

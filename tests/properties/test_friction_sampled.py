@@ -12,7 +12,7 @@ from underfoot.friction import (
     ShearStrength,
     asperity_ehl_law,
     cof,
-    propagated,
+    propagate_spread,
     sampled_cof,
     self_affine_scale,
 )
@@ -48,7 +48,7 @@ def test_classes_of_pressure_stand_for_every_cell():
         solid = (drawn.adhesion + drawn.hysteresis).sum() / load + values["model"] * carried
         return max(solid, 0.0) + drawn.viscous[wet].sum() / load
 
-    exact = propagated(whole, inputs, samples=100, seed=4, shares=False)
+    exact = propagate_spread(whole, inputs, samples=100, seed=4, shares=False)
     assert found.cof == pytest.approx(exact.draws, rel=5e-3)
 
 
@@ -114,7 +114,7 @@ def test_a_law_with_an_input_of_unknown_spread_gives_no_interval():
 
 
 def test_a_wide_spread_is_drawn_log_normal_with_the_same_mean_and_deviation():
-    wide = propagated(
+    wide = propagate_spread(
         lambda values: values["x"], {"x": SourcedValue(2.0, uncertainty=1.2)}, samples=8000
     )
     drawn = wide.drawn["x"]
@@ -191,7 +191,7 @@ def test_suction_that_is_known_changes_no_draw_and_a_wide_one_stays_below_a_vacu
 
 def test_draws_of_two_inputs_are_normal_independent_and_give_the_interval():
     inputs = {name: SourcedValue(10.0, "1", "", 1.0) for name in "ab"}
-    found = propagated(lambda values: values["a"], inputs, samples=4000)
+    found = propagate_spread(lambda values: values["a"], inputs, samples=4000)
     drawn = np.array([found.drawn[name] for name in "ab"])
     assert drawn.mean(axis=1) == pytest.approx([10.0, 10.0], abs=1e-3)
     assert drawn.std(axis=1) == pytest.approx([1.0, 1.0], rel=5e-3)

@@ -9,7 +9,7 @@ from scipy.stats import norm
 
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.friction.tread_error import (
@@ -151,7 +151,7 @@ def test_draws_of_a_run_hold_the_error_of_its_tread():
     result = run(case, quick=True)
     at, seed = place(case), case.numerics.seed
     samples = result.fields["cof_draws"].size
-    error = sole_errors(case, resolved(case))["tread_error"]
+    error = sole_errors(case, resolve_context(case))["tread_error"]
     assert error == tread_error(0.219)
     off = error.draws(at, samples=samples, seed=seed)
     drawn = np.log(result.fields["cof_draws"].values)

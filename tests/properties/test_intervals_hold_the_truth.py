@@ -16,13 +16,13 @@ import numpy as np
 import pytest
 from scipy.stats import binom, norm
 
-from underfoot.calibrate import Parameter, calibrated
+from underfoot.calibrate import Parameter, calibrate_model
 from underfoot.compute.numbers import GRID_NAMES, with_film_spread
 from underfoot.core import SourcedValue
 from underfoot.explore.inputs import Range
-from underfoot.explore.surrogate import fitted
-from underfoot.friction.propagation import propagated
-from underfoot.places.joint import JointDraws
+from underfoot.explore.surrogate import fit_surrogate
+from underfoot.friction.propagation import propagate_spread
+from underfoot.places.joint import PlaceDraws
 from underfoot.places.joint import interval as interval_of_draws
 from underfoot.places.machines import FLUIDS, machine
 from underfoot.slip import Chang2004, RcofPopulation, slip_risk
@@ -98,7 +98,7 @@ def calibrated_parameter(rng, confidence):
     x = np.linspace(0.0, 1.0, 12)
     start = {name: Parameter(0.5, -10.0, 10.0) for name in ("start", "slope")}
     data = 0.3 - 1.7 * x + rng.normal(0, 0.05, x.size)
-    found = calibrated(lambda v: v["start"] + v["slope"] * x, data, start, deviation=0.05)
+    found = calibrate_model(lambda v: v["start"] + v["slope"] * x, data, start, deviation=0.05)
     slope = found.parameters["slope"]
     reach = norm.ppf(0.5 + confidence / 2) * slope.uncertainty
     return Told(-1.7, slope.value, slope.value - reach, slope.value + reach)
@@ -115,7 +115,7 @@ def cof_of_its_inputs(rng, confidence):
         name: SourcedValue(0.5 + rng.normal(0, sd), uncertainty=sd) for name, sd in spread.items()
     }
     truth = law({"roughness": 0.5, "hardness": 0.5}) + rng.normal(0, 0.01)
-    told = propagated(
+    told = propagate_spread(
         law, measured, model_deviation=0.01, confidence=confidence, samples=400,
         seed=int(rng.integers(1 << 30)), shares=False,
     )  # fmt: skip
@@ -159,7 +159,7 @@ def readings_of_worlds():
     """Return a machine's readings of 1,000 worlds, and what is foretold of them."""
     device, span = machine("pendulum-96"), (0.3e-6, 20e-6)
     worlds, told = (
-        device.read(JointDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
+        device.read(PlaceDraws(count=count, seed=seed), "hall", span, FLUIDS["water"])
         for count, seed in ((1000, 11), (4000, 12))
     )
     return iter(worlds.tolist()), interval_of_draws(told)
@@ -179,7 +179,9 @@ def surrogate_of_runs():
         true = np.sin(5 * places[:, 0]) + places[:, 1] ** 2
         return true + rng.normal(0, 0.05, len(places))
 
-    one = fitted("cof", "1", (Range("a", 0.0, 1.0), Range("b", 0.0, 1.0)), points, runs(points))
+    one = fit_surrogate(
+        "cof", "1", (Range("a", 0.0, 1.0), Range("b", 0.0, 1.0)), points, runs(points)
+    )
     fresh = rng.random((1000, 2))
     mean, deviation = one.predicted(fresh)
     return iter(zip(runs(fresh), mean, deviation, strict=True))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.places import choice
-from underfoot.places.choice import Cell, chosen
+from underfoot.places.choice import Cell, choose_shoe
 from underfoot.places.place import place_of
 
 COF = {
@@ -46,7 +46,7 @@ def answers():
         }
 
     def answer(table):
-        told = chosen(place_of(table))
+        told = choose_shoe(place_of(table))
         return {plain(one.shoe.name): (one.best, one.slips.value) for one in told.shoes}, told
 
     with pytest.MonkeyPatch.context() as patch:

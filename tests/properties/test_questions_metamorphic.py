@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from underfoot.case import Case
 from underfoot.questions.changes import possible_changes
 from underfoot.questions.comparison import case_differences
-from underfoot.questions.contact import mirrored
+from underfoot.questions.contact import mirror_map
 from underfoot.questions.order import certainty_after_reading, order_of_draws
 from underfoot.questions.separation import REPEATS, _conditions
 from underfoot.surface import HeightMap
@@ -78,8 +78,8 @@ def test_differences_of_cases_follow_their_order():
 @given(shift=st.floats(-1e-3, 1e-3), factor=st.floats(0.1, 10.0))
 def test_a_mirrored_map_is_levelled_whatever_height_and_scale_it_was_measured_at(shift, factor):
     heights = 1e-6 * np.random.default_rng(1).standard_normal((8, 6))
-    told = mirrored(HeightMap(heights, 1e-6)).heights
-    moved = mirrored(HeightMap(factor * heights + shift, 1e-6)).heights
+    told = mirror_map(HeightMap(heights, 1e-6)).heights
+    moved = mirror_map(HeightMap(factor * heights + shift, 1e-6)).heights
     assert moved == pytest.approx(factor * told, abs=1e-12)
-    turned = mirrored(HeightMap(heights[::-1], 1e-6)).heights
+    turned = mirror_map(HeightMap(heights[::-1], 1e-6)).heights
     assert turned[:8] == pytest.approx(told[7::-1][:8], abs=1e-12)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from underfoot.core import InputError, Range
+from underfoot.core import InputError, ValidityRange
 from underfoot.rough_contact import ExponentialLaw, PressureGapLaw
 from underfoot.rough_contact._kernels.monotone import interpolated_grid
 from underfoot.rough_contact.pressure_gap_law import TabulatedLaw
@@ -21,7 +21,7 @@ def law(flow=(0.0, 0.02, 0.2, 0.5, 0.7), gap=GAP):
         gap,
         exact.pressure(gap),
         np.asarray(flow, dtype=float),
-        ranges={"pressure": Range(1e4, 1e6, "Pa"), "speed": Range(0.1, 1.0, "m/s")},
+        ranges={"pressure": ValidityRange(1e4, 1e6, "Pa"), "speed": ValidityRange(0.1, 1.0, "m/s")},
     )
 
 

@@ -19,7 +19,7 @@ from underfoot.slip.dynamics import (
     FloorSensors,
     Walker,
     array_pressures,
-    observed,
+    observe_slip,
     packaged_histories,
     slip_motion,
 )
@@ -115,18 +115,18 @@ def test_where_the_heel_lands_changes_no_slip_but_what_crosses_the_sensors():
     one, far = moved(PERSON), moved(replace(PERSON, landing=5.0))
     np.testing.assert_array_equal(far.distance, one.distance)
     array = FloorSensors()
-    assert observed(moved(replace(PERSON, landing=0.0)), None, array).crossed
-    assert not observed(far, None, array).crossed
+    assert observe_slip(moved(replace(PERSON, landing=0.0)), None, array).crossed
+    assert not observe_slip(far, None, array).crossed
     for side in (-1, 1):
         beside = moved(replace(PERSON, landing=0.0, lateral=side * 0.031))
-        assert not observed(beside, None, array).crossed
+        assert not observe_slip(beside, None, array).crossed
         inside = moved(replace(PERSON, landing=0.0, lateral=side * 0.029))
-        assert observed(inside, None, array).crossed
+        assert observe_slip(inside, None, array).crossed
 
 
 def test_what_is_observed_is_how_the_foot_moved():
     one = moved(PERSON)
-    seen = observed(one, None, FloorSensors())
+    seen = observe_slip(one, None, FloorSensors())
     assert seen.distance == pytest.approx(one.distance[-1], rel=0.05)
     assert seen.duration is None
     assert seen.row_peaks == ()

@@ -22,7 +22,7 @@ from underfoot.slip.dynamics import (
     Population,
     Spread,
     Walker,
-    observed,
+    observe_slip,
     packaged_histories,
     slip_motion,
 )
@@ -188,7 +188,7 @@ def test_outcomes_follow_the_distance_and_the_speed():
     person = Walker(HISTORIES[10], rcof=0.2, heel_speed=0.3)
     outcomes = []
     for cof in (0.5, 0.0):
-        seen = observed(dry_sole(cof).motion(person), None, array)
+        seen = observe_slip(dry_sole(cof).motion(person), None, array)
         outcomes.append((seen.outcome, seen.slipped))
     assert outcomes == [(Outcome.NO_SLIP, False), (Outcome.LONG_SLIDE, True)]
     limits = OutcomeLimits()
@@ -199,7 +199,7 @@ def test_the_observed_peak_is_the_motion_s_own():
     """Filter and marker move the peak speed of a slip by little."""
     person = Walker(HISTORIES[10], rcof=0.2, heel_speed=0.3)
     motion = dry_sole(0.03).motion(person)
-    seen = observed(motion, None, FloorSensors())
+    seen = observe_slip(motion, None, FloorSensors())
     assert seen.peak_speed == pytest.approx(motion.peak_speed, rel=0.03)
     assert seen.start is not None
     assert -0.02 < seen.start < 0.08

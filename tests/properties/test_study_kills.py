@@ -85,7 +85,7 @@ def made_up(monkeypatch):
         return [((shift + k / 7) % 1.0,) for k in range(count)]
 
     monkeypatch.setattr(plan_module.StudyPlan, "_key", key)
-    monkeypatch.setattr(study, "computed", computed)
+    monkeypatch.setattr(study, "compute_job", computed)
     monkeypatch.setattr(proposals, "_promising", promising)
     monkeypatch.setattr(records, "PACK", 5)
     return read_plan(TEXT, EXAMPLES)
@@ -199,7 +199,7 @@ def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, mon
     def computed(base, job):
         return Record(job.key, Ending.COMPUTED, numbers={"cof": 0.25}, errors={"cof": 0.0})
 
-    monkeypatch.setattr(study, "computed", computed)
+    monkeypatch.setattr(study, "compute_job", computed)
     plan = read_plan(TEXT, EXAMPLES)
     result = Study(plan, tmp_path).run(workers=1)
     assert len(result.designs) == 12

@@ -12,7 +12,7 @@ from underfoot.surface import (
     autocorrelation,
     correlation_length,
     isotropic_spectrum,
-    levelled,
+    level_surface,
     profile_from_positions,
     profile_roughness,
     profile_spectrum,
@@ -225,8 +225,8 @@ def test_positions_shifted_or_read_backward_are_the_same_profile():
 def test_levelling_twice_is_levelling_once():
     surface = lying()
     for degree in (1, 2):
-        once = levelled(surface, degree)
-        np.testing.assert_allclose(levelled(once, degree).heights, once.heights, atol=1e-15)
+        once = level_surface(surface, degree)
+        np.testing.assert_allclose(level_surface(once, degree).heights, once.heights, atol=1e-15)
 
 
 def test_a_scan_turned_round_has_the_same_numbers(tmp_path):

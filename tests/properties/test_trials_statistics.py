@@ -9,7 +9,7 @@ from underfoot.core import DataError, InputError
 from underfoot.trials.machines.stribeck_fit import stribeck_fit
 from underfoot.trials.statistics import (
     analysis_of_variance,
-    crossed,
+    crossed_terms,
     fisher_exact,
     letters,
     linear_model,
@@ -131,8 +131,8 @@ def test_stribeck_fit_finds_exact_data_in_any_unit_of_speed(boundary, tau, share
 
 
 def test_crossed_terms():
-    assert crossed("a", "b", "c") == ("a", "b", "c", "a:b", "a:c", "b:c", "a:b:c")
-    assert crossed("a", "b", "c", order=2)[-1] == "b:c"
+    assert crossed_terms("a", "b", "c") == ("a", "b", "c", "a:b", "a:c", "b:c", "a:b:c")
+    assert crossed_terms("a", "b", "c", order=2)[-1] == "b:c"
 
 
 def test_refusals_name_the_trouble():

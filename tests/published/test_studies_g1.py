@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from underfoot.studies import Options, Quantity, judged, study
+from underfoot.studies import ComputedQuantity, Options, judge_study, study
 from underfoot.studies.g1 import Settings, changes, matrix, outcomes, series_quantities
 
 pytestmark = pytest.mark.slow
@@ -62,9 +62,9 @@ def test_a_broad_spectrum_gives_the_printed_fall_of_area_with_speed(found):
 
 def test_one_mesh_has_the_known_error_of_a_quick_grid(found):
     """What a mesh enters is judged on two; within the error of one alone it does not agree."""
-    values = found | {"broad.hysteresis.largest": Quantity.of(0.02, levels=[(1e-3, 0.02)])}
+    values = found | {"broad.hysteresis.largest": ComputedQuantity.of(0.02, levels=[(1e-3, 0.02)])}
     verdicts = {
-        one.statement.id: str(one.verdict) for one in judged(study("g1").statements, values)
+        one.statement.id: str(one.verdict) for one in judge_study(study("g1").statements, values)
     }
     assert verdicts["area_shoe_neolite"] in {"overlaps", "undecided", "not converged"}
     assert verdicts["hysteresis_shoe_neolite"] == "not comparable"
@@ -82,7 +82,7 @@ def test_the_folder_holds_figures_and_tables(tmp_path, monkeypatch):
     import json
 
     from underfoot.report.studies_page import write_study
-    from underfoot.studies import StudyResult, run_study
+    from underfoot.studies import PublishedStudyResult, run_study
 
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path / "cache"))
     options = Options(quick=True, settings=Settings(series=("broad",)))
@@ -95,7 +95,7 @@ def test_the_folder_holds_figures_and_tables(tmp_path, monkeypatch):
         assert any(name.startswith(f"fig{number}") and name.endswith(".png") for name in names)
     assert {"study.json", "verdicts.csv", "cases.csv", "errata.csv", "fig03_history.csv"} <= names
     content = json.loads((folder / "study.json").read_text(encoding="utf-8"))
-    again = StudyResult.from_dict(content)
+    again = PublishedStudyResult.from_dict(content)
     assert [j.to_dict() for j in again.judgements] == [j.to_dict() for j in result.judgements]
     kept = run_study(study("g1"), options)  # from the cache, with its figures
     assert kept.seconds == result.seconds

@@ -9,9 +9,9 @@ import pytest
 from commands import called
 from underfoot.core import SourcedValue, Status
 from underfoot.core.catalogue import Catalogue
-from underfoot.questions.outcomes import Outcome
+from underfoot.questions.outcomes import CaseOutcome
 from underfoot.studies import g4, judge, study
-from underfoot.studies.g4 import Reading, conditions, inputs_of, threshold, variance_p
+from underfoot.studies.g4 import GridReading, conditions, inputs_of, threshold, variance_p
 
 PLAN = conditions()
 X, Y = np.arange(0.0, 0.06, 0.7e-3), np.linspace(-0.03, 0.03, 7)
@@ -29,7 +29,7 @@ def outcome(load, peak=1e3, status=Status.CONVERGED, **more):
         name: SourcedValue(value, UNITS[name], source="made up", uncertainty=0.01)
         for name, value in values.items()
     }
-    return Outcome("made up", "h", scalars, {}, status, "finer grid", (), (), 1.0)
+    return CaseOutcome("made up", "h", scalars, {}, status, "finer grid", (), (), 1.0)
 
 
 def made_up(
@@ -40,7 +40,7 @@ def made_up(
     )
     spread = (X[:, None] - place[0]) ** 2 + (Y[None, :] - place[1]) ** 2
     pressure = peak * np.exp(-spread / 0.005**2)
-    return Reading(condition, levels, X, Y, pressure, np.zeros((4, 2)), {})
+    return GridReading(condition, levels, X, Y, pressure, np.zeros((4, 2)), {})
 
 
 def as_printed(condition, **given):
@@ -179,12 +179,12 @@ def test_printed_p_values_need_more_than_the_printed_loads():
 
 
 def test_figures_of_made_up_readings():
-    from underfoot.report.study_figures import drawn
+    from underfoot.report.study_figures import draw_figure
 
     readings = [as_printed(one) for one in PLAN]
-    loads = drawn(g4.load_figure(readings))
+    loads = draw_figure(g4.load_figure(readings))
     assert loads.axes[0].patches[0].get_height() == pytest.approx(201.0)
-    maps = drawn(g4.map_figure([readings[0], readings[6]]))
+    maps = draw_figure(g4.map_figure([readings[0], readings[6]]))
     assert maps.axes[0].get_title().startswith("work shoe: 201 N, peak 234 kPa")
     left, right = maps.axes[0].get_xlim()
     assert left > right  # left of the shoe on the left
@@ -201,7 +201,7 @@ def test_options_of_other_studies_are_refused():
 @pytest.mark.study
 def test_the_quick_study_by_command(tmp_path, monkeypatch):
     """One coarse grid: values of every condition, and no verdict that a grid enters."""
-    of_the_study = g4.Condition.case.func
+    of_the_study = g4.ShoeInFluid.case.func
 
     def coarser(one):
         grid = "2 mm" if one.untreaded else "1.2 mm"  # two cells a channel
@@ -209,7 +209,7 @@ def test_the_quick_study_by_command(tmp_path, monkeypatch):
             {"numerics.quick_grid_spacing": grid, "numerics.tread_positions": 1}
         )
 
-    monkeypatch.setattr(g4.Condition, "case", property(coarser))
+    monkeypatch.setattr(g4.ShoeInFluid, "case", property(coarser))
     out = tmp_path / "g4"
     done = called("studies", "run", "g4", "--quick", "--json", "--out", out)
     assert done.returncode == 0, done.stderr

@@ -5,18 +5,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.slips import slip_setting
 from underfoot.slip import ReportG6
 from underfoot.slip.dynamics import FrictionDraws
 from underfoot.studies import g5, g6, judge, study
 from underfoot.studies.g6 import PRINTED_ACOF, PRINTED_RISK
-from underfoot.studies.verdict import Quantity
+from underfoot.studies.verdict import ComputedQuantity
 
 
 def law_cof(shore, law):
     case = g6.sole_case(shore, law)
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     pressure = np.array([266.1e3])
     parts = found(pressure, np.array([0.3]), np.array([1e-3]))
     return float((parts.adhesion + parts.hysteresis)[0] / 266.1e3)
@@ -80,7 +80,7 @@ def test_risk_by_rcof_differs_from_the_printed_one_by_more_than_its_digits():
         assert risk == pytest.approx(ours, abs=5e-4)
         statement = next(s for s in study("g6").statements if s.id == f"risk_rcof_{name}")
         assert statement.kind == "report_against_itself"
-        assert judge(statement, {f"risk.rcof.{name}": Quantity.of(risk)}).verdict == verdict
+        assert judge(statement, {f"risk.rcof.{name}": ComputedQuantity.of(risk)}).verdict == verdict
 
 
 def test_the_sampled_studies_scatter_around_the_printed_logistic():
@@ -184,7 +184,9 @@ def test_a_population_on_two_grids_becomes_judged_quantities():
                "r2_row_lateral_speed": 0.41}  # fmt: skip
     grids = [(1.4e-3, numbers | {"peak_speed": 2.0}), (1e-3, numbers)]
     found = g5.quantities({"untreaded": grids, "treaded": grids}, {"untreaded": {}, "treaded": {}})
-    found |= {f"film.{name}": Quantity.none("made up") for name in ("viscosity", "dwell", "speed")}
+    found |= {
+        f"film.{name}": ComputedQuantity.none("made up") for name in ("viscosity", "dwell", "speed")
+    }
     said = {s.id: str(judge(s, found).verdict) for s in study("g5").statements}
     assert said["speed_untreaded"] == "not converged"
     assert said["pressure_untreaded"] == said["duration"] == said["correlation"] == "agrees"
@@ -215,7 +217,7 @@ def test_g5_shares_every_parameter_with_g4():
 def test_no_logistic_where_everybody_or_nobody_slips(outcome):
     difference = np.linspace(-0.1, 0.1, 30)
     fit = g6.fitted_logistic(difference, np.full(30, outcome))
-    steps = g6.Slips(difference, 0 * difference, np.full(30, outcome), {}, fit)
+    steps = g6.OutsoleSlips(difference, 0 * difference, np.full(30, outcome), {}, fit)
     assert np.isnan([fit.slope, fit.half]).all()
     assert g6._logistic_words(steps) == ("everybody slips" if outcome else "nobody slips")
 

@@ -9,13 +9,13 @@ from underfoot.case.friction import RIVAL_DEVIATION, measured_fluids, range_95
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 from underfoot.friction import ONE_CURVE, OWN_BOUNDARY
-from underfoot.studies import Kind, Options, default_law, g2, g3, judged, study
+from underfoot.studies import Options, StatementKind, default_law, g2, g3, judge_study, study
 from underfoot.studies.mechanisms import (
     blind_test,
     calibrated_mechanism,
     compare_mechanisms,
     mechanism,
-    predicted,
+    predict_cof,
 )
 
 CATALOGUE = Catalogue.load()
@@ -57,7 +57,7 @@ def test_a_made_up_truth_is_recovered_from_one_fluid_and_carries_to_the_others()
     truth = {"cof_adhesion": 0.5, "cof_hysteresis": 0.12, "parameter": 20e-9}
 
     def made(one):
-        cof = predicted(chosen, truth, one, PIN, own_boundary=False)
+        cof = predict_cof(chosen, truth, one, PIN, own_boundary=False)
         return CofPoints(one.fluid, one.viscosity, one.speed, cof, "fit", one.rq, None)
 
     found = blind_test(
@@ -96,7 +96,7 @@ def found(comparison):
 
 
 def verdicts(name, computed):
-    judgements = judged(study(name).statements, computed.quantities)
+    judgements = judge_study(study(name).statements, computed.quantities)
     return {one.statement.id: str(one.verdict) for one in judgements}
 
 
@@ -161,7 +161,7 @@ def test_the_default_law_is_judged_first_and_knows_no_reading_of_the_report(foun
     law = default_law.law_without_report()
     assert all(sd >= 0.08 for _, sd in law.prior)
     assert dict(zip(law.parameters, law.prior, strict=True))["ln kappa_0, Pa m"][1] == 2.0
-    independent = [one for one in study("g2").statements if one.kind is Kind.INDEPENDENT]
+    independent = [one for one in study("g2").statements if one.kind is StatementKind.INDEPENDENT]
     assert {one.quantity.split(".")[1] for one in independent} == {"default"}
     ratios, inside = [], []
     for one in independent:
@@ -262,7 +262,7 @@ def test_the_expected_analysis_of_variance_has_the_scatter_of_the_report():
     none = {fluid: np.zeros(2) for fluid in g3.FLUIDS}
 
     def made(force):
-        return g3.Split(np.full(2, force), np.zeros(2), none, (force, 0.0, {}), np.zeros(2))
+        return g3.PrintedSplit(np.full(2, force), np.zeros(2), none, (force, 0.0, {}), np.zeros(2))
 
     soles = ("polyurethane", "hard rubber")
     splits = {(s, f): made(1.0 + k) for k, s in enumerate(soles) for f in g3.FLOORS}

@@ -18,7 +18,7 @@ from underfoot.trials import (
     axis_name,
     contact_from_heel,
     heel_candidates,
-    joined,
+    join_trials,
     mean_of,
     read_trial,
     required_frictions,
@@ -32,7 +32,7 @@ DATA = Path(__file__).parents[1] / "data" / "trials"
 
 def _trial(name: str):
     if name == "walk1":
-        return joined(
+        return join_trials(
             read_trial(DATA / "bmc" / "walk1.trc"), read_trial(DATA / "bmc" / "walk1.forces")
         )
     return read_trial(DATA / name)

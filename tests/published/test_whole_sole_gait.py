@@ -11,7 +11,7 @@ import pytest
 import underfoot as uf
 from underfoot.case import Case
 from underfoot.compute.run import run
-from underfoot.compute.sole import forefoot_breaches, rolls, sole_map, trimmed
+from underfoot.compute.sole import forefoot_breaches, rolls, sole_map, trim_map
 from underfoot.core import InputError
 from underfoot.questions.method import method_name, method_prediction
 from underfoot.shoe.ball_joint import MOST_BEND, BallJoint, rolled_height
@@ -61,7 +61,7 @@ def test_what_comes_near_the_floor_at_any_angle_is_computed(case: Case) -> None:
     whole = rolling.whole
     assert whole is not None
     reach = 0.012
-    first, all_of_it = (trimmed(whole, reach, by) for by in (rolls(case).max(), rolls(case)))
+    first, all_of_it = (trim_map(whole, reach, by) for by in (rolls(case).max(), rolls(case)))
     assert first.x[-1] < 0.1 < all_of_it.x[-1]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from underfoot.app import work_sole
-from underfoot.app.jobs import Jobs, named, patiently
+from underfoot.app.jobs import JobQueue, call_by_name, patiently
 from underfoot.app.project import Project
 from underfoot.app.trials_plots import tile_svg
 from underfoot.app.work_sole import advised_groove
@@ -68,7 +68,7 @@ def test_an_advised_groove_lies_where_the_sole_met_the_floor(monkeypatch, side):
 
 def test_long_jobs_give_way_and_what_a_person_waits_for_does_not(tmp_path):
     async def made():
-        jobs = Jobs(tmp_path)
+        jobs = JobQueue(tmp_path)
         return jobs._lane("underfoot.compute")._call, jobs.live._call, jobs.reading._call
 
-    assert asyncio.run(made()) == (patiently, named, named)
+    assert asyncio.run(made()) == (patiently, call_by_name, call_by_name)

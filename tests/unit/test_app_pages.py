@@ -27,9 +27,9 @@ from underfoot.app.jobs import (
     RUNNING,
     STOPPED,
     WAITING,
-    Jobs,
+    JobQueue,
     Lane,
-    Task,
+    QueuedTask,
 )
 from underfoot.app.pages import (
     PAGES,
@@ -47,11 +47,11 @@ from underfoot.app.project import Project
 from underfoot.app.projects import Servers
 from underfoot.app.session import Exchange, Session, problem_parts
 from underfoot.app.text import LANGUAGES, Text
-from underfoot.app.trials_study import STANDARD, Study
+from underfoot.app.trials_study import STANDARD, TrialsFolder
 from underfoot.app.variant_bar import _rename, new_variant
 from underfoot.core import SourcedValue, silent
 from underfoot.core.errors import Cancelled, InputError
-from underfoot.core.page import Section
+from underfoot.core.page import PageSection
 from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope
 
@@ -68,7 +68,7 @@ class Here:
 
 
 def session_of(folder, language="en", **query):
-    jobs, text = Jobs(folder), Text(language)
+    jobs, text = JobQueue(folder), Text(language)
     jobs.live = jobs.reading = cast(Any, Here())
     project, elsewhere = Project(folder), Servers()
     return Session(project, jobs, text, query, Exchange(), PAGES, elsewhere=elsewhere)
@@ -159,7 +159,7 @@ def test_what_would_help_is_offered_for_the_present_inputs_until_it_was_computed
 ):
     session = session_of(tmp_path)
     monkeypatch.setattr(Project, "is_current", lambda *_: current)
-    task = None if state is None else Task(1, "help", state=state)
+    task = None if state is None else QueuedTask(1, "help", state=state)
 
     def build():
         page = SimpleNamespace(session=session, name="a", text=session.text, help=ui.element())
@@ -219,11 +219,11 @@ def test_an_edit_that_is_undone_and_done_again_is_written_from_the_text_that_sta
 def test_how_a_folder_is_analysed_is_kept_and_is_new_once(tmp_path):
     project = Project(tmp_path)
     project.inside("trials", "walks").mkdir(parents=True)
-    study = Study(project, "walks")
+    study = TrialsFolder(project, "walks")
     assert study.keep(STANDARD) is False
     assert study.keep({"names": "a"}) is True
     assert study.keep({"names": "a"}) is False
-    assert Study(project, "walks").settings == {**STANDARD, "names": "a"}
+    assert TrialsFolder(project, "walks").settings == {**STANDARD, "names": "a"}
 
 
 def test_a_step_is_drawn_with_the_ratio_of_its_own_contact():
@@ -255,7 +255,7 @@ def queue(folder, answers):
                 raise answer
             return answer
 
-    jobs: Any = Jobs(folder)
+    jobs: Any = JobQueue(folder)
     jobs._lane = lambda _: Lane()
     return jobs
 
@@ -593,11 +593,11 @@ def test_results_of_a_study_are_those_of_its_end_or_of_its_live_page(monkeypatch
     live = SimpleNamespace(cost_table=lambda: "cost", cautions=lambda: ("so far", "more"))
     sheets = {"ready": ["plots", "table", "notes"], "live": ["plots", "so many"]}
     parts = {
-        name: [Section(title, intro=f"of {name}") for title in titles]
+        name: [PageSection(title, intro=f"of {name}") for title in titles]
         for name, titles in sheets.items()
     }
     fakes = {
-        "Study": SimpleNamespace(load=lambda *_: study), "shown": lambda result: result,
+        "Study": SimpleNamespace(load=lambda *_: study), "shown_study": lambda result: result,
         "figures": lambda _: {"front": lambda: "figure"}, "png": lambda figure: f"png of {figure}",
         "sections": lambda result, pictures: [parts[result]], "live_study": lambda _: live,
         "live_sections": lambda _: parts["live"],
@@ -709,7 +709,7 @@ def test_a_variant_that_can_not_be_read_is_looked_at_again_when_its_file_changed
     monkeypatch.setattr(Session, "follow", lambda _, *given: followed.append(given))
     monkeypatch.setattr(Session, "go", lambda _, route, **query: went.append((route, query)))
     found: Any = []
-    shown(lambda: found.append(repair.opened(session, "/design", name)), words_of)
+    shown(lambda: found.append(repair.open_variant(session, "/design", name)), words_of)
     state, again = followed[-1]
     assert found == [None]
     before = state()

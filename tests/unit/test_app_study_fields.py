@@ -2,7 +2,7 @@
 
 import pytest
 
-from underfoot.app.pages.studies import SEPARATOR, typed
+from underfoot.app.pages.studies import SEPARATOR, typed_value
 from underfoot.core import InputError
 
 VISCOSITY, HARDNESS, DEPTH = "contaminant.viscosity", "shoe.material.shore_a", "shoe.tread.depth"
@@ -23,7 +23,7 @@ VISCOSITY, HARDNESS, DEPTH = "contaminant.viscosity", "shoe.material.shore_a", "
     ],
 )
 def test_what_is_typed_is_what_the_file_says(text, path, comma, said):
-    assert typed(text, path, comma=comma, names=True) == said
+    assert typed_value(text, path, comma=comma, names=True) == said
 
 
 @pytest.mark.parametrize(
@@ -31,19 +31,19 @@ def test_what_is_typed_is_what_the_file_says(text, path, comma, said):
 )
 def test_what_is_no_viscosity_is_refused(text):
     with pytest.raises(InputError):
-        typed(text, VISCOSITY, comma=False, names=True)
+        typed_value(text, VISCOSITY, comma=False, names=True)
 
 
 @pytest.mark.parametrize("text", ["", "abc", "62 63", "1e400", "NaN", "3 mm"])
 def test_what_is_no_number_is_refused_where_one_stands(text):
     with pytest.raises(InputError):
-        typed(text, HARDNESS, comma=False)
+        typed_value(text, HARDNESS, comma=False)
 
 
 def test_what_can_be_two_numbers_is_asked_in_the_language_of_the_page():
     for text, comma in (("1.234 cP", True), ("1,234 cP", False)):
         with pytest.raises(InputError, match="can be"):
-            typed(text, VISCOSITY, comma=comma)
+            typed_value(text, VISCOSITY, comma=comma)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from underfoot.calibrate.compound import Compound, _beside
 from underfoot.calibrate.law_file import ENOUGH, TrialReadings, law_table
 from underfoot.calibrate.stribeck_curve import _gap
 from underfoot.case import load
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.trials.machines.compression import BONDED, Compression, compression_moduli
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
@@ -37,7 +37,7 @@ def test_a_speed_read_often_has_its_own_scatter_and_others_share_one():
 def test_the_gap_of_a_pair_carries_its_pressure(pressure):
     case = load(EXAMPLE)
     gap = _gap(case, pressure)
-    interface = case.rough_contact.build(resolved(case))
+    interface = case.rough_contact.build(resolve_context(case))
     assert 0 < gap < 1e-4
     assert float(interface.pressure(gap)) == pytest.approx(pressure, rel=1e-4)
 

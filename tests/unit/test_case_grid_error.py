@@ -17,7 +17,7 @@ from underfoot.compute.numerical_error import (
     errors_by_steps,
     with_numerical_error,
 )
-from underfoot.compute.position_draws import Place, ShoeAngles
+from underfoot.compute.position_draws import ShoeAngles, TreadPlace
 from underfoot.compute.positions import remembers, tread_positions
 from underfoot.compute.run import run
 from underfoot.compute.solve import solved_motion
@@ -167,7 +167,7 @@ def test_a_motion_that_ends_has_the_error_of_its_steps_from_twice_as_many():
 
     own, finer = with_steps(1), with_steps(2)
     at = {name: np.full(3, value) for name, value in own.items()}
-    steady = ShoeAngles((Place(),) * 3, at, 0, own)
+    steady = ShoeAngles((TreadPlace(),) * 3, at, 0, own)
     names, force = ("cof", "fluid_load", "peak_fluid_pressure"), 410.0
     assert errors_by_steps(steady, names, force) == {}
     ended = replace(steady, in_time=(own, finer))
@@ -202,8 +202,8 @@ def test_only_a_motion_that_ends_is_marched_with_more_steps(changes, marched):
         return ((k, own) for k in range(len(places)))
 
     spacing = case.numerics.grid_spacing
-    made = tread_positions(case, {Place(): own}, at_places, spacing=spacing, quick=False)
-    finer = (Place(finer=2), case.numerics.quick_grid_spacing)
+    made = tread_positions(case, {TreadPlace(): own}, at_places, spacing=spacing, quick=False)
+    finer = (TreadPlace(finer=2), case.numerics.quick_grid_spacing)
     assert (finer in asked) == marched
     assert made.in_time == ((own, own) if marched else ())
     assert all(place.finer == 1 for place in made.places)

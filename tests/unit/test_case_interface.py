@@ -7,7 +7,7 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.compute.numbers import regime
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.film import SHARE_LIMITS
 
 TEXT = """
@@ -23,7 +23,7 @@ def test_the_spread_of_a_mean_roughness_is_that_of_its_rq():
     sole, sole_spread = (math.sqrt(math.pi / 2) * value for value in (4e-6, 0.4e-6))
     floor, floor_spread = 3e-6, 0.6e-6
     expected = math.hypot(sole * sole_spread, floor * floor_spread) / (sole**2 + floor**2)
-    context = resolved(Case.from_text(TEXT))
+    context = resolve_context(Case.from_text(TEXT))
     assert context.rq_deviation == pytest.approx(expected, rel=1e-12)
     # by differences: move each height by its spread
     lengths = [math.hypot(sole + sole_spread, floor), math.hypot(sole, floor + floor_spread)]
@@ -35,16 +35,18 @@ def test_the_spread_of_a_mean_roughness_is_that_of_its_rq():
 def test_the_spread_of_a_measured_interface_is_its_own():
     case = Case.from_text(TEXT)
     own = {"value": "12 um", "uncertainty": "3 um"}
-    assert resolved(case.replace("interface.effective_rq", own)).rq_deviation == pytest.approx(0.25)
-    assert resolved(case.replace("interface.effective_rq", "12 um")).rq_deviation is None
+    assert resolve_context(
+        case.replace("interface.effective_rq", own)
+    ).rq_deviation == pytest.approx(0.25)
+    assert resolve_context(case.replace("interface.effective_rq", "12 um")).rq_deviation is None
     plain = case.replace({"shoe.roughness.ra": "4 um", "floor.roughness.rq": "3 um"})
-    assert resolved(plain).rq_deviation is None
+    assert resolve_context(plain).rq_deviation is None
 
 
 def test_the_exponential_law_falls_by_e_over_half_of_rq():
     """Persson 2007: p = beta E* exp(-u / u0) with u0 = gamma Rq; gamma about 0.5, beta 0.375."""
     case = Case.from_text(TEXT).replace("interface.effective_rq", "10 um")
-    context = resolved(case)
+    context = resolve_context(case)
     law = case.rough_contact.build(context)
     gap = 30e-6
     ratio = float(law.pressure(gap)) / float(law.pressure(gap + 0.5 * 10e-6))

@@ -11,7 +11,7 @@ import pytest
 from underfoot.case import Case
 from underfoot.case.contact import PerssonContact, _passing
 from underfoot.case.parts import fields, keys, paths
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "work_shoe_untreaded_glycerol.toml"
@@ -67,7 +67,7 @@ def test_fluid_passes_freely_far_from_a_rough_wall_and_is_held_near_it():
 def test_the_film_of_a_pin_has_twice_the_plane_strain_modulus_of_its_rubber(case):
     """E' of Eq. 18 is 2 E*, E* = E / (1 - nu^2) against a rigid floor."""
     chosen = case.replace({"friction.model": "mean_film_sharing", "floor.roughness.rq": "3 um"})
-    context = resolved(chosen)
+    context = resolve_context(chosen)
     effect = chosen.friction.build(context).effect
     star = context.youngs_modulus / (1 - context.poisson_ratio**2)
     assert effect.effective_modulus == pytest.approx(2 * star)

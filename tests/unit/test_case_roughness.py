@@ -6,7 +6,7 @@ import pytest
 
 from underfoot.case import Case
 from underfoot.case.errors import CaseError
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import RangeError
 from underfoot.places.machines import rq_of_rz
 from underfoot.places.place import place_of
@@ -52,7 +52,9 @@ def test_rz_is_the_roughness_where_it_is_what_was_measured(floor):
     assert (known.ra, known.rq) == (None, None)
     assert known.rq_or_estimate == pytest.approx(12e-6 / 32**0.5)
     law = Case(**RZ, floor={"roughness": {"rz": "12 um"}}).friction
-    span = law.build(resolved(Case(**RZ, floor={"roughness": {"rz": "12 um"}}))).pair.floor_rq
+    span = law.build(
+        resolve_context(Case(**RZ, floor={"roughness": {"rz": "12 um"}}))
+    ).pair.floor_rq
     assert span == pytest.approx((1.5e-6, 3e-6)) == rq_of_rz(12e-6)
 
 

@@ -18,7 +18,7 @@ from underfoot.case.people import Transfer
 from underfoot.case.quantity import Quantity, default_of
 from underfoot.case.section import Section
 from underfoot.case.template import _overrides, _remark
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError, SourcedValue, UnderfootError, to_si
 
 
@@ -102,7 +102,7 @@ def test_the_spread_of_two_roughnesses_is_that_of_their_root_sum(heel):
 def test_a_measured_coefficient_is_the_sum_of_its_parts(heel, part):
     changes = {"friction.model": "constant", "friction.cof": 0.3}
     case = heel.replace(changes | ({} if part is None else {"friction.hysteresis_cof": part}))
-    law: Any = case.friction.build(resolved(case))
+    law: Any = case.friction.build(resolve_context(case))
     assert law.cof_adhesion + law.cof_hysteresis == pytest.approx(0.3)
     assert law.cof_hysteresis == (part or 0.0)
     with pytest.raises(InputError):

@@ -7,7 +7,7 @@ import pytest
 
 from underfoot import rough_contact
 from underfoot.case import Case, friction
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 
@@ -55,7 +55,7 @@ def test_a_given_ra_stands_in_for_the_rq_of_the_entry(part, tmp_path):
 
 def test_hysteresis_of_a_floor_without_a_scan_is_of_waves_up_to_the_longest(monkeypatch):
     """Its usual form: level up to the roll-off, then falling; scaled to the floor's slope."""
-    context = resolved(heel())
+    context = resolve_context(heel())
     told = {}
 
     def persson(pressure, wavenumber, spectrum, *given, **named):

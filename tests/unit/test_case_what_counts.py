@@ -10,8 +10,8 @@ from underfoot.case import Case, Option, assumptions
 from underfoot.case.friction import ConstantOption
 from underfoot.compute.numbers import heel_name, sole_name
 from underfoot.compute.position_draws import UncertainBevel
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import SourcedValue, content_hash
 from underfoot.questions.comparison import case_differences
 
@@ -149,7 +149,7 @@ def test_adhesion_left_by_a_fluid_is_over_the_load_of_its_own_test():
     law = {"model": "adhesion_blocking", "dry_adhesion_cof": 0.6, "hysteresis_cof": 0.1}
     law |= {"alpha": "1 N", "beta": 0.2}
     usual, light = (
-        case.friction.build(resolved(case)).cof_parts[0]
+        case.friction.build(resolve_context(case)).cof_parts[0]
         for case in (case_of(friction=law), case_of(friction={**law, "load": "5 N"}))
     )
     assert usual == pytest.approx(1 / 20.9 + 0.2 * 0.6)
@@ -171,7 +171,7 @@ CUTS = "0.8 mm", "2.5 mm"
 @pytest.mark.parametrize(("floor", "told"), [(60, True), (99, False), (None, False)])
 def test_a_floor_as_soft_as_the_sole_is_no_rigid_floor(floor, told):
     case = case_of(floor={"roughness": {"rq": "1 um"}, **({"shore_a": floor} if floor else {})})
-    assert ("floor" in [each.closure for each in resolved(case).modulus_breaches]) == told
+    assert ("floor" in [each.closure for each in resolve_context(case).modulus_breaches]) == told
 
 
 SWEPT = {
@@ -190,7 +190,7 @@ SWEPT = {
 
 
 def content(case):
-    parts = prepared(case, 4e-3)
+    parts = prepare_case(case, 4e-3)
     values = parts.sole.clearance, parts.law, parts.asperities, parts.slip_model, parts.film
     deflection = parts.compliance.apply(np.where(parts.sole.land, 1e5, 0.0))
     return content_hash([*values, deflection])

@@ -15,7 +15,7 @@ from underfoot.cli.output import (
     _print_blocks,
     _print_records,
     _say_rest,
-    narrowed,
+    narrow_cell,
     print_table,
 )
 from underfoot.cli.stribeck import _cases
@@ -34,14 +34,14 @@ def printed(console):
 
 
 def test_only_a_cell_longer_than_the_longest_is_narrowed():
-    assert narrowed("x" * (LONGEST_VALUE - 3) + ".yz") == "x" * (LONGEST_VALUE - 3) + ".yz"
-    assert narrowed("x" * LONGEST_VALUE + ".yz") == "x" * LONGEST_VALUE + ".\n  yz"
+    assert narrow_cell("x" * (LONGEST_VALUE - 3) + ".yz") == "x" * (LONGEST_VALUE - 3) + ".yz"
+    assert narrow_cell("x" * LONGEST_VALUE + ".yz") == "x" * LONGEST_VALUE + ".\n  yz"
     sentence = "a sentence of many words is wrapped by the table"
-    assert narrowed(sentence) == sentence
-    assert narrowed("0123456789abcdef" * 4) == "0123456789ab…"
+    assert narrow_cell(sentence) == sentence
+    assert narrow_cell("0123456789abcdef" * 4) == "0123456789ab…"
     path = "/a/long/folder/of/somebody/and/its/" + "file.toml"
-    assert narrowed(path) == "…" + path[1 - LONGEST_PATH :]
-    assert len(narrowed(path)) == LONGEST_PATH
+    assert narrow_cell(path) == "…" + path[1 - LONGEST_PATH :]
+    assert len(narrow_cell(path)) == LONGEST_PATH
 
 
 @pytest.mark.parametrize(("rest", "said"), [(0, ""), (1, "… 1 more rows"), (7, "… 7 more rows")])

@@ -6,7 +6,7 @@ import pytest
 
 from underfoot import Case, run
 from underfoot.compute.numbers import no_result_words
-from underfoot.core import Breach, InputError, Range
+from underfoot.core import Breach, InputError, ValidityRange
 
 BARS = {"pattern": "transverse", "depth": "3 mm", "lug_width": "6 mm", "channel_width": "4 mm"}
 SMALL = {
@@ -76,7 +76,7 @@ def test_odd_soles_have_an_answer(settings):
 
 def test_a_march_without_a_result_names_the_physics():
     contact = SimpleNamespace(fluid_load=300.0, normal_force=400.0, time=0.0255)
-    limit = Range(0.0, 0.01, "1", "rubber")
+    limit = ValidityRange(0.0, 0.01, "1", "rubber")
     crushed = no_result_words(contact, [Breach("compliance", "share", 0.39, 0.39, limit)])
     assert crushed.startswith("lugs crushed: 39% of the load")
     assert "25.5 ms, where the film carried 75% of 400 N" in crushed

@@ -46,7 +46,9 @@ def test_shoe_angles_of_people_reach_8_degrees_to_either_side_but_not_below_1(ca
 )
 def test_a_preview_keeps_the_sole_where_nothing_makes_another(case, monkeypatch, changes, kept):
     asked = {}
-    monkeypatch.setattr(continuation, "prepared", lambda *_, geometry: asked.update(at=geometry))
+    monkeypatch.setattr(
+        continuation, "prepare_case", lambda *_, geometry: asked.update(at=geometry)
+    )
     parts: Any = SimpleNamespace(case=case, spacing=1e-3, sole="sole", compliance="compliance")
     continuation._changed(parts, case.replace(changes))
     assert asked["at"] == (("sole", "compliance") if kept else None)

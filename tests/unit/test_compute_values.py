@@ -15,10 +15,10 @@ import pytest
 from underfoot import compute, shoe
 from underfoot.case import load
 from underfoot.compute import numerical_error, positions, read, sole, solve
-from underfoot.compute.position_draws import COF_PARTS, Place, ShoeAngles
-from underfoot.compute.prepare import prepared
+from underfoot.compute.position_draws import COF_PARTS, ShoeAngles, TreadPlace
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.resolve import _untested_rates
-from underfoot.compute.sole import trimmed
+from underfoot.compute.sole import trim_map
 from underfoot.compute.summary import table
 from underfoot.core import SourcedValue
 from underfoot.film import NewtonianFilm
@@ -63,7 +63,7 @@ def sloping() -> SoleMap:
 )
 def test_a_trimmed_sole_keeps_what_comes_within_reach_and_its_padding(padding, rows, columns):
     whole = sloping()
-    part = trimmed(whole, 5.5e-4, padding=padding)  # rows 0 to 5 stand that low
+    part = trim_map(whole, 5.5e-4, padding=padding)  # rows 0 to 5 stand that low
     np.testing.assert_array_equal(part.x, whole.x[:rows])
     np.testing.assert_array_equal(part.y, whole.y[slice(*columns)])
     cut = (slice(rows), slice(*columns))
@@ -75,9 +75,9 @@ def test_a_trimmed_sole_keeps_what_comes_within_reach_and_its_padding(padding, r
 def test_a_sole_that_rolls_keeps_what_any_angle_brings_down():
     whole = sloping()
     flat = math.atan(-0.1)  # toe down by the slope of the sole: every row lies on the floor
-    assert trimmed(whole, 5.5e-4, flat).x.size == 20
-    assert trimmed(whole, 5.5e-4, cast(Any, [0.0, flat])).x.size == 20
-    assert trimmed(whole, 5.5e-4, 0.0).x.size == 10  # 6 rows and 4 of padding
+    assert trim_map(whole, 5.5e-4, flat).x.size == 20
+    assert trim_map(whole, 5.5e-4, cast(Any, [0.0, flat])).x.size == 20
+    assert trim_map(whole, 5.5e-4, 0.0).x.size == 10  # 6 rows and 4 of padding
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ def test_only_a_film_of_another_shear_takes_the_place_of_eta_v_over_h():
     case = load(HEEL)
     viscosity, at = 0.2, ([1e5], 0.5, [2e-5])
 
-    first = prepared(case, 4e-3, {"film": NewtonianFilm(viscosity)})
+    first = prepare_case(case, 4e-3, {"film": NewtonianFilm(viscosity)})
 
     def law_with(film):
-        return prepared(case, 4e-3, {"film": film}, geometry=(first.sole, first.compliance)).law
+        return prepare_case(case, 4e-3, {"film": film}, geometry=(first.sole, first.compliance)).law
 
     plain = first.law
     assert not isinstance(plain, FilmShearLaw)
@@ -251,7 +251,7 @@ def test_half_of_what_finer_cells_would_add_is_between_the_grids_where_all_place
     )  # fmt: skip
     made = positions.tread_positions(
         case,
-        {Place(): numbers_on(50.0)},
+        {TreadPlace(): numbers_on(50.0)},
         lambda asked: ((k, numbers_on(50.0 if h == GRID else 40.0))
                        for k, (_, h) in enumerate(asked)),
         spacing=GRID, quick=False,
@@ -304,7 +304,7 @@ def test_a_region_of_a_file_bends_at_its_ball_where_it_is_nearly_the_whole(
     whole, jointed = 0.3, []
     fakes = {
         "file_outsole": lambda _: SimpleNamespace(whole_length=whole),
-        "surface_map": lambda *_, **__: "map", "trimmed": lambda made, *_: made,
+        "surface_map": lambda *_, **__: "map", "trim_map": lambda made, *_: made,
         "_jointed": lambda case, made, length: jointed.append(length) or made,
         "check_load": lambda *_: None, "rolls": lambda _: 0.0, "_pressed": lambda case, made: made,
         "_with_cells": lambda case, made, again: made,
@@ -346,7 +346,7 @@ def test_a_row_of_a_result_has_the_interval_beside_it_or_what_its_value_means(re
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_run_at_several_angles_says_from_where_to_where(count):
     degree = math.radians(1.0)
-    turns = [Place(), Place(turn=degree), Place(turn=-degree)][:count]
+    turns = [TreadPlace(), TreadPlace(turn=degree), TreadPlace(turn=-degree)][:count]
     values = {"cof": np.array([0.30, 0.35, 0.25])[:count],
               "fluid_load": np.array([40.0, 30.0, 50.0])[:count]}  # fmt: skip
     made = ShoeAngles(tuple(turns), values, 0, {"cof": 0.30, "fluid_load": 40.0})

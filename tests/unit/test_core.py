@@ -1,5 +1,7 @@
 """Errors, values, status, validity, cache and whole folders."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
@@ -10,10 +12,10 @@ from underfoot.core import (
     DataError,
     InputError,
     MissingExtraError,
-    Range,
     RangeError,
     SourcedValue,
     Status,
+    ValidityRange,
     breaches,
     content_hash,
     unknown_name,
@@ -65,7 +67,7 @@ def test_every_status_but_success_has_a_remedy():
 
 
 def test_breaches_name_the_quantity_and_the_tested_range():
-    ranges = {"speed": Range(0.01, 1.0, "m/s", "paper")}
+    ranges = {"speed": ValidityRange(0.01, 1.0, "m/s", "paper")}
     assert breaches("law", ranges, {"speed": [0.01, 1.0]}) == []
     (found,) = breaches("law", ranges, {"speed": np.array([0.5, 3.0])})
     assert isinstance(found, Breach)
@@ -73,7 +75,7 @@ def test_breaches_name_the_quantity_and_the_tested_range():
 
 
 def test_an_open_range_is_left_at_its_closed_end_only():
-    cells = {"cells": Range(4.0, float("inf"))}
+    cells = {"cells": ValidityRange(4.0, float("inf"))}
     assert breaches("grid", cells, {"cells": 1e9}) == []
     (found,) = breaches("grid", cells, {"cells": 2.4})
     assert "4 or more" in str(found)
@@ -163,6 +165,32 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
     ):
         with pytest.warns(FutureWarning, match=r"\.words is .* now; the old name goes in 0.4"):
             assert old() == new
+
+
+@pytest.mark.parametrize(
+    ("package", "old", "new"),
+    [
+        ("core", "Range", "ValidityRange"),
+        ("calibrate", "calibrated", "calibrate_model"),
+        ("friction", "propagated", "propagate_spread"),
+        ("material", "reduced", "reduce_spectrum"),
+        ("shoe", "Profile", "HeelProfile"),
+        ("slip.dynamics", "judged", "judge_slip"),
+        ("surface", "squared", "square_cells"),
+        ("studies", "StudyResult", "PublishedStudyResult"),
+        ("trials", "Profile", "TrialsProfile"),
+        ("trials.readers", "Draft", "RecordingDraft"),
+        ("trials.statistics", "Pair", "LevelPair"),
+        ("trials.study", "Table", "TrialTable"),
+    ],
+)
+def test_an_old_name_of_a_package_answers_and_warns(package, old, new):
+    room = import_module(f"underfoot.{package}")
+    with pytest.warns(FutureWarning, match=rf"{package}\.{old} is {new} now.* in 0.5") as told:
+        assert getattr(room, old) is getattr(room, new)
+    assert told[0].filename == __file__
+    with pytest.raises(AttributeError, match="has no attribute 'NoClass'"):
+        getattr(room, "NoClass")  # noqa: B009 - the error is what is asked for
 
 
 def test_each_kind_of_error_ends_a_command_with_its_own_code():

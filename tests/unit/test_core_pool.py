@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import pool as pool_module
 from underfoot.core import progress as progress_module
-from underfoot.core.pool import answered, in_processes, kill_with
+from underfoot.core.pool import answers_of, in_processes, kill_with
 from underfoot.core.progress import TimeLeft, bar, part, silent
 
 # A parent whose workers work for a minute: most in Python, some in a call that holds the lock.
@@ -235,7 +235,7 @@ def test_items_are_taken_when_a_worker_is_free():
             taken.append(number)
             yield number
 
-    answers = answered(squared, items(), 2, died=squared)
+    answers = answers_of(squared, items(), 2, died=squared)
     assert next(answers) in (0, 1)
     assert len(taken) <= 4
     assert sorted(answers)[-1] == 25

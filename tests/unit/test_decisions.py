@@ -11,7 +11,7 @@ from underfoot.explore.record import Ending, Record
 from underfoot.explore.result import StudyResult
 from underfoot.explore.study_file import read_plan
 from underfoot.places import choice
-from underfoot.places.choice import Cell, chosen
+from underfoot.places.choice import Cell, choose_shoe
 from underfoot.places.place import place_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -46,7 +46,7 @@ def choice_of(monkeypatch, cofs, *, floors=("hall",), fluids=None, wears=()):
                   **(WEARS if name in wears else {})}
                  for k, name in enumerate(cofs)],
     }  # fmt: skip
-    return chosen(place_of(table))
+    return choose_shoe(place_of(table))
 
 
 CHOICES = {

@@ -14,7 +14,7 @@ from underfoot.places.evidence import ScoredReading, score
 from underfoot.places.place import _task
 from underfoot.questions import effects
 from underfoot.questions.changes import Change, possible_changes
-from underfoot.questions.contact import mirrored
+from underfoot.questions.contact import mirror_map
 from underfoot.questions.effects import MOST_ERROR, _continued, change_effects
 from underfoot.questions.sensitivity import OPEN_INPUTS, _at
 from underfoot.surface import HeightMap
@@ -33,7 +33,7 @@ def test_a_sole_is_abraded_to_twice_its_roughness_where_that_can_be_done():
 
 def test_a_mirrored_map_holds_the_map_and_is_its_own_mirror_image():
     heights = np.random.default_rng(0).normal(size=(12, 10)) * 1e-6
-    whole = mirrored(HeightMap(heights, 1e-6))
+    whole = mirror_map(HeightMap(heights, 1e-6))
     assert whole.heights.shape == (24, 20)
     assert whole.periodic
     corner = whole.heights[:12, :10]
@@ -139,7 +139,7 @@ def test_a_run_beside_a_march_goes_on_from_what_the_march_misses(monkeypatch, lu
         return [made, failed][: len(cases)]
 
     monkeypatch.setattr(effects, "_march", lambda *_: march)
-    monkeypatch.setattr(effects, "treaded", lambda _: lugs)
+    monkeypatch.setattr(effects, "has_lugs", lambda _: lugs)
     monkeypatch.setattr(effects, "outcomes", run)
     rubbers = [
         Change(f"rubber {a}", f"take {a}", "maker", {"shoe.material.shore_a": a})

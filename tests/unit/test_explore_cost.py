@@ -61,7 +61,7 @@ def made_up(monkeypatch):
             done = {"worker": "a", "ended": time.time(), "draws": np.full(500, 0.2)}
             return Record(job.key, Ending.COMPUTED, numbers=numbers, **took, **done)
 
-        monkeypatch.setattr(study, "computed", computed)
+        monkeypatch.setattr(study, "compute_job", computed)
 
     return set_cost
 
@@ -134,7 +134,7 @@ def test_cases_in_the_order_of_a_grid_tell_the_cost_of_the_rest(made_up, tmp_pat
     store.add_batch(store.jobs(), jobs)
     with store.working(1):
         for job in jobs[: len(jobs) // 3]:
-            store.add_record(study.computed(made.base, job))
+            store.add_record(study.compute_job(made.base, job))
     true = whole(made, lambda job: np.exp(1.5 * job.point[0]) * (1 + job.condition))
     answer = check.study_check(made, 1, store)
     assert answer.cpu_seconds == pytest.approx(true, rel=0.05)
@@ -158,7 +158,7 @@ def test_where_to_run_it_follows_from_time_memory_and_disk(made_up, tmp_path):
     made = plan()
     one = Study(made, tmp_path)
     one.compute_some(10)
-    machine = check.Machine(processors=8, memory=1e9, disk=1e5)
+    machine = check.Computer(processors=8, memory=1e9, disk=1e5)
     answer = replace(check.study_check(made, 1, one.store), machine=machine)
     assert answer.workers == 5  # of 0.2 GB
     assert answer.seconds_left == pytest.approx(290 * 5400 / 5)
@@ -181,14 +181,14 @@ def test_without_a_finished_case_the_cost_is_called_a_guess(made_up, tmp_path):
 
 def test_why_timed_cases_have_no_numbers_is_told(made_up, tmp_path, monkeypatch):
     made_up(fine)
-    real = study.computed
+    real = study.compute_job
 
     def computed(base, job):
         done = real(base, job)
         bad = job.condition == 2
         return replace(done, ending=Ending.NOT_CONVERGED, reason="no steady state") if bad else done
 
-    monkeypatch.setattr(study, "computed", computed)
+    monkeypatch.setattr(study, "compute_job", computed)
     made = plan()
     one = Study(made, tmp_path)
     one.compute_some(10)

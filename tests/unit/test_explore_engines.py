@@ -9,7 +9,7 @@ import pytest
 
 from underfoot.explore import engines, study
 from underfoot.explore import store as store_module
-from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.store import Store
 from underfoot.explore.study import Study
 from underfoot.explore.study_file import read_plan
@@ -29,7 +29,7 @@ def answer(job):
 def test_a_dask_cluster_without_workers_says_what_starts_one(monkeypatch):
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(engines, "PATIENCE", 0.3)
-    jobs = [Job(f"{k}", k, 0, 0, 0, (0.5,), {}) for k in range(5)]
+    jobs = [CaseJob(f"{k}", k, 0, 0, 0, (0.5,), {}) for k in range(5)]
     local = {"processes": False, "protocol": "tcp", "dashboard_address": None}
     with distributed.LocalCluster(n_workers=0, **local) as cluster:
         said, address = [], cluster.scheduler_address
@@ -48,7 +48,7 @@ def test_a_dask_cluster_without_workers_says_what_starts_one(monkeypatch):
 def test_answers_that_came_count_though_their_worker_was_lost_since():
     """The first reader is slow; meanwhile all answers come, and then every worker dies."""
     distributed = pytest.importorskip("distributed")
-    jobs = [Job(f"{k}", k, 0, 0, 0, (0.5,), {}) for k in range(4)]
+    jobs = [CaseJob(f"{k}", k, 0, 0, 0, (0.5,), {}) for k in range(4)]
     local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
     with distributed.LocalCluster(**local) as cluster, distributed.Client(cluster) as client:
         address = cluster.scheduler_address
@@ -66,7 +66,7 @@ def test_answers_that_came_count_though_their_worker_was_lost_since():
 def test_who_waits_for_a_silent_process_says_for_whom_and_takes_over(tmp_path, monkeypatch):
     monkeypatch.setattr(study, "PAUSE", 0.01)
     monkeypatch.setattr(study, "PATIENCE", 0.05)
-    monkeypatch.setattr(study, "computed", lambda base, job: answer(job))
+    monkeypatch.setattr(study, "compute_job", lambda base, job: answer(job))
     plan = read_plan(TEXT, EXAMPLES)
     Store.made(tmp_path).adopt(plan)
     Study(plan, tmp_path)._begin_next()

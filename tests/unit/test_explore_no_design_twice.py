@@ -71,7 +71,7 @@ def test_of_many_draws_of_many_cases_so_many_are_kept_as_fit(monkeypatch, tmp_pa
             draws = k + np.arange(100.0)
             one = Record(f"{k}", Ending.COMPUTED, numbers={"cof": 0.3}, draws=draws)
             store.add_record(one)
-    seen = scan.scanned(Store(store.folder).records(), ["cof"], draws=True)
+    seen = scan.scan_cases(Store(store.folder).records(), ["cof"], draws=True)
     assert seen.every == every
     for k in range(4):
         assert seen.draws[seen.rows[f"{k}"]].tolist() == (k + np.arange(0.0, 100.0, every)).tolist()

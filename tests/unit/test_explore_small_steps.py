@@ -11,12 +11,12 @@ from scipy.stats import halfnorm, norm
 
 from underfoot.core import InputError
 from underfoot.explore import proposals, study, study_file
-from underfoot.explore.computing import crashed
+from underfoot.explore.computing import crash_record
 from underfoot.explore.inputs import TAIL, Choice, Range, read_joint_draws
 from underfoot.explore.posterior import DISCREPANCY, _log_density
-from underfoot.explore.record import Ending, Job
+from underfoot.explore.record import CaseJob, Ending
 from underfoot.explore.study_file import _Reader
-from underfoot.explore.surrogate import featured
+from underfoot.explore.surrogate import feature_columns
 
 HEAD = "# a posterior\ncontaminant.viscosity,motion.speed\n"
 
@@ -48,7 +48,7 @@ def test_one_draw_or_one_that_is_no_number_makes_no_posterior(tmp_path, rows):
 
 
 def test_a_case_that_crashed_has_no_number_and_took_no_time_that_is_known():
-    record = crashed(Job("k", 0, 0, 0, 0, (0.5,), {}))
+    record = crash_record(CaseJob("k", 0, 0, 0, 0, (0.5,), {}))
     assert record.ending is Ending.CRASHED
     assert not record.usable
     assert (record.seconds, record.cpu_seconds, record.memory) == (0.0, 0.0, 0.0)
@@ -113,11 +113,11 @@ def test_a_name_has_a_column_a_value_and_a_number_its_share_of_the_range():
     )
     points = np.array([[0.2, 0.1, 0.1], [0.7, 0.5, 0.5], [1.0, 1.0, 1.0]])
     np.testing.assert_allclose(
-        featured(dimensions, points),
+        feature_columns(dimensions, points),
         [[0.2, 1, 0, 0, 0.0], [0.7, 0, 1, 0, 0.25], [1.0, 0, 0, 1, 1.0]],
     )
     alone = Choice("shoe.material.shore_a", (60.0,))
-    np.testing.assert_array_equal(featured((alone,), np.array([[0.5]])), [[0.0]])
+    np.testing.assert_array_equal(feature_columns((alone,), np.array([[0.5]])), [[0.0]])
 
 
 @pytest.mark.parametrize("leads", [True, False])
@@ -132,7 +132,7 @@ def test_cases_that_tell_the_cost_are_computed_by_one_worker_and_only_where_nobo
     )  # fmt: skip
     jobs = [SimpleNamespace(key=key) for key in "abc"]
     monkeypatch.setattr(study, "spread_jobs", lambda _, count: jobs[:count])
-    monkeypatch.setattr(study, "computed", lambda base, job: f"{job.key} of {base}")
+    monkeypatch.setattr(study, "compute_job", lambda base, job: f"{job.key} of {base}")
     monkeypatch.setattr(study.Store, "made", lambda _: store)
     of: Any = SimpleNamespace(plan=SimpleNamespace(base="base"), store=store)
     study.Study.compute_some(of, 3, lambda _, share: told.append(share))

@@ -18,8 +18,8 @@ from underfoot.core import DataError, InputError
 from underfoot.core.progress import silent
 from underfoot.explore import claims, records
 from underfoot.explore import store as store_module
-from underfoot.explore.lines import sealed
-from underfoot.explore.record import Ending, Job, Record
+from underfoot.explore.lines import seal_line
+from underfoot.explore.record import CaseJob, Ending, Record
 from underfoot.explore.result import StudyResult
 from underfoot.explore.status import StudyStatus
 from underfoot.explore.store import Store
@@ -73,7 +73,7 @@ def test_a_torn_line_is_not_read_and_goes_on_where_it_is_finished(store):
     reader = Store(store.folder)
     assert set(reader.records()) == {"a"}
     body = line.split(b"\t")[0].decode().replace('"key": "a"', '"key": "b"')
-    path.write_bytes(line + sealed(body))
+    path.write_bytes(line + seal_line(body))
     assert set(reader.records()) == {"a", "b"}
 
 
@@ -261,7 +261,7 @@ def test_a_clock_that_was_set_back_keeps_nobody_s_claim_for_ever(store, monkeypa
 
 def test_no_rate_is_told_where_the_clock_was_set_back(store):
     added(store, replace(record("a"), ended=5000.0))
-    jobs = [Job(key, k, 0, 0, 0, (), {}) for k, key in enumerate("abc")]
+    jobs = [CaseJob(key, k, 0, 0, 0, (), {}) for k, key in enumerate("abc")]
     session = {"began": 4900.0, "ended": None, "workers": 1}
 
     def status(now):
@@ -372,13 +372,13 @@ def test_views_hold_every_case(store):
 
 
 def test_a_job_is_the_same_after_its_line():
-    job = Job("k", 3, 1, 0, 2, (0.5, 0.25), {"shoe.tread.depth": 0.002, "contaminant": "water"})
-    assert Job.from_line(job.line()) == job
+    job = CaseJob("k", 3, 1, 0, 2, (0.5, 0.25), {"shoe.tread.depth": 0.002, "contaminant": "water"})
+    assert CaseJob.from_line(job.line()) == job
     assert json.loads(job.line())["changes"]["contaminant"] == "water"
 
 
 def test_time_left_is_told_once_every_worker_has_ended_a_case(store):
-    jobs = [Job(str(n), n, 0, 0, 0, (), {}) for n in range(10)]
+    jobs = [CaseJob(str(n), n, 0, 0, 0, (), {}) for n in range(10)]
     session = {"began": 1000.0, "ended": None, "workers": 2}
 
     def left():

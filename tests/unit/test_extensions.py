@@ -18,7 +18,7 @@ from underfoot.case.section import Option
 from underfoot.compute.run import run
 from underfoot.core import InputError, registry
 from underfoot.core.catalogue import Catalogue, offered_catalogues
-from underfoot.core.registry import all_offers, broken_offers, offered
+from underfoot.core.registry import all_offers, broken_offers, find_offer
 from underfoot.questions.ask import ask
 from underfoot.questions.method import method_name
 from underfoot.shoe.files import outsole_from_file
@@ -163,12 +163,12 @@ EXTENSIONS = {
     """,
     "paper": """
         from pathlib import Path
-        from underfoot.studies import Computed, Quantity
+        from underfoot.studies import Computed, ComputedQuantity
 
         STATEMENTS = Path(__file__).with_name("paper.toml")
 
         def compute(options):
-            return Computed({"answer": Quantity.of(0.31)}, conclusions=("It agrees.",))
+            return Computed({"answer": ComputedQuantity.of(0.31)}, conclusions=("It agrees.",))
     """,
     "question": """
         from dataclasses import dataclass
@@ -541,5 +541,5 @@ def test_a_package_without_a_version_is_computed_and_counts(site):
 
 
 def test_nobody_offers_what_nobody_offers(site):
-    assert offered("friction", "sticky") is None
+    assert find_offer("friction", "sticky") is None
     assert list(broken_offers()) == []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError
 from underfoot.core.catalogue import Catalogue
 
@@ -34,7 +34,7 @@ def test_a_law_that_needs_the_floor_s_own_roughness_asks_for_it():
         friction="mean_film_sharing",
     )
     with pytest.raises(InputError, match="own roughness is not given"):
-        case.friction.build(resolved(case))
+        case.friction.build(resolve_context(case))
 
 
 @pytest.mark.parametrize("law", ["stribeck", "asperity_ehl", "boundary", "mean_film_sharing"])
@@ -42,7 +42,7 @@ def test_a_law_that_needs_the_floor_s_own_roughness_asks_for_it():
 def test_every_entry_gives_a_law_or_a_remedy(section, name, law):
     settings = {section: name, "models.friction": law}
     case = BASE.replace(settings)
-    found = case.friction.build(resolved(case))
+    found = case.friction.build(resolve_context(case))
     speed = np.array([0.0, 0.05, 0.3, 1.0])
     parts = found(np.full(4, 2e5), speed, np.full(4, 1.0))
     solid = (parts.adhesion + parts.hysteresis) / 2e5

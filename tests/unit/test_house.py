@@ -234,6 +234,15 @@ def names_of(path):
             yield node.attr, node.lineno
 
 
+def test_a_public_class_has_its_name_alone():
+    homes = {}
+    for name, path in files().items():
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes.setdefault(node.name, []).append(name)
+    assert {name: where for name, where in homes.items() if len(where) > 1} == {}
+
+
 def test_names_of_functions_parameters_and_fields_say_what_they_are():
     empty = [
         f"{path.relative_to(REPOSITORY)}:{line} {name}"

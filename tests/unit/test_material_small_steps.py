@@ -13,7 +13,7 @@ from underfoot.material.durometer_scales import SCALES
 from underfoot.material.gent_1958 import shore_a_gent, youngs_modulus_gent
 from underfoot.material.read import SAME, _held, _moduli
 from underfoot.material.ruess import youngs_modulus_ruess
-from underfoot.material.spectrum_fit import reduced
+from underfoot.material.spectrum_fit import reduce_spectrum
 from underfoot.material.tables import _is_row
 
 FREQUENCY = np.geomspace(0.1, 1e3, 9)
@@ -121,7 +121,7 @@ def test_a_row_holds_at_least_as_many_numbers_as_words(cells, row):
 def test_fewer_terms_reach_half_a_decade_beyond_what_they_follow():
     times = np.geomspace(1e-6, 1e6, 49)
     every = RelaxationSpectrum(1e6, 1e6 * times**-0.1, times)  # loss at every rate
-    few = reduced(every, (0.1, 1e3), terms_per_decade=2).spectrum.relaxation_times
+    few = reduce_spectrum(every, (0.1, 1e3), terms_per_decade=2).spectrum.relaxation_times
     assert few.min() == pytest.approx(1 / (1e3 * 10**0.5))
     assert few.max() == pytest.approx(10**0.5 / 0.1)
 

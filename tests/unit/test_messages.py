@@ -28,7 +28,7 @@ from underfoot.core.remark import (
 
 SOURCE = Path(underfoot.__file__).parent
 TEXT = files("underfoot").joinpath("app", "text")
-CODE_AT = {"Message": 0, "assumed": 0, "caution": 0, "remark": 0, "Remark": 1}
+CODE_AT = {"Message": 0, "assumption_line": 0, "caution": 0, "remark": 0, "Remark": 1}
 """Makers of messages, and which of their arguments is the template."""
 OWN = ("core/remark.py", "trials/recording/measurement.py")
 """Where makers are made."""
@@ -132,7 +132,7 @@ def codes():
         'Remark("shoe", "{} steps".format(n))',
         'Remark("shoe", "steps: " + n)',
         'Message(", ".join(n))',
-        "assumed(text)",
+        "assumption_line(text)",
         'Message("{count} steps")',
         'Message("steps", count=3)',
         'caution("{count} steps", number=3)',

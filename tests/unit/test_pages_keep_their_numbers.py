@@ -15,7 +15,7 @@ from underfoot.core.presentation import interval_text
 from underfoot.core.remark import Remark
 from underfoot.friction.pair_contact import TERMS
 from underfoot.places import choice
-from underfoot.questions.method import Condition
+from underfoot.questions.method import MethodCondition
 from underfoot.slip.dynamics import FitError, error_text
 
 CASE = """
@@ -61,7 +61,7 @@ def test_a_test_method_tells_one_spread_and_nothing_of_slips():
     """COF 0.093 ± 0.138 beside 0.02 to 0.38 was told; and a slip model's range, of no slip."""
     cof = SourcedValue(0.093, "1", uncertainty=0.138, note="law")
     names = ("tile", "tile", "tile", "glycerine")
-    condition = Condition(*names, cof, 0.02, 0.38, None, None, None, _Outcome())
+    condition = MethodCondition(*names, cof, 0.02, 0.38, None, None, None, _Outcome())
     assert "COF 0.093 (95 %: 0.02 to 0.38; law)" in str(condition)
     assert [each.about for each in condition.breaches] == ["gent_1958"]
 

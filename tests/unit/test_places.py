@@ -15,7 +15,7 @@ import pytest
 
 import underfoot as uf
 from underfoot.case import Case
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, RangeError
@@ -24,16 +24,16 @@ from underfoot.film import wedge_film
 from underfoot.friction.pair_contact import Pair
 from underfoot.friction.shoe_class import SPEED, slip_tests
 from underfoot.places.calibration import calibrated_floor, class_bounds
-from underfoot.places.choice import _count, _read_floors, chosen, slip_share
+from underfoot.places.choice import _count, _read_floors, choose_shoe, slip_share
 from underfoot.places.evidence import (
     _floor_rq,
     evidence,
     floor_likeness,
-    learned,
+    learn_machine,
     machine_scores,
     score,
 )
-from underfoot.places.joint import FLOOR_LIKENESS, JointDraws, Reading
+from underfoot.places.joint import FLOOR_LIKENESS, CofReading, PlaceDraws
 from underfoot.places.machines import (
     FLUIDS,
     SCALES,
@@ -68,7 +68,7 @@ def small_place():
 
 @pytest.fixture(scope="module")
 def choice():
-    return chosen(place_of(small_place()))
+    return choose_shoe(place_of(small_place()))
 
 
 @pytest.mark.parametrize(("cof", "ptv"), [(0.31, 31), (0.54, 50), (1.00, 82), (0.37, 36)])
@@ -120,7 +120,7 @@ def test_a_rougher_floor_reads_higher_wet_and_a_dry_one_higher_still(name):
 @pytest.mark.parametrize("name", [name for name, one in machines().items() if one.learned])
 def test_what_a_set_up_has_learned_is_what_its_readings_teach(name):
     device = machine(name)
-    assert dataclasses.astuple(learned(device)) == pytest.approx(
+    assert dataclasses.astuple(learn_machine(device)) == pytest.approx(
         dataclasses.astuple(device.learned), abs=0.002
     )
 
@@ -173,7 +173,7 @@ def test_a_longer_edge_reads_less_of_a_smooth_wet_floor():
     device, read = machine("pendulum-96"), []
     for length in (1e-3, 3e-3):
         worn = dataclasses.replace(device, bearing=Bearing((length, length), 76e-3, 25.0))
-        cof = worn.cof(JointDraws(), "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
+        cof = worn.cof(PlaceDraws(), "glass", (0.3 * UM, 0.3 * UM), FLUIDS["water"])
         read.append(np.median(cof))
     assert read[1] < read[0]
 
@@ -184,7 +184,7 @@ def test_a_walker_of_the_ramp_slips_below_the_angle_of_friction():
     device = dataclasses.replace(device, bearing=None, deviation=0.0)
     for walker in (device.walker, (0.0, 0.0)):
         walked = dataclasses.replace(device, walker=walker)
-        cof = walked.cof(JointDraws(), "floor", rq_of_rz(60 * UM), FLUIDS["ramp oil"])
+        cof = walked.cof(PlaceDraws(), "floor", rq_of_rz(60 * UM), FLUIDS["ramp oil"])
         angles.append(np.median(walked.scale.reading(cof)))
     needed = np.degrees(np.arctan(np.mean(device.walker)))
     assert angles[1] - angles[0] == pytest.approx(needed, abs=0.5)
@@ -222,7 +222,7 @@ def test_published_readings_are_predicted_without_their_source():
     assert scored.constant_error == pytest.approx(14, abs=0.5)
     assert scored.rank == pytest.approx(0.60, abs=0.02)
     one = pendulum[0].evidence
-    assert learned(one.machine, one.source) != learned(one.machine)
+    assert learn_machine(one.machine, one.source) != learn_machine(one.machine)
 
 
 @pytest.mark.parametrize("name", list(machines()))
@@ -267,7 +267,7 @@ def test_a_reading_is_foretold_again_and_named_where_it_was_not(floor):
         case = case if floor is None else case.replace({"floor": floor})
         told = method_prediction(case, "pendulum-96")
         assert told.low <= ptv <= told.high
-        law = case.friction.build(resolved(case))
+        law = case.friction.build(resolve_context(case))
         shoes.append(np.median(law.joint_draws(1000, 0)["pair"]))
         before = method_prediction(case.replace({"friction": {"model": "pair"}}), "pendulum-96")
         outside = not before.low <= ptv <= before.high
@@ -287,7 +287,7 @@ def test_what_a_reading_says_of_a_shoe_is_what_machines_say_of_each_other():
     assert floor_likeness() == pytest.approx(FLOOR_LIKENESS, abs=0.005)
     for source in ("floor_testing_services", "safety_direct_coatings", "uksrg_verification"):
         assert floor_likeness(source) == pytest.approx(FLOOR_LIKENESS, abs=0.1)
-    joint = JointDraws(count=20000)
+    joint = PlaceDraws(count=20000)
     one, two = (joint.beyond_roughness("hall", name) for name in "ab")
     assert np.corrcoef(one, two)[0, 1] == pytest.approx(FLOOR_LIKENESS, abs=0.02)
     for other in (joint.beyond_roughness("yard", "b"), joint.beyond_roughness("hall", "b2", "oil")):
@@ -317,7 +317,7 @@ def test_a_reading_of_the_floor_in_a_case_narrows_every_shoe_on_it(shoe):
     rough, cofs = [], []
     for ptv in (15, 60):
         case = read_case(ptv_96=ptv).replace({"shoe": shoe})
-        law = case.friction.build(resolved(case))
+        law = case.friction.build(resolve_context(case))
         share = law.draws.errors[f"floor_rq {law.pair.floor_rq[0]:.3g} {law.pair.floor_rq[1]:.3g}"]
         rough.append(np.quantile(share, (0.025, 0.5, 0.975)))
         cofs.append(law.medians["kappa"])
@@ -330,12 +330,12 @@ def test_a_reading_of_the_floor_in_a_case_narrows_every_shoe_on_it(shoe):
 def test_readings_of_a_case_go_beside_those_of_its_shoe(tmp_path):
     """Draws of calibrate pair are narrowed further, with what they determined of the shoe."""
     plain = read_case(ptv_96=40)
-    law = plain.friction.build(resolved(plain))
+    law = plain.friction.build(resolve_context(plain))
     error = {"laboratory": np.linspace(-0.1, 0.1, law.draws.count)}
     path = tmp_path / "own.csv"
     dataclasses.replace(law.draws, errors=error).write(path)
     both = read_case(ptv_96=40, draws_file=str(path))
-    kept = both.friction.build(resolved(both)).draws.errors["laboratory"]
+    kept = both.friction.build(resolve_context(both)).draws.errors["laboratory"]
     assert np.abs(kept).max() <= 0.1
 
 
@@ -368,7 +368,7 @@ def test_a_reading_moves_what_it_is_of_and_leaves_other_floors():
     device, span = machine("pendulum-96"), (0.3 * UM, 20 * UM)
     medians = []
     for reading in (20.0, 50.0):
-        joint = JointDraws()
+        joint = PlaceDraws()
         other = np.median(joint.share("roughness of floor other"))
         likelihood = device.log_likelihood(joint, "hall", span, FLUIDS["water"], reading)
         joint.learn(likelihood, "hall")
@@ -401,7 +401,7 @@ def moved(read, count=24000):
     """Return ln of the ratio of median COFs after a high and after a low reading."""
     medians = []
     for high in (False, True):
-        joint = JointDraws(count=count)
+        joint = PlaceDraws(count=count)
         read(joint, high)
         medians.append({name: np.log(np.median(cof)) for name, cof in shoe_cofs(joint).items()})
     return {name: medians[1][name] - medians[0][name] for name in medians[0]}
@@ -429,7 +429,7 @@ def test_a_shoe_that_was_read_moves_on_every_floor_more_than_another_shoe():
             pressure=3e5,
             drag=test.viscosity * SPEED,
         )
-        joint.learn(joint.log_likelihood(cof, Reading(0.4 if high else 0.08)), "soft")
+        joint.learn(joint.log_likelihood(cof, CofReading(0.4 if high else 0.08)), "soft")
 
     change = moved(read, count=200_000)  # of fewer draws the sampling hides it
     for floor in ("hall", "yard"):
@@ -440,7 +440,7 @@ def test_a_bound_says_less_than_a_value():
     """A value narrows to a band; a lower bound cuts one side alone (of ln: errors are factors)."""
     device, span, wide = machine("pendulum-96"), (0.3 * UM, 20 * UM), {}
     for kind in ("value", "lower", "upper"):
-        joint = JointDraws()
+        joint = PlaceDraws()
         joint.learn(
             device.log_likelihood(joint, "hall", span, FLUIDS["water"], 36.0, kind=kind), "hall"
         )
@@ -455,7 +455,7 @@ def test_two_readings_teach_the_same_in_either_order():
     device, found = machine("bot-3000e"), []
     device = dataclasses.replace(device, learned=None)
     for order in (("a", "b"), ("b", "a")):
-        joint = JointDraws(count=20000)
+        joint = PlaceDraws(count=20000)
         for floor in order:
             value = {"a": 0.3, "b": 0.5}[floor]
             span = {"a": rq_of_rz(10 * UM), "b": rq_of_rz(30 * UM)}[floor]
@@ -466,7 +466,7 @@ def test_two_readings_teach_the_same_in_either_order():
 
 
 def test_slips_fall_with_friction_and_grow_with_slope_and_need():
-    joint = JointDraws(count=2000)
+    joint = PlaceDraws(count=2000)
     acof = np.full(joint.count, 0.2)
     base = slip_share(acof, 0.2, 0.03, 0.0, joint).mean()
     assert slip_share(1.5 * acof, 0.2, 0.03, 0.0, joint).mean() < base
@@ -507,9 +507,9 @@ def test_a_floor_that_is_as_rough_is_not_offered_another():
         {"name": "kitchen", "from": "quarry_tile"},
         {"name": "hall", "roughness": {"rq": "2 um"}},
     ]
-    names = [each.name for each in chosen(place_of(small_place() | {"floor": floors})).levers]
+    names = [each.name for each in choose_shoe(place_of(small_place() | {"floor": floors})).levers]
     assert any("clay quarry tile" in name and "(hall)" in name for name in names)
-    rough = chosen(place_of(small_place() | {"floor": floors[:1]}))
+    rough = choose_shoe(place_of(small_place() | {"floor": floors[:1]}))
     assert not any("quarry tile" in each.name for each in rough.levers)
 
 
@@ -523,7 +523,7 @@ def test_another_floor_is_none_that_was_read_whatever_its_name():
         floor["reading"] = [{"machine": "pendulum-96", "value": 15}]
         table = small_place() | {"floor": [floor], "fluids": {"dry": 0.8, "water": 0.2}}
         table["shoe"] = table["shoe"][:1]
-        ends.append(chosen(place_of(table)).levers[0].left[2])
+        ends.append(choose_shoe(place_of(table)).levers[0].left[2])
     assert abs(np.log(ends[1] / ends[0])) < np.log(2)  # it was a fifth
 
 
@@ -541,7 +541,7 @@ def test_a_cell_is_the_whole_run_of_its_case(choice):
 @pytest.mark.slow
 def test_how_often_the_fluid_is_there_changes_no_step_in_it(choice):
     table = small_place() | {"fluids": {"dry": 0.8, "glycerol_90pct": 0.2}}
-    twice = chosen(place_of(table))
+    twice = choose_shoe(place_of(table))
     for one, two in zip(choice.shoes, twice.shoes, strict=True):
         assert two.slips.value == pytest.approx(one.slips.value, rel=1e-9)
         assert two.best == pytest.approx(one.best)
@@ -555,7 +555,7 @@ def test_the_order_of_floors_and_shoes_changes_nothing():
     turned = copy.deepcopy(table)
     turned["floor"].reverse()
     turned["shoe"].reverse()
-    one, two = ({each.shoe.name: each for each in chosen(place_of(each)).shoes}
+    one, two = ({each.shoe.name: each for each in choose_shoe(place_of(each)).shoes}
                 for each in (table, turned))  # fmt: skip
     for name, answer in one.items():
         # a contact is continued from another one: the numbers differ by the solver's error
@@ -575,7 +575,7 @@ def ranking(quick, shift):
             ("work_shoe_untreaded", False),
         )
     ]
-    told = chosen(place_of(table), quick=quick)
+    told = choose_shoe(place_of(table), quick=quick)
     return {each.shoe.name: each.best for each in told.shoes}
 
 
@@ -600,7 +600,7 @@ def test_a_larger_worn_region_carries_more_load_on_its_film():
         {"name": f"{side} mm", "from": "work_shoe_full_tread", "worn_region": [f"{side} mm"] * 2}
         for side in (10, 25, 40)
     ]
-    told = chosen(place_of(table), quick=False)
+    told = choose_shoe(place_of(table), quick=False)
     films = [row[-1] for row in told.cofs]
     assert films[2] > 1.2 * max(films[:2])  # 10 mm is less than a lug
     assert all(each.replaced for each in told.shoes)
@@ -611,7 +611,7 @@ def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_no_row():
     table = small_place()
     table["fluids"] = {"dry": 0.8, "canola_oil": 0.1, "water": 0.1}
     table["shoe"] = table["shoe"][:1]
-    left = {one.name: one.left for one in chosen(place_of(table)).levers}
+    left = {one.name: one.left for one in choose_shoe(place_of(table)).levers}
     assert not any("rinsed" in name for name in left)
     halved = [value for name, value in left.items() if "half the steps" in name]
     assert all(0.5 <= low <= high <= 1 for low, _, high in halved)
@@ -623,7 +623,7 @@ def test_cleaning_is_a_change_and_rinsing_oil_with_water_is_no_row():
 def test_the_same_shoe_twice_shares_its_chance():
     table = small_place()
     table["shoe"] = [{**table["shoe"][1], "name": name} for name in ("one", "two")]
-    answer = chosen(place_of(table))
+    answer = choose_shoe(place_of(table))
     assert [each.best for each in answer.shoes] == pytest.approx([0.5, 0.5])
     assert answer.shoes[0].slips == answer.shoes[1].slips
     assert any("same shoe twice" in text for text in answer.cautions())
@@ -645,7 +645,7 @@ def test_what_a_pendulum_read_goes_into_a_case(tmp_path):
         path = tmp_path / f"{told.readings[0].value:g}.csv"
         told.draws.write(path)
         named = case.replace({"friction.draws_file": str(path)})
-        law = named.friction.build(resolved(named))
+        law = named.friction.build(resolve_context(named))
         drawn = law.joint_draws(1000, 0)
         cofs.append(float(np.median(drawn["kappa"])))
     assert cofs[0] < cofs[1]
@@ -778,7 +778,7 @@ def test_a_machine_outside_its_standard_calibrates_nothing():
 
 
 def test_readings_that_contradict_each_other_are_refused():
-    joint, device = JointDraws(), machine("pendulum-96")
+    joint, device = PlaceDraws(), machine("pendulum-96")
 
     def learned(values):
         for value in values:
@@ -813,9 +813,9 @@ def test_the_repeat_of_a_reading_is_the_scatter_it_states():
     """One standard deviation off is e^-1/2 of the reading itself, whatever the deviation."""
     draws = SimpleNamespace(constants=SimpleNamespace(sd_reading=np.zeros(1)))
     for sd in (0.01, 0.04):
-        reading = Reading(0.4, "value", sd)
+        reading = CofReading(0.4, "value", sd)
         off = np.array([0.4, 0.4 * math.exp(sd / 0.4)])
-        at, beside = JointDraws.log_likelihood(draws, off, reading)
+        at, beside = PlaceDraws.log_likelihood(draws, off, reading)
         assert at - beside == pytest.approx(0.5)
 
 
@@ -881,7 +881,7 @@ def test_shares_add_to_one_within_half_a_percent(rest, taken):
 @pytest.mark.parametrize(("share", "left"), [(0.5, 390.0), (0.025, 4000.0)])
 def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share, left):
     """100 of 4,000 draws have ``share`` of the weight: 1 / (s^2 / 100 + (1 - s)^2 / 3900)."""
-    joint = JointDraws(count=4000)
+    joint = PlaceDraws(count=4000)
     weight = np.repeat([share / 100, (1 - share) / 3900], [100, 3900])
     unlike = np.unique(joint.constants.constants.kappa_0).size
     joint.learn(np.log(weight), "hall")
@@ -893,7 +893,7 @@ def test_the_fewest_draws_are_those_that_a_reading_leaves_of_equal_weight(share,
 @pytest.mark.parametrize("factor", [-1000.0, -300.0, 300.0, 1000.0])
 def test_a_factor_of_all_likelihoods_teaches_nothing(factor):
     log = -0.5 * np.linspace(-2, 2, 4000) ** 2
-    rows = [JointDraws(count=4000).learn(log + more, "hall") for more in (0.0, factor)]
+    rows = [PlaceDraws(count=4000).learn(log + more, "hall") for more in (0.0, factor)]
     np.testing.assert_array_equal(*rows)
 
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from underfoot.core import SourcedValue
-from underfoot.places.choice import Choice, ShoeAnswer
+from underfoot.places.choice import ShoeAnswer, ShoeChoice
 
 
-def choice(*shoes: tuple[str, str, float]) -> Choice:
+def choice(*shoes: tuple[str, str, float]) -> ShoeChoice:
     """Return the answer for shoes (name, what it is, chance of being best)."""
     answers = []
     for name, kind, best in shoes:
@@ -19,7 +19,7 @@ def choice(*shoes: tuple[str, str, float]) -> Choice:
         slips = SourcedValue(0.1, "1", interval=(0.05, 0.2))
         answers.append(ShoeAnswer(shoe, slips, best, "", ""))
     place: Any = SimpleNamespace(name="hall", floors=(), wet_steps=10.0)
-    return Choice(place, tuple(answers), (), (), (), (), answers[0].shoe.name, 500.0)
+    return ShoeChoice(place, tuple(answers), (), (), (), (), answers[0].shoe.name, 500.0)
 
 
 @pytest.mark.parametrize("turn", [1, -1])

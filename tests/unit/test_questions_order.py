@@ -14,7 +14,7 @@ from underfoot.questions.order import (
     DECIDED,
     SEEN,
     Order,
-    Verdict,
+    OrderVerdict,
     certainty_after_reading,
     order_of_draws,
     order_of_values,
@@ -27,8 +27,8 @@ DRAWS = np.exp(0.5 * np.random.default_rng(1).standard_normal(4000))
 def test_a_difference_that_nobody_sees_is_equal_however_sure_its_order():
     """COF 0.135 and 0.132, all else shared: above 99 % higher, and 2 % apart."""
     found = order_of_draws(0.135 * DRAWS, 0.132 * DRAWS)
-    assert (found.higher, found.within, found.verdict) == (1.0, 1.0, Verdict.EQUAL)
-    assert order_of_draws(0.15 * DRAWS, 0.13 * DRAWS).verdict is Verdict.HIGHER
+    assert (found.higher, found.within, found.verdict) == (1.0, 1.0, OrderVerdict.EQUAL)
+    assert order_of_draws(0.15 * DRAWS, 0.13 * DRAWS).verdict is OrderVerdict.HIGHER
 
 
 def test_a_skewed_interval_is_no_bell():
@@ -37,7 +37,7 @@ def test_a_skewed_interval_is_no_bell():
     low = SourcedValue(0.008, "1", uncertainty=0.004, interval=(0.0, 0.016))
     found = order_of_values(wide, low)
     assert found.higher > 0.99
-    assert found.verdict is Verdict.HIGHER
+    assert found.verdict is OrderVerdict.HIGHER
     assert order_of_values(wide, SourcedValue(0.1, "1")) is None
 
 
@@ -54,13 +54,13 @@ def test_independent_normal_values_in_closed_form(a, b, s):
 def test_each_statement_holds_with_three_quarters(higher, within):
     verdict = Order(higher, within).verdict
     sure = {
-        Verdict.EQUAL: within,
-        Verdict.HIGHER: higher,
-        Verdict.LOWER: 1 - higher,
-        Verdict.OPEN: 1.0,
+        OrderVerdict.EQUAL: within,
+        OrderVerdict.HIGHER: higher,
+        OrderVerdict.LOWER: 1 - higher,
+        OrderVerdict.OPEN: 1.0,
     }
     assert sure[verdict] >= DECIDED
-    if verdict is Verdict.OPEN:
+    if verdict is OrderVerdict.OPEN:
         assert max(within, higher, 1 - higher) < DECIDED
 
 

@@ -10,8 +10,14 @@ import pytest
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import ConvergenceError, SourcedValue, Status
-from underfoot.questions.outcomes import Outcome, outcomes
-from underfoot.questions.sensitivity import Effect, OpenInput, Sensitivity, open_inputs, sensitivity
+from underfoot.questions.outcomes import CaseOutcome, outcomes
+from underfoot.questions.sensitivity import (
+    InputEffect,
+    OpenInput,
+    Sensitivity,
+    open_inputs,
+    sensitivity,
+)
 
 TEXT = """
 shoe = "work_shoe_untreaded"
@@ -91,25 +97,25 @@ def test_cancel_keeps_what_is_done(case, tmp_path) -> None:
 
 def test_outcome_survives_its_text(case) -> None:
     outcome = outcomes([case], quick=True, cached=False)[0]
-    assert Outcome.from_text(outcome.as_text()) == outcome
+    assert CaseOutcome.from_text(outcome.as_text()) == outcome
 
 
 def test_what_did_not_converge_is_no_number() -> None:
     value = SourcedValue(0.2, uncertainty=0.01)
-    outcome = Outcome("a", "h", {"cof": value}, {}, Status.NOT_CONVERGED, "", (), (), 0.1)
+    outcome = CaseOutcome("a", "h", {"cof": value}, {}, Status.NOT_CONVERGED, "", (), (), 0.1)
     assert math.isnan(outcome.number("cof"))
     assert math.isnan(outcome.spread("cof"))
 
 
-def _outcome(value: float, spread: float = 0.0) -> Outcome:
+def _outcome(value: float, spread: float = 0.0) -> CaseOutcome:
     scalar = SourcedValue(value, uncertainty=spread)
-    return Outcome("a", "h", {"cof": scalar}, {}, Status.CONVERGED, "", (), (), 0.1)
+    return CaseOutcome("a", "h", {"cof": scalar}, {}, Status.CONVERGED, "", (), (), 0.1)
 
 
 def test_band_adds_independent_spreads_in_quadrature() -> None:
     # f = 0.2 + 0.03 a + 0.04 b with a and b of standard deviation 1, and a law's spread of 0.12
     effects = tuple(
-        Effect("p", "r", -1, 1, "1", _outcome(0.2 - slope), _outcome(0.2 + slope))
+        InputEffect("p", "r", -1, 1, "1", _outcome(0.2 - slope), _outcome(0.2 + slope))
         for slope in (0.03, 0.04)
     )
     band = Sensitivity(_outcome(0.2, 0.12), effects).band("cof")
@@ -120,10 +126,10 @@ def test_band_adds_independent_spreads_in_quadrature() -> None:
 
 
 def test_an_input_that_can_not_be_computed_is_named() -> None:
-    failed = Outcome(
+    failed = CaseOutcome(
         "a", "h", {"cof": SourcedValue(None)}, {}, Status.NOT_CONVERGED, "", (), (), 0.1
     )
-    found = Sensitivity(_outcome(0.2), (Effect("p", "r", 0, 1, "1", failed, _outcome(0.3)),))
+    found = Sensitivity(_outcome(0.2), (InputEffect("p", "r", 0, 1, "1", failed, _outcome(0.3)),))
     assert found.band("cof").not_computed == ("p",)
 
 

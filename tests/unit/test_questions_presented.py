@@ -16,9 +16,9 @@ from underfoot.questions.changes import Change
 from underfoot.questions.comparison import ComparedQuantity, Comparison, _reasons
 from underfoot.questions.effects import ChangeEffect
 from underfoot.questions.order import Order
-from underfoot.questions.outcomes import Outcome
+from underfoot.questions.outcomes import CaseOutcome
 from underfoot.questions.risk import ModelRisk, RiskAssessment
-from underfoot.questions.sensitivity import QUANTITIES, Effect, Sensitivity
+from underfoot.questions.sensitivity import QUANTITIES, InputEffect, Sensitivity
 from underfoot.questions.wear import WearSeries, deepest_wear, limit_load
 from underfoot.questions.wear_limit import Crossing, LimitCrossing, WearPoint
 from underfoot.report.question_figures import sensitivity_figure
@@ -39,7 +39,7 @@ def outcome(cof=0.1, slip=0.6, fluid=100.0, note="", **changes):
         "minimum_film_thickness": SourcedValue(1e-5, "m"),
         "slip_probability": SourcedValue(slip, interval=(0.4, 0.8), uncertainty=0.1, note=note),
     }
-    made = Outcome("Case", "hash", scalars, {}, Status.CONVERGED, "", (), (), 1.0)
+    made = CaseOutcome("Case", "hash", scalars, {}, Status.CONVERGED, "", (), (), 1.0)
     return dataclasses.replace(made, **changes)
 
 
@@ -219,9 +219,9 @@ def test_missing_friction_is_named_and_sufficient_friction_too():
 
 
 def test_a_sensitivity_names_the_most_effective_input_and_the_spread_it_gives():
-    slope = Effect("shoe.a", "r", 1.0, 2.0, "1", outcome(0.06), outcome(0.14))
-    flat = Effect("shoe.b", "r", 1.0, 2.0, "1", outcome(0.1), outcome(0.11))
-    lost = Effect("shoe.c", "r", 1.0, 2.0, "1", FAILED, outcome(0.1))
+    slope = InputEffect("shoe.a", "r", 1.0, 2.0, "1", outcome(0.06), outcome(0.14))
+    flat = InputEffect("shoe.b", "r", 1.0, 2.0, "1", outcome(0.1), outcome(0.11))
+    lost = InputEffect("shoe.c", "r", 1.0, 2.0, "1", FAILED, outcome(0.1))
     found = Sensitivity(outcome(), (flat, slope, lost))
     # inputs: 0.04 and 0.01 / sqrt 2; law: 0.02
     inputs = math.hypot(0.04, 0.01 / math.sqrt(2))

@@ -15,11 +15,11 @@ from underfoot.questions.comparison import compare
 from underfoot.report import figures
 from underfoot.report.common_grid import common_grid, difference, on_grid, sole_on_grid
 from underfoot.report.maps import comparison_figure, grid_note, map_figure
-from underfoot.report.quantities import Quantity, carried_load, drawn, quantities, scale
-from underfoot.report.viewer import packed, viewer_scene
+from underfoot.report.quantities import DrawnQuantity, carried_load, drawn_values, quantities, scale
+from underfoot.report.viewer import pack_array, viewer_scene
 from viewer_fields import unpacked
 
-PRESSURE = Quantity("contact_pressure", "", 1e3, "kPa")
+PRESSURE = DrawnQuantity("contact_pressure", "", 1e3, "kPa")
 
 
 def sole(side, *, shift=0.0, seed=0, **fields):
@@ -85,7 +85,7 @@ def test_a_pressure_tells_the_load_that_it_carries():
         1e5 * half_disc, rel=0.02
     )
     assert carried_load(dataset, found["film_thickness"]) is None
-    fluid = drawn(dataset, found["fluid_pressure"])
+    fluid = drawn_values(dataset, found["fluid_pressure"])
     assert np.isnan(fluid[dataset.fluid_pressure.values == 0]).all()
 
 
@@ -134,7 +134,7 @@ def test_the_same_field_on_two_grids_differs_by_little_and_on_one_grid_by_nothin
     assert not same.resampled
     field = on_grid(sole(1e-3), PRESSURE, same)
     assert np.nanmax(np.abs(difference(field, field, PRESSURE))) == 0.0
-    film = Quantity("film_thickness", "", 1e-6, "µm", logarithmic=True)
+    film = DrawnQuantity("film_thickness", "", 1e-6, "µm", logarithmic=True)
     assert np.nanmax(difference(2.0 * field, field, film)) == pytest.approx(2.0)
 
 
@@ -143,7 +143,7 @@ def test_the_same_field_on_two_grids_differs_by_little_and_on_one_grid_by_nothin
 def test_packed_fields_unpack_to_three_digits(seed, size):
     values = size * np.random.default_rng(seed).random((7, 5))
     values[3, 2] = np.nan
-    again = unpacked(packed(values), values.shape)
+    again = unpacked(pack_array(values), values.shape)
     assert np.isnan(again[3, 2])
     known = values > 1e-3 * size
     np.testing.assert_allclose(again[known], values[known], rtol=5e-4)

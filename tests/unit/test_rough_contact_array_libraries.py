@@ -210,7 +210,9 @@ def test_neighbours_are_those_of_the_periodic_grid(device, shape):
 
 def test_neighbours_hold_what_a_pressure_and_its_displacement_share():
     """S between neighbours: the answer of a whole product to a displacement of one node."""
-    body = operators.Body(lambda qx: 1.0 + 0.3j * np.sign(qx), lambda q: 1.0 / q, (1e-5, 2e-5), 1.0)
+    body = operators.ElasticBody(
+        lambda qx: 1.0 + 0.3j * np.sign(qx), lambda q: 1.0 / q, (1e-5, 2e-5), 1.0
+    )
     one = operators.Operators(body, (1, 16, 12))
     bump = np.zeros((1, 16, 12), np.float32)
     bump[0, 3, 5] = 1.0

@@ -12,7 +12,7 @@ from underfoot.core.fourier import ArrayTransform, transform
 from underfoot.core.mkl import MklTransform, mkl_library
 from underfoot.material import RelaxationSpectrum
 from underfoot.rough_contact import SlidingSettings, steady_sliding
-from underfoot.rough_contact._kernels.nested import low_pass, repeated
+from underfoot.rough_contact._kernels.nested import low_pass, repeat_cells
 from underfoot.rough_contact._kernels.periodic import boundary_length, contact_fractions
 from underfoot.rough_contact.sliding_input import slow_transform
 from underfoot.studies.transient import TransientSettings, transient_sliding
@@ -241,7 +241,7 @@ def test_low_pass_keeps_long_waves():
     noise = np.cos(2 * np.pi * 20 * x)[:, None] + 0.0 * x
     coarse = low_pass(np.fft.rfft2(field + noise), (64, 64), (2, 4), np)
     np.testing.assert_allclose(coarse, field[::2, ::4], atol=1e-12)
-    assert repeated(coarse, (2, 4), np).shape == (64, 64)
+    assert repeat_cells(coarse, (2, 4), np).shape == (64, 64)
 
 
 def test_area_correction_is_the_published_share_of_the_boundary():

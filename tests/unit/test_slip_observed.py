@@ -182,12 +182,12 @@ def test_a_slip_without_a_peak_says_so_and_one_with_it_does_not(monkeypatch, pea
     seen = SimpleNamespace(
         peak_speed=reading, end=0.4, start=SimpleNamespace(value=0.1), slipped=True
     )
-    monkeypatch.setattr(observation, "judged", lambda _: seen)
+    monkeypatch.setattr(observation, "judge_slip", lambda _: seen)
     motion = motion_at(1.0)
     motion.distance, motion.notes = motion.time, ()
     motion.walker.landing, motion.walker.lateral = 0.1, 0.0
     array = SimpleNamespace(columns=3, spacing=0.02)
-    told = observation.observed(motion, None, cast(Any, array))
+    told = observation.observe_slip(motion, None, cast(Any, array))
     assert told.peak_speed == (peak or 0.0)
     assert told.flags == (() if peak else ("no peak: it rises to its end",))
     assert (told.crossed, told.distance) == (True, pytest.approx(0.4))

@@ -8,7 +8,7 @@ import pytest
 
 from underfoot.core import InputError
 from underfoot.studies import g1
-from underfoot.studies.g1 import HISTORY, Row, Settings, matrix
+from underfoot.studies.g1 import HISTORY, MatrixRow, Settings, matrix
 
 SETTINGS = Settings(series=("report",), solver="explicit", speeds=(0.1, 1.0))
 
@@ -40,7 +40,7 @@ def computed(monkeypatch, tmp_path):
             done.append("stopped")
             raise KeyboardInterrupt
         done.append(case)
-        row = Row(*asdict(case).values(), *[case.speed] * 7, "converged", "", 1.0)
+        row = MatrixRow(*asdict(case).values(), *[case.speed] * 7, "converged", "", 1.0)
         history = {name: np.arange(3.0) * case.speed for name in HISTORY}
         return {"row": np.array(json.dumps(asdict(row))), **history}
 

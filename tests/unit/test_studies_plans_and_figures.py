@@ -44,7 +44,7 @@ def test_a_calibration_gives_each_parameter_its_own_name_axis_and_share_of_the_p
         progress("grid", 1.0, None)
         shape = (2, len(facets), len(roughness))
         load, peak = (
-            [[calibration.printed(name, kind, unit)] for kind in calibration.KINDS]
+            [[calibration.printed_value(name, kind, unit)] for kind in calibration.KINDS]
             for name, unit in (("fluid_load", "N"), ("peak_pressure", "Pa"))
         )
         by_facet = 1 + 0.3 * np.abs(np.array(facets) - 10.0)[:, None]

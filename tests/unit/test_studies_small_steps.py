@@ -17,7 +17,7 @@ from underfoot.studies.corpus import Side, _effects
 from underfoot.studies.corpus_cases import _nested
 from underfoot.studies.runner import Options
 from underfoot.studies.validation import _strip_load
-from underfoot.studies.verdict import Quantity, grid_value
+from underfoot.studies.verdict import ComputedQuantity, grid_value
 
 
 @pytest.mark.parametrize(("corner", "slope", "pool"), [(2e-3, 0.02, 1e-4), (5e-3, 0.1, 3e-4)])
@@ -41,13 +41,13 @@ def test_a_path_is_tables_in_tables():
 
 
 def test_a_probability_is_the_share_of_draws_between_two_ends():
-    drawn = Quantity.of(0.5, draws=np.linspace(0, 1, 100_001))
+    drawn = ComputedQuantity.of(0.5, draws=np.linspace(0, 1, 100_001))
     assert drawn.probability(0.2, 0.5) == pytest.approx(0.3, abs=0.01)
     assert drawn.probability(-1.0, 0.5) == pytest.approx(0.5, abs=0.01)
     assert drawn.probability(0.9, 2.0) == pytest.approx(0.1, abs=0.01)
     assert drawn.probability(2.0, 3.0) == 0.0
-    assert Quantity.of([1.0, 2.0, 3.0, 4.0]).probability(1.5, 3.5) == 0.5
-    assert Quantity.of(1.0).probability(0.5, 1.5) is None
+    assert ComputedQuantity.of([1.0, 2.0, 3.0, 4.0]).probability(1.5, 3.5) == 0.5
+    assert ComputedQuantity.of(1.0).probability(0.5, 1.5) is None
 
 
 def test_the_value_of_one_grid_is_that_grid_s_and_not_converged():
@@ -239,7 +239,9 @@ def test_the_error_of_a_pair_of_treads_is_half_of_what_two_thirds_of_its_draws_s
     """Draws whose logarithms are normal: their standard deviation."""
     share = (np.arange(4000) + 0.5) / 4000
     drawn = np.append(1.5, np.exp(0.4 + 0.3 * norm.ppf(share)))
-    monkeypatch.setattr(tread_pairs, "resolved", lambda _: SimpleNamespace(viscosity_value=0.2))
+    monkeypatch.setattr(
+        tread_pairs, "resolve_context", lambda _: SimpleNamespace(viscosity_value=0.2)
+    )
     monkeypatch.setattr(tread_pairs, "_place", lambda _: ())
     pair = tread_pairs._pair("made", "up", cast(Any, None), (0.1, 0.2), drawn, np.zeros(6))
     assert pair.sd == pytest.approx(0.3, rel=0.01)
@@ -314,7 +316,7 @@ def test_the_analysis_of_variance_has_a_row_for_each_effect_beside_what_is_print
 def test_every_series_of_the_matrix_has_its_quantities(monkeypatch):
     def outcomes(cases, mesh, processes):
         for case in cases:
-            row = g1.Row(*astuple(case), *[0.1 * case.speed] * 7, "converged", "", 1.0)
+            row = g1.MatrixRow(*astuple(case), *[0.1 * case.speed] * 7, "converged", "", 1.0)
             yield row, {name: np.arange(3.0) for name in g1.HISTORY}
 
     monkeypatch.setattr(g1, "outcomes", outcomes)

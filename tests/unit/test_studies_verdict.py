@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from underfoot.core import InputError
 from underfoot.studies import (
-    Kind,
-    Quantity,
+    ComputedQuantity,
+    StatementKind,
     Verdict,
     counts,
     judge,
-    judged,
+    judge_study,
     read_study,
     studies,
     study,
@@ -43,31 +43,33 @@ N = "N"
     [(100.0, "agrees"), (90.0, "agrees"), (89.9, "disagrees"), (110.1, "disagrees")],
 )
 def test_a_value_agrees_within_its_tolerance(value, wanted):
-    assert verdict(Quantity.of(value, N)) == wanted
+    assert verdict(ComputedQuantity.of(value, N)) == wanted
 
 
 def test_a_probability_below_one_half_never_agrees():
     """100 N lies inside 90 to 110 N; with 20 N of uncertainty it is more likely outside."""
-    sure, unsure = (Quantity.of(100.0, N, deviation=sd) for sd in (10.0, 20.0))
+    sure, unsure = (ComputedQuantity.of(100.0, N, deviation=sd) for sd in (10.0, 20.0))
     assert sure.probability(90.0, 110.0) == pytest.approx(0.683, abs=0.005)
     assert unsure.probability(90.0, 110.0) == pytest.approx(0.383, abs=0.005)
     assert verdict(sure) == "agrees"
     assert verdict(unsure) == "overlaps"
-    reading = Quantity.of(2.7, N, draws=np.concatenate([np.full(40, 2.7), np.full(60, 100.0)]))
+    reading = ComputedQuantity.of(
+        2.7, N, draws=np.concatenate([np.full(40, 2.7), np.full(60, 100.0)])
+    )
     # 40 % lie below 5 N, and the rest twenty times above: nothing is told
     assert verdict(reading, claim="below", printed="5", tolerance=0) == "undecided"
 
 
 def test_draws_and_deviation_give_the_same_distribution():
     draws = np.random.default_rng(0).normal(100.0, 30.0, 40_000)
-    a, b = Quantity.of(100.0, N, draws=draws), Quantity.of(100.0, N, deviation=30.0)
+    a, b = ComputedQuantity.of(100.0, N, draws=draws), ComputedQuantity.of(100.0, N, deviation=30.0)
     assert a.probability(90, 110) == pytest.approx(b.probability(90, 110), abs=0.01)
     assert a.interval == pytest.approx(b.interval, abs=1.5)
 
 
 def test_an_interval_that_reaches_the_tolerance_overlaps():
-    assert verdict(Quantity.of(113.0, N, deviation=6.0)) == "overlaps"
-    assert verdict(Quantity.of(120.0, N, deviation=4.0)) == "disagrees"
+    assert verdict(ComputedQuantity.of(113.0, N, deviation=6.0)) == "overlaps"
+    assert verdict(ComputedQuantity.of(120.0, N, deviation=4.0)) == "disagrees"
 
 
 def test_every_condition_of_a_range_must_lie_in_it():
@@ -81,11 +83,11 @@ def test_every_condition_of_a_range_must_lie_in_it():
         ((-0.10, 0.02), "disagrees"),
         ((-0.10, -0.001), "disagrees"),  # below the digits: no effect
     ):
-        assert verdict(Quantity.of(values), **given) == wanted, values
+        assert verdict(ComputedQuantity.of(values), **given) == wanted, values
 
 
 def test_a_trend_is_there_for_changes_only():
-    half = Quantity.of(0.5)
+    half = ComputedQuantity.of(0.5)
     assert verdict(half, printed="2", unit="", tolerance=0.1, effect=True) == "trend only"
     assert verdict(half, printed="2", unit="", tolerance=0.1) == "disagrees"
 
@@ -97,18 +99,20 @@ def test_a_trend_is_there_for_changes_only():
 )  # fmt: skip
 def test_signs_need_more_than_the_resolution(claim, value, wanted):
     given = {"claim": claim, "printed": None, "tolerance": None, "resolution": 5}
-    assert verdict(Quantity.of(value, N), **given) == wanted
+    assert verdict(ComputedQuantity.of(value, N), **given) == wanted
 
 
 def test_bounds_are_exclusive_of_what_lies_beyond():
-    assert verdict(Quantity.of(4.9, N), claim="below", printed="5", tolerance=0) == "agrees"
-    assert verdict(Quantity.of(5.1, N), claim="below", printed="5", tolerance=0) == "disagrees"
-    assert verdict(Quantity.of(5.1, N), claim="above", printed="5", tolerance=0) == "agrees"
+    assert verdict(ComputedQuantity.of(4.9, N), claim="below", printed="5", tolerance=0) == "agrees"
+    assert (
+        verdict(ComputedQuantity.of(5.1, N), claim="below", printed="5", tolerance=0) == "disagrees"
+    )
+    assert verdict(ComputedQuantity.of(5.1, N), claim="above", printed="5", tolerance=0) == "agrees"
 
 
 def on_grids(*values, spacings=(1e-3, 0.5e-3, 0.25e-3)):
     levels = list(zip(spacings[: len(values)], values, strict=True))
-    return Quantity.of(values[-1], N, levels=levels)
+    return ComputedQuantity.of(values[-1], N, levels=levels)
 
 
 def test_one_grid_gives_no_verdict():
@@ -154,22 +158,22 @@ def test_a_bound_far_away_needs_no_fine_grid():
 
 def test_each_condition_of_a_range_needs_its_grid():
     levels = [(1e-3, [-0.20, -0.20]), (0.5e-3, [-0.20, -0.28])]
-    quantity = Quantity.of([-0.20, -0.28], levels=levels)
+    quantity = ComputedQuantity.of([-0.20, -0.28], levels=levels)
     given = {"claim": "range", "printed": ["-29", "-16"], "unit": "%", "tolerance": "digits"}
     assert verdict(quantity, **given) == "not converged"
 
 
 def test_a_solver_without_result_is_no_number_and_no_verdict():
-    lost = judge(statement(), {"load": Quantity.of(math.nan, N)})
+    lost = judge(statement(), {"load": ComputedQuantity.of(math.nan, N)})
     assert lost.verdict is Verdict.NOT_CONVERGED
     assert lost.ours == "-"
-    none = judge(statement(), {"load": Quantity.none("the model has no left side", N)})
+    none = judge(statement(), {"load": ComputedQuantity.none("the model has no left side", N)})
     assert none.verdict is Verdict.NOT_COMPARABLE
     assert "no left side" in none.reason
 
 
 def order(values, chance=None):
-    quantity = Quantity.of(values, names=("hard", "medium", "soft"), chance=chance)
+    quantity = ComputedQuantity.of(values, names=("hard", "medium", "soft"), chance=chance)
     given = {"claim": "order", "printed": ["soft", "medium", "hard"], "unit": None}
     return verdict(quantity, tolerance=None, resolution=0.1, **given)
 
@@ -196,23 +200,25 @@ def test_a_tie_is_no_agreement():
 
 def test_what_reaches_the_print_by_chance_alone_is_undecided():
     """100 N +- 10: an overlap lies there with a probability of 0.2 and is no wider than 110 N."""
-    near, far = (Quantity.of(v, N, deviation=8.0) for v in (115.0, 120.0))
+    near, far = (ComputedQuantity.of(v, N, deviation=8.0) for v in (115.0, 120.0))
     assert near.probability(90.0, 110.0) == pytest.approx(0.265, abs=0.005)
     assert verdict(near) == "overlaps"
     assert far.probability(90.0, 110.0) == pytest.approx(0.105, abs=0.005)
     assert verdict(far) == "undecided"
-    wide = Quantity.of(100.0, N, deviation=40.0)
+    wide = ComputedQuantity.of(100.0, N, deviation=40.0)
     assert wide.probability(90.0, 110.0) == pytest.approx(0.197, abs=0.005)
     assert verdict(wide) == "undecided"
     share = {"unit": "%", "printed": "54", "tolerance": 20}
     drawn = np.random.default_rng(0).beta(1.0, 1.5, 4000)  # 2 to 90 %
-    assert verdict(Quantity.of(0.4, draws=drawn), **share) == "undecided"
+    assert verdict(ComputedQuantity.of(0.4, draws=drawn), **share) == "undecided"
 
 
 def test_values_of_both_signs_are_no_trend_of_one():
     given = {"claim": "rises", "printed": None, "tolerance": None, "resolution": 5}
-    assert verdict(Quantity.of((6.0, 7.0, -6.0), N), **given) == "overlaps"
-    assert verdict(Quantity.of((6.0, -7.0, -6.0, -8.0, -9.0, -9.0), N), **given) == "undecided"
+    assert verdict(ComputedQuantity.of((6.0, 7.0, -6.0), N), **given) == "overlaps"
+    assert (
+        verdict(ComputedQuantity.of((6.0, -7.0, -6.0, -8.0, -9.0, -9.0), N), **given) == "undecided"
+    )
 
 
 def quick(value, **given):
@@ -239,10 +245,10 @@ def test_verdicts_are_steps_from_agreement_to_disagreement():
 @pytest.mark.parametrize(("scale", "low", "high"), [("log", 0.0, np.inf), ("logit", 0.0, 1.0)])
 @given(value=st.floats(0.01, 0.99), deviation=st.floats(0.001, 0.6))
 def test_an_interval_stays_within_the_bounds_of_its_quantity(scale, low, high, value, deviation):
-    one = Quantity.of(value, deviation=deviation, scale=scale)
+    one = ComputedQuantity.of(value, deviation=deviation, scale=scale)
     assert low <= one.interval[0] <= value <= one.interval[1] <= high
     # to first order the spread is the one given
-    small = Quantity.of(value, deviation=1e-4, scale=scale)
+    small = ComputedQuantity.of(value, deviation=1e-4, scale=scale)
     assert small.interval[1] - value == pytest.approx(1.96e-4, rel=0.05)
 
 
@@ -305,8 +311,8 @@ def test_the_headline_counts_independent_statements_alone():
         {"quantity": "e", "kind": "calibrated_on"},
         {"quantity": "f", "kind": "alternative", "of": "s0"},
     )  # fmt: skip
-    values = dict.fromkeys("acdef", Quantity.of(1.0)) | {"b": Quantity.of(2.0)}
-    found = counts(judged(statements, values))
+    values = dict.fromkeys("acdef", ComputedQuantity.of(1.0)) | {"b": ComputedQuantity.of(2.0)}
+    found = counts(judge_study(statements, values))
     assert found[Verdict.AGREES] == 1
     assert found[Verdict.DISAGREES] == 1
     assert sum(found.values()) == 2
@@ -321,26 +327,26 @@ def test_a_rival_model_stands_apart():
             "tolerance": "digits", "quantity": "default", "alternatives": {"rival": "rival"},
         }],
     }  # fmt: skip
-    found = judged(
+    found = judge_study(
         read_study("g9", content).statements,
-        {"default": Quantity.of(3.0), "rival": Quantity.of(1.0)},
+        {"default": ComputedQuantity.of(3.0), "rival": ComputedQuantity.of(1.0)},
     )
     assert [one.verdict for one in found] == [Verdict.DISAGREES, Verdict.AGREES]
-    assert found[1].statement.kind is Kind.ALTERNATIVE
+    assert found[1].statement.kind is StatementKind.ALTERNATIVE
     assert counts(found)[Verdict.AGREES] == 0
 
 
 def test_units_and_names_must_fit():
     with pytest.raises(InputError, match="Pa"):
-        judge(statement(), {"load": Quantity.of(1.0, "Pa")})
+        judge(statement(), {"load": ComputedQuantity.of(1.0, "Pa")})
     with pytest.raises(InputError, match='"load"'):
-        judge(statement(quantity="laod"), {"load": Quantity.of(1.0, N)})
+        judge(statement(quantity="laod"), {"load": ComputedQuantity.of(1.0, N)})
 
 
 def test_quantities_survive_their_file():
     draws = np.random.default_rng(1).lognormal(size=1000)
-    one = Quantity.of(1.0, N, draws=draws, levels=[(1e-3, 1.1), (5e-4, 1.0)])
-    other = Quantity.from_dict(one.to_dict())
+    one = ComputedQuantity.of(1.0, N, draws=draws, levels=[(1e-3, 1.1), (5e-4, 1.0)])
+    other = ComputedQuantity.from_dict(one.to_dict())
     assert other == one
     assert other.probability(0.5, 2.0) == one.probability(0.5, 2.0)
 

@@ -9,11 +9,11 @@ import pytest
 from underfoot.core import SourcedValue
 from underfoot.core.presentation import probability_text
 from underfoot.places import choice
-from underfoot.places.choice import BINS, Choice, ShoeAnswer, _floors, _measurements
+from underfoot.places.choice import BINS, ShoeAnswer, ShoeChoice, _floors, _measurements
 from underfoot.places.machines import MachinePrediction
 from underfoot.questions import comparison, separation
-from underfoot.questions.order import Order, Verdict
-from underfoot.questions.separation import Separation, of_conditions
+from underfoot.questions.order import Order, OrderVerdict
+from underfoot.questions.separation import SeparatingStep, of_conditions
 
 
 def answer(name, best, *, price=None, months=None):
@@ -28,7 +28,7 @@ def choice_of(*shoes, floors=(), readings_leave=1000.0):
     place = SimpleNamespace(
         name="here", shoes=[one.shoe for one in shoes], floors=floors, assumed=()
     )
-    return Choice(cast(Any, place), shoes, (), (), (), (), shoes[0].shoe.name, readings_leave)
+    return ShoeChoice(cast(Any, place), shoes, (), (), (), (), shoes[0].shoe.name, readings_leave)
 
 
 def test_shoes_stand_by_their_chance_whatever_their_order_in_the_place():
@@ -157,7 +157,7 @@ def test_a_condition_tells_the_order_of_the_first_against_the_second(monkeypatch
     told = of_conditions(cast(Any, "a"), cast(Any, "b"), progress=lambda _, s: shares.append(s))
     assert [one.value for one in told] == ["x", "y"]
     orders = [cast(Order, one.order) for one in told]
-    assert [one.verdict for one in orders] == [Verdict.HIGHER, Verdict.LOWER]
+    assert [one.verdict for one in orders] == [OrderVerdict.HIGHER, OrderVerdict.LOWER]
     assert all(one.told > 0.99 for one in told)
     assert shares == pytest.approx([0.0, 0.3, 0.6, 0.6 + 0.4 / 3, 0.6 + 0.8 / 3])
 
@@ -196,10 +196,10 @@ def test_the_two_first_of_a_ranking_are_ordered_as_they_rank(monkeypatch, letter
 
 
 def test_what_tells_two_apart_stands_surest_first(monkeypatch):
-    given = [Separation("fluid", str(p), p) for p in (0.6, 0.9, 0.7)]
+    given = [SeparatingStep("fluid", str(p), p) for p in (0.6, 0.9, 0.7)]
     monkeypatch.setattr(comparison, "of_conditions", lambda *_, **__: list(given))
     monkeypatch.setattr(comparison, "_shared_draws", lambda *_: (1, 2))
-    monkeypatch.setattr(comparison, "of_reading", lambda *_: Separation("reading", None, 0.8))
+    monkeypatch.setattr(comparison, "of_reading", lambda *_: SeparatingStep("reading", None, 0.8))
     pair = cast(Any, ("a", "b"))
     for separate, order in ((True, [0.9, 0.8, 0.7, 0.6]), (False, [0.8])):
         told = comparison._separations(pair, pair, separate, lambda *_: None)

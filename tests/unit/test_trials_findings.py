@@ -27,7 +27,7 @@ from underfoot.trials import (
 )
 from underfoot.trials.recording.plates import channel_forces, ordered_corners, plate_axes
 from underfoot.trials.recording.protocols import protocol
-from underfoot.trials.recording.signals import saturated, unloaded
+from underfoot.trials.recording.signals import is_saturated, unloaded_samples
 from underfoot.trials.simulator import (
     Defects,
     SlipTruth,
@@ -134,7 +134,7 @@ def test_a_wandering_level_is_still_unloaded():
     level = -15.5 + 2.5 * np.sin(2 * np.pi * 0.3 * time)
     level += np.random.default_rng(0).normal(0.0, 0.8, len(time))
     loaded = (time > 2.0) & (time < 2.55)
-    mask = unloaded(np.where(loaded, 700.0, level), 1000.0)
+    mask = unloaded_samples(np.where(loaded, 700.0, level), 1000.0)
     assert mask.sum() > 0.85 * (~loaded).sum()
     assert not mask[loaded].any()
 
@@ -145,7 +145,7 @@ def test_a_noisy_treadmill_is_unloaded_between_its_steps():
     share = (time % 1.05) / 0.7
     load = np.where(share < 1, 750.0 * np.sin(np.pi * np.clip(share, 0, 1)) ** 0.5, 0.0)
     noise = np.random.default_rng(1).normal(6.0, 15.0, len(time))
-    mask = unloaded(load + noise, 1000.0)
+    mask = unloaded_samples(load + noise, 1000.0)
     assert mask.sum() > 0.5 * (load == 0).sum()
     assert (load + noise)[mask].mean() == pytest.approx(6.0, abs=1.0)
 
@@ -154,9 +154,9 @@ def test_standing_on_a_coarse_converter_is_not_saturated():
     steps = 7.5
     time = np.arange(0.0, 5.0, 1e-3)
     load = np.clip((time - 1.0) / 0.3, 0.0, 1.0) * 700.0 + 4.0 * np.sin(2 * np.pi * 0.5 * time)
-    assert not saturated(steps * np.round(load / steps), 1000.0)
+    assert not is_saturated(steps * np.round(load / steps), 1000.0)
     stepped_on = np.where(time < 2.0, load, 0.0)
-    assert saturated(np.minimum(stepped_on, 500.0), 1000.0)
+    assert is_saturated(np.minimum(stepped_on, 500.0), 1000.0)
 
 
 def test_the_free_moment_of_a_type_3_plate_turns_as_its_force_couple():

@@ -9,7 +9,7 @@ from underfoot.trials.study.file_result import FileResult, Number, StepResult
 from underfoot.trials.study.tables import (
     HOLM_P,
     P_VALUE,
-    Table,
+    TrialTable,
     file_table,
     finding,
     number_columns,
@@ -19,7 +19,7 @@ from underfoot.trials.study.tables import (
 def test_mean_sd_and_interval_of_several_quantities_share_a_cell():
     four, other = (tuple(number_columns(name)) for name in ("rcof", "acof"))
     row = ("soft", 0.2, 0.01, 0.19, 0.21, 0.3, None, None, None)
-    table = Table.of("conditions", "", ("shoe", *four, *other), [row])
+    table = TrialTable.of("conditions", "", ("shoe", *four, *other), [row])
     shown = _compact(table)
     assert shown.columns == ("shoe", "RCOF: mean (SD), 95 %", "ACOF: mean (SD), 95 %")
     assert shown.rows == (("soft", "0.200 (0.010), 0.190 to 0.210", "0.300"),)

@@ -12,7 +12,7 @@ from nicegui.events import GenericEventArguments
 
 from underfoot.core.remark import MARK, Message
 
-from .jobs import INTERRUPTED, Task
+from .jobs import INTERRUPTED, QueuedTask
 from .session import Session
 from .text import as_json
 from .uploads import MOST_BYTES
@@ -52,7 +52,7 @@ def sole_picture(session: Session, name: str) -> ui.element:
     return made
 
 
-def folded(heading: str) -> ui.element:
+def folded_section(heading: str) -> ui.element:
     """Return a part of a page that is shown when its heading is clicked, and on paper."""
     with ui.element("details").classes("section") as made, ui.element("summary"):
         ui.label(heading)
@@ -109,7 +109,7 @@ def table(
                     for number, cell in enumerate(row):
                         with ui.element("td" if number else "th") as made_cell:
                             whole = isinstance(cell, Message)  # no % alone on a line
-                            told(cell if whole else cell.strip().replace(" %", "\u00a0%"))
+                            package_label(cell if whole else cell.strip().replace(" %", "\u00a0%"))
                         if not number:
                             made_cell.props('scope="row"').classes("part" * cell.startswith("  "))
                         if action and place in rows and number == len(row) - 1:
@@ -122,10 +122,10 @@ def table(
 def sentences(lines: Sequence[str], kind: str = "") -> None:
     """Show sentences, a paragraph each."""
     for line in lines:
-        told(line).classes(kind)
+        package_label(line).classes(kind)
 
 
-def told(text: str) -> ui.label:
+def package_label(text: str) -> ui.label:
     """Return a label of a text of the package, which the page puts into its language."""
     made = ui.label(text)
     if isinstance(text, Message):
@@ -162,7 +162,9 @@ def drop_zone(
     return zone
 
 
-def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[None]]) -> ui.element:
+def task_line(
+    session: Session, task: QueuedTask, done: Callable[[QueuedTask], Awaitable[None]]
+) -> ui.element:
     """Return a line with the progress of a task and a button to stop it; ``done`` when it ended."""
     text = session.text
     with ui.element("div").classes("task").props('role="status"') as line:
@@ -184,18 +186,18 @@ def task_line(session: Session, task: Task, done: Callable[[Task], Awaitable[Non
     return line
 
 
-def interruption(session: Session, task: Task | None) -> None:
+def interruption(session: Session, task: QueuedTask | None) -> None:
     """Say it where the end of the server has interrupted a task."""
     if task is not None and task.state == INTERRUPTED:
         message = f"{task.title}: {session.text('jobs.interrupted')}"
         ui.label(message).classes("caution").props('role="status"')
 
 
-def refilled(fill: Callable[[Callable[..., Awaitable[None]]], None]) -> None:
+def show_refillable(fill: Callable[[Callable[..., Awaitable[None]]], None]) -> None:
     """Show what ``fill`` shows in a place of its own; awaiting what it is given shows it anew."""
     place = ui.element("div")
 
-    async def again(_: Task | None = None) -> None:
+    async def again(_: QueuedTask | None = None) -> None:
         place.clear()
         with place:
             fill(again)

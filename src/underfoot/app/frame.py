@@ -9,7 +9,7 @@ from nicegui import ui
 
 from underfoot.core.units import SYSTEMS
 
-from .jobs import RUNNING, Jobs, Task
+from .jobs import RUNNING, JobQueue, QueuedTask
 from .project import Project
 from .projects import Servers
 from .session import Exchange, Page, Session
@@ -36,7 +36,7 @@ MOST_SHOWN = 12
 
 def open_session(
     project: Project,
-    jobs: Jobs,
+    jobs: JobQueue,
     exchange: Exchange,
     pages: Sequence[Page],
     elsewhere: Servers | None,
@@ -53,7 +53,7 @@ def open_session(
     return Session(project, jobs, text, query, exchange, pages, theme, units, elsewhere)
 
 
-def framed(session: Session, page: Page) -> None:
+def build_framed_page(session: Session, page: Page) -> None:
     """Build a page in its frame."""
     text = session.text
     ui.page_title(f"{text(page.title)} · Underfoot")
@@ -146,12 +146,12 @@ def _jobs_button(session: Session) -> None:
     ui.timer(LOOK, look)
 
 
-def _place(task: Task) -> tuple[bool, bool, int]:
+def _place(task: QueuedTask) -> tuple[bool, bool, int]:
     """Return where a job stands: what computes, what waits in its order, then the newest."""
     return task.state != RUNNING, not task.open, task.number if task.open else -task.number
 
 
-def _job_row(session: Session, task: Task) -> None:
+def _job_row(session: Session, task: QueuedTask) -> None:
     text = session.text
     with ui.element("div").classes("job"):
         ui.label(f"{task.title}: {task.about}" if task.about else task.title)

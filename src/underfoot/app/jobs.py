@@ -49,7 +49,7 @@ class Lane:
 
     def __init__(self, preload: Sequence[str] = (), *, patient: bool = False) -> None:
         self._preload = preload
-        self._call = patiently if patient else named
+        self._call = patiently if patient else call_by_name
         self._worker: Worker | None = None
         self._turn = asyncio.Lock()
         self._stop = False
@@ -110,7 +110,7 @@ class Lane:
 
 
 @dataclass
-class Task:
+class QueuedTask:
     """A job of the queue.
 
     Attributes:
@@ -151,11 +151,11 @@ class Task:
         return self.function.partition(":")[0]
 
 
-KEPT = tuple(each.name for each in fields(Task) if each.name != "answer")
+KEPT = tuple(each.name for each in fields(QueuedTask) if each.name != "answer")
 """What of a task is written to ``jobs.jsonl``."""
 
 
-class Jobs:
+class JobQueue:
     """The queue of long jobs of a project and the warm process for quick questions.
 
     Parameters:
@@ -173,8 +173,8 @@ class Jobs:
         self._preload = preload
         self._lanes: dict[str, Lane] = {}
         self._file = folder / "jobs.jsonl"
-        self.tasks: dict[int, Task] = {}
-        self._waiting: deque[Task] = deque()
+        self.tasks: dict[int, QueuedTask] = {}
+        self._waiting: deque[QueuedTask] = deque()
         self._computing: dict[str, asyncio.Task[None]] = {}
         self._arrived = asyncio.Event()
         self._read()
@@ -188,7 +188,7 @@ class Jobs:
         then: Sequence[Any] = (),
         first: bool = False,
         **options: Any,
-    ) -> Task:
+    ) -> QueuedTask:
         """Queue ``function(*args, progress=..., **options)`` ("module:name"), return its task.
 
         The function writes what is to last into the project's folder; what it takes is plain data.
@@ -196,7 +196,7 @@ class Jobs:
         before those that wait.
         """
         number = max(self.tasks, default=0) + 1
-        task = Task(
+        task = QueuedTask(
             number, title, function, about, arguments=args, options=options, then=then, first=first
         )
         self.tasks[number] = task
@@ -206,7 +206,7 @@ class Jobs:
         self._arrived.set()
         return task
 
-    def cancel(self, task: Task) -> None:
+    def cancel(self, task: QueuedTask) -> None:
         """Stop a task that waits or runs."""
         if task.state == WAITING:
             self._waiting.remove(task)
@@ -220,12 +220,12 @@ class Jobs:
             if not function or task.function == function:
                 self.cancel(task)
 
-    def again(self, task: Task) -> Task:
+    def again(self, task: QueuedTask) -> QueuedTask:
         """Queue a task once more."""
         about = {"about": task.about, "then": task.then, "first": task.first, **task.options}
         return self.submit(task.title, task.function, *task.arguments, **about)
 
-    def latest(self, about: str, function: str) -> Task | None:
+    def latest(self, about: str, function: str) -> QueuedTask | None:
         """Return the newest task of a function about something, None where there is none."""
         tasks = [t for t in self.tasks.values() if (t.about, t.function) == (about, function)]
         return tasks[-1] if tasks else None
@@ -243,7 +243,7 @@ class Jobs:
             self._arrived.clear()
             await self._arrived.wait()
 
-    async def finished(self, task: Task) -> Task:
+    async def finished(self, task: QueuedTask) -> QueuedTask:
         """Return a task when it has ended."""
         while task.open:
             await asyncio.sleep(5 * TICK)
@@ -266,7 +266,7 @@ class Jobs:
             self._lanes[module] = Lane(self._preload, patient=True)
         return self._lanes[module]
 
-    async def _compute(self, task: Task) -> None:
+    async def _compute(self, task: QueuedTask) -> None:
         task.state, task.began = RUNNING, time.time()
         self._changed(task)
 
@@ -289,12 +289,12 @@ class Jobs:
             self._computing.pop(task.module, None)
             self._arrived.set()
 
-    def _end(self, task: Task, state: str) -> None:
+    def _end(self, task: QueuedTask, state: str) -> None:
         task.state, task.ended = state, time.time()
         task.fraction = 1.0 if state == DONE else task.fraction
         self._changed(task)
 
-    def _changed(self, task: Task) -> None:
+    def _changed(self, task: QueuedTask) -> None:
         line = {name: getattr(task, name) for name in KEPT if getattr(task, name)}
         with suppress(OSError):  # a full disk: the job goes on, after a restart it is interrupted
             append_line(self._file, _moved(line, str(self._file.parent), PROJECT))
@@ -306,7 +306,7 @@ class Jobs:
             if isinstance(line.get("number"), int):
                 here = _moved(line, PROJECT, str(self._file.parent))
                 fields = {name: value for name, value in here.items() if name in KEPT}
-                self.tasks[line["number"]] = Task(**{"title": "", **fields})
+                self.tasks[line["number"]] = QueuedTask(**{"title": "", **fields})
         for task in list(self.tasks.values()):  # old ones are forgotten meanwhile
             if task.open:
                 self._end(task, INTERRUPTED)
@@ -325,7 +325,7 @@ def _moved(content: Any, folder: str, to: str) -> Any:
     return content
 
 
-def named(
+def call_by_name(
     function: str,
     *args: Any,
     progress: Any,
@@ -343,4 +343,4 @@ def patiently(function: str, *args: Any, progress: Any, **options: Any) -> Any:
     """Return what a function ("module:name") answers, at low priority from now on."""
     if hasattr(os, "nice") and os.nice(0) < PATIENT:
         os.nice(PATIENT - os.nice(0))
-    return named(function, *args, progress=progress, **options)
+    return call_by_name(function, *args, progress=progress, **options)

@@ -9,7 +9,7 @@ from typing import Any
 
 from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, Preview, kept_continuation
-from underfoot.compute.positions import treaded
+from underfoot.compute.positions import has_lugs
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.threads import threads_limited
 
@@ -42,7 +42,7 @@ def preview_of_run(
         ConvergenceError: See ``of_run``.
     """
     worn = case.replace(changes).shoe.wear != case.shoe.wear
-    if worn or (changes and not treaded(case)):
+    if worn or (changes and not has_lugs(case)):
         raise InputError(
             "wear has no preview" if worn else "a sole without lugs has no preview",
             where="continued",

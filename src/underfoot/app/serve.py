@@ -21,10 +21,10 @@ from platformdirs import user_state_path
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
 
-from .frame import WORDS, framed, open_session
+from .frame import WORDS, build_framed_page, open_session
 from .gate import UPLOADS, Gate, own_name
 from .inputs import read_in_unit
-from .jobs import Jobs
+from .jobs import JobQueue
 from .pages import PAGES
 from .project import Project
 from .projects import Servers, remember
@@ -62,7 +62,7 @@ def serve(
     listening = _socket(host, port)
     port = listening.getsockname()[1]
     token = _token()
-    jobs = Jobs(project.folder, PRELOAD)
+    jobs = JobQueue(project.folder, PRELOAD)
     name = own_name(token)
     elsewhere = Servers() if host in LOOPBACK else None
     server = _server(_application(project, jobs, elsewhere), token, port, name)
@@ -89,7 +89,7 @@ def serve(
             elsewhere.close()
 
 
-def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> FastAPI:
+def _application(project: Project, jobs: JobQueue, elsewhere: Servers | None) -> FastAPI:
     application = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
     exchange = Exchange()
     running: list[asyncio.Task[None]] = []
@@ -175,12 +175,12 @@ def _application(project: Project, jobs: Jobs, elsewhere: Servers | None) -> Fas
 
 
 def _route(
-    page: Page, project: Project, jobs: Jobs, exchange: Exchange, elsewhere: Servers | None
+    page: Page, project: Project, jobs: JobQueue, exchange: Exchange, elsewhere: Servers | None
 ) -> None:
     @ui.page(page.route)
     def show(request: Request) -> None:
         session = open_session(project, jobs, exchange, PAGES, elsewhere, request)
-        framed(session, page)
+        build_framed_page(session, page)
 
 
 def _server(application: FastAPI, token: str, port: int, name: str) -> uvicorn.Server:

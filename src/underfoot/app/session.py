@@ -17,7 +17,7 @@ from nicegui import ui
 from underfoot.core.errors import Cancelled, UnderfootError, error_text
 from underfoot.core.units import SYSTEMS
 
-from .jobs import Jobs, Lane, Task
+from .jobs import JobQueue, Lane, QueuedTask
 from .project import Project
 from .projects import Servers
 from .text import Text
@@ -87,7 +87,7 @@ class Session:
     """
 
     project: Project
-    jobs: Jobs
+    jobs: JobQueue
     text: Text
     query: Mapping[str, str]
     exchange: Exchange
@@ -115,7 +115,7 @@ class Session:
         """
         return await (lane or self.jobs.live).ask(function, *args, **self._shown, **options)
 
-    def submit(self, title: str, function: str, *args: Any, **options: Any) -> Task:
+    def submit(self, title: str, function: str, *args: Any, **options: Any) -> QueuedTask:
         """Queue a long job, whose texts are in units and language of the page; return its task."""
         return self.jobs.submit(title, function, *args, **self._shown, **options)
 

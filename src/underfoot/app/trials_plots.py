@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.trials.pages.figures import Sheet, Tile
+from underfoot.trials.pages.figures import Tile, TileSheet
 from underfoot.trials.recording.signals import CONTACT_FORCE
 from underfoot.trials.study import FileResult
 from underfoot.trials.study.file_result import StepResult
@@ -38,7 +38,7 @@ RUNS: dict[str, dict[str, tuple[str, ...]]] = {
 """Panels of the curves of a run, with the series in each."""
 
 
-def tile_svg(tiles: Sequence[Tile], sheet: Sheet) -> str:
+def tile_svg(tiles: Sequence[Tile], sheet: TileSheet) -> str:
     """Return the curves of a file as SVG on the sheet's scales, coloured by their verdicts."""
     wide, high = TILE
     (left, right), (low, top) = sheet.x_range, sheet.y_range

@@ -28,7 +28,7 @@ def free_name(project: Project, wanted: str) -> str:
     return name
 
 
-class Study:
+class TrialsFolder:
     """A folder of trials. How it was analysed last stands beside it, as ``trials/NAME.json``.
 
     Attributes:

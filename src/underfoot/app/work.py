@@ -25,7 +25,7 @@ from underfoot.core import Progress, SourcedValue
 from underfoot.core.fields import Fields
 from underfoot.core.presentation import Presentable, quantity_text
 from underfoot.questions.comparison import Comparison, compare
-from underfoot.questions.order import Verdict
+from underfoot.questions.order import OrderVerdict
 from underfoot.questions.risk import risk_assessment
 from underfoot.questions.sensitivity import sensitivity
 from underfoot.questions.walked import worn_pair
@@ -169,7 +169,7 @@ def compared(
         "cautions": words["cautions"],
         # numbers stand in a table of rows
         "tables": words["tables"][1 + bool(comparison.ranking) :],
-        "open": comparison.order is not None and comparison.order.verdict is Verdict.OPEN,
+        "open": comparison.order is not None and comparison.order.verdict is OrderVerdict.OPEN,
     }
 
 

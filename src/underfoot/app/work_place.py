@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 from underfoot.core import Progress
-from underfoot.places.choice import chosen
+from underfoot.places.choice import choose_shoe
 from underfoot.places.place import read_place
 from underfoot.report import write_report
 from underfoot.report.places import slips_figure
@@ -23,7 +23,7 @@ def chosen_shoe(file: str, folder: str, *, progress: Progress) -> None:
 
     ``shown.json`` beside it holds what the page shows, the picture as an address.
     """
-    choice = chosen(read_place(Path(file)), quick=False, progress=progress)
+    choice = choose_shoe(read_place(Path(file)), quick=False, progress=progress)
     picture = io.BytesIO()
     slips_figure(choice).savefig(picture, format="png", dpi=150)
     address = "data:image/png;base64," + base64.b64encode(picture.getvalue()).decode()

@@ -12,7 +12,7 @@ from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import new_sole, sole_shape
 from underfoot.core import InputError, Progress
-from underfoot.core.fields import labelled
+from underfoot.core.fields import labelled_fields
 from underfoot.core.files import checksum
 from underfoot.report.outsole import OutsoleInspection, case_shoe
 from underfoot.report.surface_mesh import surface_mesh
@@ -60,7 +60,7 @@ def inspected_sole(
     thinned = (slice(None, None, step), slice(None, None, step))
     depth = np.where(surface.land, np.nan, channel_depth(surface))
     axes = ("x", "y")
-    fields = labelled(
+    fields = labelled_fields(
         {
             "height": (axes, surface.height[thinned], {"units": "m", "long_name": "height"}),
             "channel_depth": (

@@ -12,7 +12,7 @@ from underfoot.case import text as toml
 from underfoot.compute.result import Result
 from underfoot.core import Progress
 from underfoot.core.html import png
-from underfoot.core.page import Section, page_part
+from underfoot.core.page import PageSection, page_part
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import percent
 from underfoot.explore import Study
@@ -20,7 +20,7 @@ from underfoot.explore.check import study_check
 from underfoot.explore.status import study_status
 from underfoot.explore.study_file import flat_paths
 from underfoot.questions.comparison import chance_higher
-from underfoot.report.design_study import design_sole, shown, write_study_report
+from underfoot.report.design_study import design_sole, shown_study, write_study_report
 from underfoot.report.dispatch import figures, sections
 from underfoot.report.live_study import live_sections, live_study, with_live_page
 from underfoot.report.results import designed_surface, surface_of_result
@@ -36,7 +36,7 @@ TRIED = 12
 
 def form(text: str, *, progress: Progress) -> dict[str, Any]:
     """Return the sections of a study file with flat paths."""
-    plain = toml.parsed(text)
+    plain = toml.parse_toml(text)
     return {k: dict(flat_paths(v)) if isinstance(v, Mapping) else v for k, v in plain.items()}
 
 
@@ -77,13 +77,13 @@ def results(file: str, folder: str, whole: bool = True, *, progress: Progress) -
     """
     study = Study.load(file, folder)
     if whole:
-        ready = shown(study.result())
+        ready = shown_study(study.result())
         pictures = {name: png(make()) for name, make in figures(ready).items()}
         plots, *rest = sections(ready, pictures)[0]
         return [page_part([plots]), page_part(rest)]
     live = live_study(study)
     plots, *rest = live_sections(live)
-    cost = Section("Cost", table=live.cost_table())
+    cost = PageSection("Cost", table=live.cost_table())
     plots = replace(plots, intro=" ".join((*live.cautions()[:1], plots.intro)))
     return [page_part([cost, plots]), page_part(rest)]
 

@@ -17,7 +17,7 @@ from underfoot.core.presentation import value_text
 from underfoot.questions.comparison import differences, interval_95, with_short_names
 from underfoot.report.thumbnail import thumbnail
 from underfoot.trials.pages.report import csv_text, write_spreadsheet
-from underfoot.trials.study.tables import Table
+from underfoot.trials.study.tables import TrialTable
 
 NUMBERS = ("cof", "slip_probability", "fluid_load", "peak_fluid_pressure", "contact_area")
 """Numbers of a result that a table of variants has."""
@@ -81,7 +81,7 @@ def written(entries: Entries, title: str, kind: str, *, progress: Progress) -> s
             known = row["state"] == "current"
             line += [row.get(name), *ends] if known else [None, None, None]
         lines.append(tuple(line))
-    table = Table.of("variants", title, columns, lines)
+    table = TrialTable.of("variants", title, columns, lines)
     file = Path(mkdtemp(prefix="underfoot-")) / f"{title}.{kind}"
     if kind == "csv":
         file.write_text(csv_text(table), encoding="utf-8")

@@ -40,14 +40,14 @@ from underfoot.trials.study.edit_table import (
 from underfoot.trials.study.file_result import parts
 from underfoot.trials.study.folder import recording_trials
 from underfoot.trials.study.record_signals import record_signals
-from underfoot.trials.study.tables import quantity_name, scaled, shown_unit
+from underfoot.trials.study.tables import quantity_name, scale_to_heading, shown_unit
 
 from .text import put_language
 from .trials_plots import record_plot, run_plot, step_plot, tile_svg
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class TrialsWork:
     """A folder of trials and how it is analysed, as ``underfoot trials analyse`` is told.
 
     ``report`` takes the report and, while there is none, the results of single files.
@@ -89,7 +89,7 @@ class Study:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class HandEdit:
     """An edit by hand: the number of a step, what, the new value and why, as ``edits.csv`` has it.
 
     ``what`` is also "take back", with the edit's place in the file's log as ``step``, from 0.
@@ -117,7 +117,7 @@ def folder_view(asked: Mapping[str, Any], *, progress: Progress = silent) -> dic
 
     An InputError as ``analyse_folder``'s says what stands in the way of all of it.
     """
-    analysis = _analysis(Study.of(asked), progress)
+    analysis = _analysis(TrialsWork.of(asked), progress)
     parts = study_parts(analysis)
     return {
         **parts,
@@ -131,7 +131,7 @@ def folder_view(asked: Mapping[str, Any], *, progress: Progress = silent) -> dic
 
 def written_report(asked: Mapping[str, Any], *, progress: Progress = silent) -> str:
     """Write the report of a folder and return the path of its page."""
-    study = Study.of(asked)
+    study = TrialsWork.of(asked)
     check_report_folder(study.report)
     analysis = _analysis(study, part(progress, 0.0, 0.4))
     drawing = part(progress, 0.4, 1.0)
@@ -152,18 +152,18 @@ def trial_view(
     """Return a trial with its steps, edit log and plots of one step.
 
     ``step``: the number of that step; without it a slip, else the first accepted one.
-    ``change``: what a ``Change`` holds; the trial is shown as it would be with this edit. ``keep``
-    writes it to the folder's ``edits.csv``; that file's text before and after is then told as
-    ``before`` and ``after``.
+    ``change``: what a ``HandEdit`` holds; the trial is shown as it would be with this edit.
+    ``keep`` writes it to the folder's ``edits.csv``; that file's text before and after is then told
+    as ``before`` and ``after``.
 
     EditError: the edit changes nothing, contradicts another or has no reason; nothing is written.
     """
-    study = Study.of(asked)
+    study = TrialsWork.of(asked)
     recording = study.recording(file)
     one = study.result(recording, file, store=study.store)
     texts: dict[str, str] = {}
     if change is not None:
-        edit = Change(**change)
+        edit = HandEdit(**change)
         if not keep:
             edit = replace(edit, why=edit.why or "not said yet")
         before, after, edits = _changed(study, recording.name, one, edit)
@@ -199,7 +199,7 @@ def put_edits(
     write_edit_text(folder, text)
 
 
-def _analysis(study: Study, progress: Progress) -> FolderAnalysis:
+def _analysis(study: TrialsWork, progress: Progress) -> FolderAnalysis:
     return analyse_folder(
         study.folder,
         study.protocol,
@@ -211,7 +211,7 @@ def _analysis(study: Study, progress: Progress) -> FolderAnalysis:
 
 
 def _changed(
-    study: Study, name: str, record: FileResult, change: Change
+    study: TrialsWork, name: str, record: FileResult, change: HandEdit
 ) -> tuple[str, str, list[Edit]]:
     """Return the text of ``edits.csv`` before and after a change, and the recording's edits then.
 
@@ -283,7 +283,7 @@ def _numbers(record: FileResult) -> list[str]:
     """Return the main numbers of a file in words, with units."""
     texts = []
     for name, value in record.main.items():
-        text = f"{scaled(name, value):.3g} {shown_unit(name)}".strip()
+        text = f"{scale_to_heading(name, value):.3g} {shown_unit(name)}".strip()
         if name in ("slip", "crossed_array"):
             text = "yes" if value else "no"
         texts.append(f"{quantity_name(name)} {text}")
@@ -291,7 +291,7 @@ def _numbers(record: FileResult) -> list[str]:
 
 
 def _plots(
-    study: Study, recording: Recording, record: FileResult, step: int | None
+    study: TrialsWork, recording: Recording, record: FileResult, step: int | None
 ) -> dict[str, Any]:
     """Return the plot of the whole record and of what was chosen, None where there is none."""
     if not record.steps:

@@ -1,7 +1,8 @@
 """The report's rubber block on a rough floor (G.1) by explicit or condensed finite elements."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .assembly import ExplicitSettings as ExplicitSettings
@@ -52,9 +53,4 @@ _HOMES = {
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    # finite elements and numba are loaded when they are used
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name], __name__), name)
+__getattr__ = package_names(__name__, _HOMES)

@@ -172,7 +172,7 @@ class Assembly:
         )
 
 
-def assembled(
+def assemble_march(
     block: MicroBlock,
     floor: MicroSurface,
     material: MicroMaterial,

@@ -15,7 +15,7 @@ from underfoot.core.cache import default_folder
 from underfoot.core.checks import choice, exactly_one
 from underfoot.core.files import read_toml
 from underfoot.core.identity import content_hash
-from underfoot.surface import HeightMap, periodised, read_surface
+from underfoot.surface import HeightMap, make_periodic, read_surface
 
 TEMPLATE = """\
 # A rough rubber block on a rough rigid floor. What is left out takes the value shown.
@@ -237,7 +237,7 @@ def _surface(given: Mapping[str, Any], path: Path, where: str) -> model.MicroSur
             raise InputError(
                 "holds a profile", where=f"{path}, {where}.file", allowed="a height map"
             )
-        return model.MicroSurface.of_map(surface if surface.periodic else periodised(surface))
+        return model.MicroSurface.of_map(surface if surface.periodic else make_periodic(surface))
     if "peak_to_valley" not in given:
         raise InputError(
             "no roughness",

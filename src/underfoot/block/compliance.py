@@ -105,7 +105,7 @@ def condensed_block(
     same, own = merged_nodes(mesh, block.sides == "periodic")
     top = mesh.shape[2] - 1
     plane = mesh.shape[0] * mesh.shape[1]
-    stiffness, number = assembled(same[corners], matrices, same[: top * plane])
+    stiffness, number = assemble_stiffness(same[corners], matrices, same[: top * plane])
     bottom = own[own < plane]
     return _condensed(
         block,
@@ -165,7 +165,7 @@ def merged_nodes(mesh: BlockMesh, periodic: bool) -> tuple[np.ndarray, np.ndarra
     return same, np.flatnonzero(same == own.ravel())
 
 
-def assembled(
+def assemble_stiffness(
     nodes: np.ndarray, matrices: np.ndarray, free: np.ndarray
 ) -> tuple[sp.csr_matrix, np.ndarray]:
     """Return the stiffness of the ``free`` nodes and the place of each degree of freedom."""
@@ -239,7 +239,9 @@ class _Pressing:
             )
         total = np.zeros_like(self.displacement)
         np.add.at(total, self.same[self.corners], forces)
-        matrix, number = assembled(self.same[self.corners], tangents, self.same[: self.top])
+        matrix, number = assemble_stiffness(
+            self.same[self.corners], tangents, self.same[: self.top]
+        )
         return matrix, number, total
 
     def solve(self, load: float) -> None:

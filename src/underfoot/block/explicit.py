@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from underfoot.core import Breach, Cancelled, Progress, Range, Status, content_hash, silent
+from underfoot.core import Breach, Cancelled, Progress, Status, ValidityRange, content_hash, silent
 from underfoot.core.files import check_writable_folder
 from underfoot.core.status import worst
 
@@ -14,7 +14,7 @@ from .assembly import (
     IMPACT_ALLOWED,
     MASS_SCALING_ALLOWED,
     ExplicitSettings,
-    assembled,
+    assemble_march,
     mass_scaling_error,
 )
 from .inputs import MicroBlock, MicroLoading, MicroMaterial, MicroSurface
@@ -77,7 +77,7 @@ def explicit_sliding(
     if output is not None:
         output = Path(output)
         check_writable_folder(output, overwrite=overwrite or restart is not None)
-    assembly = assembled(block, floor, material, loading, settings)
+    assembly = assemble_march(block, floor, material, loading, settings)
     march = BlockMarch(
         assembly=assembly,
         loading=loading,
@@ -184,7 +184,7 @@ def _breaches(
             ("COF of scaled inertia", assembly.impact_friction, 0.0, impact, "energy ledger")
         )
     return [
-        Breach("explicit_sliding", quantity, value, value, Range(low, high, "1", source))
+        Breach("explicit_sliding", quantity, value, value, ValidityRange(low, high, "1", source))
         for quantity, value, low, high, source in tests
         if not low <= value <= high
     ]

@@ -58,7 +58,7 @@ class Calibration:
         return float(np.mean(np.abs(self.residuals)))
 
 
-def calibrated(
+def calibrate_model(
     model: Callable[[Mapping[str, float]], ArrayLike],
     data: ArrayLike,
     parameters: Mapping[str, Parameter],

@@ -24,10 +24,10 @@ from underfoot.compute.contact_friction import (
     place_of_tread,
     sole_errors,
 )
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.sole import sole_map
-from underfoot.compute.solve import averaged, solved
+from underfoot.compute.solve import average_positions, solve_case
 from underfoot.core import ConvergenceError, DataError, InputError, Progress, silent, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import Presentable, Table
@@ -165,7 +165,7 @@ def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
     Raises:
         InputError: No such file, no reading, an unknown key, a value that is missing or no COF.
     """
-    table = toml.parsed(toml.read(path), str(path))
+    table = toml.parse_toml(toml.read_text(path), str(path))
     entries = table.pop("reading", None)
     if table or not isinstance(entries, list) or not entries:
         raise InputError(
@@ -236,7 +236,7 @@ def calibrated_pair(
     wide = start.rows(np.tile(np.arange(start.count), REPEATS))
     laws: list[PairContactLaw] = []
     for reading in readings:
-        law = reading.case.friction.build(resolved(reading.case))
+        law = reading.case.friction.build(resolve_context(reading.case))
         if not isinstance(law, PairContactLaw):
             raise InputError(
                 f'the law of {reading.case.name} is "{law.name}"',
@@ -252,7 +252,7 @@ def calibrated_pair(
     grid = "numerics.quick_grid_spacing" if quick else "numerics.grid_spacing"
     for reading, law in zip(readings, laws, strict=True):
         case, name = reading.case, law.pair.compound_and_floor
-        context = resolved(case)
+        context = resolve_context(case)
         words[name] = f"the pair of {case.name}"
         errors[name] = wide.error(name, wide.sd_pair, seed)
         place = place_of_tread(case, sole_map(case, case.value(grid)))
@@ -312,8 +312,8 @@ def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress)
     Over the positions of its tread, as ``run`` has it.
     """
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
-    parts = prepared(case, spacing, {"friction": law})
-    solution = solved(parts, part(progress, 0.0, 0.5))
+    parts = prepare_case(case, spacing, {"friction": law})
+    solution = solve_case(parts, part(progress, 0.0, 0.5))
     contact = solution.contact
     if not contact.status.usable:
         raise ConvergenceError(
@@ -324,7 +324,7 @@ def _whole_cof(case: Case, law: PairContactLaw, quick: bool, progress: Progress)
         *on, samples=law.draws.count, spreads=solution.spreads, stated=solution.stated
     )
     sums, sampled = friction.sums, friction.sampled
-    positions = averaged(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
+    positions = average_positions(parts, solution, quick=quick, progress=part(progress, 0.5, 1.0))
     if positions is not None:
         sums, sampled = positions.friction(sums, sampled)
     if sampled is None:

@@ -56,7 +56,7 @@ def pin_regimes(
     The pin has the report's reduced radius and face; its load is pressure times face. Film of
     Eq. 18 with half the sliding speed. None where the stylus Rq of neither surface is known.
     """
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
     from underfoot.film import (
         compare_regimes,
         effective_modulus,
@@ -69,7 +69,7 @@ def pin_regimes(
     rough = [r.rq_or_estimate for r in (case.shoe.roughness, case.floor.roughness)]
     if rough[0] is None and rough[1] is None:
         return None
-    context = resolved(case)
+    context = resolve_context(case)
     film = soft_ehl(
         viscosity=viscosity,
         speed=speed,

@@ -99,12 +99,12 @@ def stribeck_curve(
         InputError: A dry case, a pressure that is not positive, or what the law itself misses.
     """
     from underfoot.case.friction import measured_fluids
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
     from underfoot.friction.sampled_cof import PARTS, sampled_points
 
     if not pressure > 0:
         raise InputError(f"{pressure:g} Pa", where="--pressure", allowed="above 0")
-    context = resolved(case)
+    context = resolve_context(case)
     fluid = context.viscosity
     if fluid is None or fluid.value is None:
         raise InputError(
@@ -156,9 +156,9 @@ def _gap(case: Case, pressure: float) -> float:
     """Return the mean gap (m) at which the rough interface carries the pressure."""
     from scipy.optimize import brentq
 
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
 
-    context = resolved(case)
+    context = resolve_context(case)
     interface = case.rough_contact.build(context)
 
     def excess(gap: float) -> float:

@@ -13,10 +13,10 @@ from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.core.presentation import Presentable, Table
 
 from . import text as toml
-from .compose import DRY, composed, expanded, optional_reads
+from .compose import DRY, compose_case, expand_sections, optional_reads
 from .contact import ComplianceOption, FilmOption, HardnessOption, RoughContactOption
 from .contaminant import ContaminantSection
-from .errors import CaseError, placed, translated
+from .errors import CaseError, place_error, translate_errors
 from .friction import FrictionOption
 from .motion import Motion, Sensor
 from .numerics import Numerics
@@ -119,7 +119,7 @@ class Case(Presentable):
             CaseError: Everything that is wrong with the file, each with its line.
         """
         path = Path(path)
-        text = toml.read(path)
+        text = toml.read_text(path)
         if catalogue is None:
             catalogue = Catalogue.load(catalogue_folders(path.parent))
         places = toml.Places(str(path), text, changed=current_settings(settings or {}))
@@ -145,7 +145,7 @@ class Case(Presentable):
 
         Its files count from ``folder``, the present one.
         """
-        return cls.from_text(toml.written(mapping), catalogue=catalogue, folder=folder)
+        return cls.from_text(toml.toml_text(mapping), catalogue=catalogue, folder=folder)
 
     @classmethod
     def _from_text(
@@ -156,7 +156,7 @@ class Case(Presentable):
         folder: Path,
         settings: Mapping[str, Any],
     ) -> Self:
-        mapping = toml.parsed(text, places.file)
+        mapping = toml.parse_toml(text, places.file)
         version = _version(mapping, places)
         mapping.pop("file_version", None)
         given, edits = _current(mapping) if version < FILE_VERSION else (mapping, {})
@@ -207,11 +207,11 @@ class Case(Presentable):
             )
             raise CaseError([error])
         allow = lenient if callable(lenient) else (lambda _path: lenient)
-        composition = composed(given, catalogue, places, folder, allow)
+        composition = compose_case(given, catalogue, places, folder, allow)
         try:
             parts = CaseParts.model_validate(composition.tree, context=context)
         except ValidationError as error:
-            more = translated(
+            more = translate_errors(
                 error, CaseParts, composition.tree, places, without=composition.failed
             )
             raise CaseError([*composition.errors, *more]) from None
@@ -223,7 +223,9 @@ class Case(Presentable):
                 section._entry = entry
         problems = [p for path, section in walk(parts) for p in section.problems(parts, path)]
         if composition.errors or problems:
-            raise CaseError([*composition.errors, *(placed(error, places) for error in problems)])
+            raise CaseError(
+                [*composition.errors, *(place_error(error, places) for error in problems)]
+            )
         dropped = dict.fromkeys(composition.dropped)
         left_out = [f"{path} is left out: {why}" for path, why in composition.dropped.items()]
         vars(self).update(
@@ -316,17 +318,17 @@ class Case(Presentable):
     def to_toml(self, *, complete: bool = False) -> str:
         """Return the case as TOML; ``complete`` writes every value with its source, no entries."""
         if complete or _has_section(self._given):
-            return toml.written(
+            return toml.toml_text(
                 self._complete_tree(), "Complete case: every value with its source."
             )
         if self._text is None:
             head = {"file_version": FILE_VERSION}
-            return toml.written(head | {k: _as_text(v, k) for k, v in self._given.items()})
+            return toml.toml_text(head | {k: _as_text(v, k) for k, v in self._given.items()})
         if not self._edits:
             return self._text
         edits = {path: _as_text(value, path) for path, value in self._edits.items()}
-        text = toml.changed(self._text, edits, expanded)
-        return toml.changed(text, dict.fromkeys(_emptied(text)), expanded)
+        text = toml.change_text(self._text, edits, expand_sections)
+        return toml.change_text(text, dict.fromkeys(_emptied(text)), expand_sections)
 
     @cached_property
     def hash(self) -> str:
@@ -581,7 +583,7 @@ def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
         path: value
         for path, value in changes.items()
         if path.partition(".")[0] not in UNNAMED
-        and expanded(_value_at(given, path), path) != expanded(value, path)
+        and expand_sections(_value_at(given, path), path) != expand_sections(value, path)
     }
     if "name" in changes or not isinstance(given.get("name"), str) or not replaced:
         return dict(changes)
@@ -619,7 +621,7 @@ def _is_empty(mapping: Mapping[str, Any], path: str) -> bool:
 
 
 def _emptied(text: str) -> list[str]:
-    mapping = toml.parsed(text)
+    mapping = toml.parse_toml(text)
     return [path for path in GONE if _is_empty(mapping, path)]
 
 
@@ -656,7 +658,7 @@ def _edited(mapping: Mapping[str, Any], edits: Mapping[str, Any]) -> dict[str, A
             here = ".".join(parts[: depth + 1])
             if table.get(part) is None and value is None:
                 break
-            below = expanded(table.get(part, {}), here) if part in table else {}
+            below = expand_sections(table.get(part, {}), here) if part in table else {}
             if not isinstance(below, Mapping) or "value" in below:
                 raise InputError("is a value, not a section", where=here)
             table[part] = dict(below)

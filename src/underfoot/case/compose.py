@@ -12,7 +12,7 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry
 from underfoot.core.leaves import Leaf, leaves
 
-from .errors import CaseError, Place, placed
+from .errors import CaseError, Place, place_error
 from .friction import FrictionOption
 from .parts import CATALOGUE_SECTIONS, CaseParts, slot_table
 from .section import (
@@ -61,7 +61,7 @@ class Composition:
     """path of a given value that no chosen option takes: why"""
 
 
-def composed(
+def compose_case(
     given: Mapping[str, Any],
     catalogue: Catalogue,
     places: Place,
@@ -75,7 +75,7 @@ def composed(
     out; given ones too where ``lenient`` says so of their path, else they are an error later.
     """
     composition = Composition(catalogue, places, folder, lenient)
-    tables = {key: expanded(item, key, composition.entries) for key, item in given.items()}
+    tables = {key: expand_sections(item, key, composition.entries) for key, item in given.items()}
     laid: dict[str, Origin] = {}
     for section in sorted(CATALOGUE_SECTIONS, key=lambda path: path.count(".")):
         name = _from(tables, section)
@@ -85,7 +85,7 @@ def composed(
     try:
         given_leaves = leaves(_without_from(tables), source="")
     except InputError as error:
-        raise CaseError([*composition.errors, placed(error, places)]) from error
+        raise CaseError([*composition.errors, place_error(error, places)]) from error
     record, beneath = _friction_record(composition, tables), dict(laid)
     for path, leaf in given_leaves.items():
         origin = leaf.given if isinstance(leaf.given, Origin) else origin_of(leaf.given)
@@ -108,7 +108,7 @@ def composed(
     return composition
 
 
-def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any:
+def expand_sections(item: Any, path: str, entries: dict[str, str] | None = None) -> Any:
     """Return sections as mappings, and names of entries and options as keys of a mapping."""
     if isinstance(item, Section):
         if entries is not None and item._entry:
@@ -121,7 +121,7 @@ def expanded(item: Any, path: str, entries: dict[str, str] | None = None) -> Any
         return item if slot is None else {slot.key: item}
     if not isinstance(item, Mapping) or "value" in item:
         return item
-    return {key: expanded(below, f"{path}.{key}", entries) for key, below in item.items()}
+    return {key: expand_sections(below, f"{path}.{key}", entries) for key, below in item.items()}
 
 
 def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: Any) -> None:
@@ -234,7 +234,7 @@ def _settled(
     try:
         table = model.completed(table, composition.folder, path)
     except InputError as error:
-        composition.errors.append(placed(error, composition.places))
+        composition.errors.append(place_error(error, composition.places))
         composition.failed.append(path)
     for key, info in model.model_fields.items():
         section = section_in(info)

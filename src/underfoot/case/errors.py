@@ -42,12 +42,12 @@ class CaseError(InputError):
         return type(self), (self.errors,)
 
 
-def placed(error: InputError, places: Place) -> InputError:
+def place_error(error: InputError, places: Place) -> InputError:
     """Return the error with its place in the file."""
     return type(error)(error.what, where=places(error.where or ""), **error.parts)
 
 
-def translated(
+def translate_errors(
     error: ValidationError,
     model: type[Section],
     tree: Any,

@@ -28,7 +28,7 @@ from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from underfoot.core import InputError, SourcedValue, unknown_name
 from underfoot.core.leaves import INHERITED, Leaf
-from underfoot.core.registry import all_offers, loaded, offered, offers
+from underfoot.core.registry import all_offers, find_offer, load_address, offers
 from underfoot.core.units import spread_to_si
 
 from .quantity import Quantity, default_of, refusal
@@ -311,7 +311,7 @@ class Option(Section):
         """Yield what is wrong with each option that a package offers and that can't be loaded."""
         for name in offers(cls.slot).keys() - cls.known().keys():
             try:
-                offered(cls.slot, name, cls._wrong)
+                find_offer(cls.slot, name, cls._wrong)
             except InputError as error:
                 yield error.what
 
@@ -358,9 +358,9 @@ class Option(Section):
     def _elsewhere(cls, name: str) -> type["Option"]:
         """Return the option that a package offers by this name, or at ``module:Class``."""
         if ":" not in name:
-            option = offered(cls.slot, name, cls._wrong)
+            option = find_offer(cls.slot, name, cls._wrong)
             return option or _named(cls.options(), name)
-        option = loaded(name)
+        option = load_address(name)
         if wrong := cls._wrong(option):
             raise InputError(f'"{name}" {wrong}')
         return option

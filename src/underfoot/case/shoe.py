@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, create_model
 
 from underfoot.core import InputError, RangeError, display, nearest_match
-from underfoot.core.registry import offered
+from underfoot.core.registry import find_offer
 
 from .quantity import Flag, Length, Quantity, default, optional
 from .section import (
@@ -256,7 +256,7 @@ class OutsoleFile(Section):
         return with_checksum(table, "file", folder, where)
 
     def code(self) -> Any:
-        return offered("outsole_readers", Path(self.file).suffix.lower()[1:])
+        return find_offer("outsole_readers", Path(self.file).suffix.lower()[1:])
 
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         down, forward = self.down, self.forward
@@ -285,9 +285,9 @@ class Certificate(Section):
 
     def reading(self, where: str = "shoe.certificate") -> Certified:
         """Return the reading."""
-        from underfoot.friction.shoe_class import certified
+        from underfoot.friction.shoe_class import certificate_line
 
-        return certified(self.test, self.cof, self.kind, self.sd, where)
+        return certificate_line(self.test, self.cof, self.kind, self.sd, where)
 
 
 # a word of Python: the field can't be written below

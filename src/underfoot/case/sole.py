@@ -16,7 +16,7 @@ from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, def
 from .section import CaseView, Option, Section
 
 if TYPE_CHECKING:
-    from underfoot.shoe import Profile, Tread
+    from underfoot.shoe import HeelProfile, Tread
     from underfoot.shoe.lettering import Lettering
     from underfoot.shoe.shape import SoleShape
 
@@ -47,7 +47,7 @@ class RearProfile(Option):
     usual: ClassVar[str | None] = "facet"
 
     @abstractmethod
-    def build(self) -> Profile:
+    def build(self) -> HeelProfile:
         """Return the profile as geometry."""
 
 
@@ -56,7 +56,7 @@ class FlatRear(RearProfile):
 
     name: ClassVar[str] = "flat"
 
-    def build(self) -> Profile:
+    def build(self) -> HeelProfile:
         from underfoot.shoe import Flat
 
         return Flat()
@@ -71,7 +71,7 @@ class FacetRear(RearProfile):
     angle: Angle = Field(description="between facet and sole")
     length: Length = Field(description="along the sole, from the rear")
 
-    def build(self) -> Profile:
+    def build(self) -> HeelProfile:
         from underfoot.shoe import Facet, Flat
 
         return Facet(self.angle, self.length) if self.angle else Flat()
@@ -85,7 +85,7 @@ class RockerRear(RearProfile):
     radius: LargeRadius = Field(description="radius along x")
     start: Length = Field(description="from the rear end")
 
-    def build(self) -> Profile:
+    def build(self) -> HeelProfile:
         from underfoot.shoe import Rocker
 
         return Rocker(self.radius, self.start)
@@ -206,7 +206,7 @@ class WholePlan(SolePlan):
             )
 
 
-class ArcChannel(Section):
+class ArcCut(Section):
     """One channel that follows the rounded rear of the heel."""
 
     width: Length
@@ -240,7 +240,7 @@ class TreadPattern(Option):
     slot: ClassVar[str] = "tread"
     key: ClassVar[str] = "pattern"
 
-    arc_channel: ArcChannel | None = None
+    arc_channel: ArcCut | None = None
 
     @abstractmethod
     def build(self) -> Tread | None:

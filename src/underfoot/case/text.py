@@ -11,10 +11,10 @@ from tomlkit.items import InlineTable, Item
 
 from underfoot.core import InputError, nearest_match
 from underfoot.core.files import whole_file
-from underfoot.core.typed import held
+from underfoot.core.typed import float_of_text
 
 
-def read(path: Path) -> str:
+def read_text(path: Path) -> str:
     """Return the text of a case file; a byte-order mark is no part of it."""
     try:
         return path.read_text(encoding="utf-8-sig")
@@ -33,10 +33,10 @@ def read(path: Path) -> str:
         raise InputError(f"{path} can't be read ({error})") from error
 
 
-def parsed(text: str, file: str | None = None) -> dict[str, Any]:
+def parse_toml(text: str, file: str | None = None) -> dict[str, Any]:
     """Return a TOML text as nested dictionaries."""
     try:
-        return tomllib.loads(text.removeprefix("\ufeff"), parse_float=held)
+        return tomllib.loads(text.removeprefix("\ufeff"), parse_float=float_of_text)
     except tomllib.TOMLDecodeError as error:
         remedy = 'Text and numbers with a unit stand in quotes, as in speed = "0.7 m/s"'
         if "Cannot overwrite" in str(error):
@@ -51,7 +51,7 @@ def parsed(text: str, file: str | None = None) -> dict[str, Any]:
         ) from error
 
 
-def changed(text: str, settings: Mapping[str, Any], expand: Callable[[Any, str], Any]) -> str:
+def change_text(text: str, settings: Mapping[str, Any], expand: Callable[[Any, str], Any]) -> str:
     """Return the text with values replaced and comments kept.
 
     A value None takes the key out. ``expand`` returns the section that a name stands for at a path:
@@ -108,7 +108,7 @@ def _table_like(parent: Any) -> Any:
     return tomlkit.inline_table() if isinstance(parent, InlineTable) else tomlkit.table()
 
 
-def written(tree: Mapping[str, Any], comment: str = "") -> str:
+def toml_text(tree: Mapping[str, Any], comment: str = "") -> str:
     """Return nested mappings as TOML: a mapping with ``value`` stands on one line."""
     tables = "\n".join(_tables(tree))
     return f"# {comment}\n{tables}" if comment else tables

@@ -11,7 +11,7 @@ from . import app_command, cases, export, material, micro, places, tools
 from .calibrate import calibrate_app
 from .contact import contact
 from .groups import Command, Group
-from .guard import guarded
+from .guard import guard_command
 from .outsole import outsole_app
 from .stribeck import stribeck
 from .studies import studies_app
@@ -55,8 +55,8 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     tools.doctor,
 )
 for command in COMMANDS:
-    app.command(cls=Command)(guarded(command))
-app.command("test", cls=Command)(guarded(cases.by_method))
+    app.command(cls=Command)(guard_command(command))
+app.command("test", cls=Command)(guard_command(cases.by_method))
 
 
 for group in (trials_app, calibrate_app, studies_app, study_app, outsole_app):

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from .groups import Group
-from .guard import guarded, say
+from .guard import guard_command, say
 from .options import AsJson, Overwrite, Quick
 from .output import finish
 from .places import calibrate_machine
@@ -104,10 +104,10 @@ def pair(
         print(f'\nwrote {out}\nUse it: friction.draws_file = "{out.name}"')
 
 
-calibrate_app.command()(guarded(law))
-calibrate_app.command()(guarded(pair))
-calibrate_app.command()(guarded(posterior))
-calibrate_app.command("machine")(guarded(calibrate_machine))
+calibrate_app.command()(guard_command(law))
+calibrate_app.command()(guard_command(pair))
+calibrate_app.command()(guard_command(posterior))
+calibrate_app.command("machine")(guard_command(calibrate_machine))
 
 
 @calibrate_app.callback()

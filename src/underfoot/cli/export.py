@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from underfoot.case import Case
 
 
-class Kind(StrEnum):
+class ExportKind(StrEnum):
     """Kinds of file."""
 
     GLB = "glb"
@@ -32,7 +32,7 @@ def export(
             help="Result folder of underfoot run; for step also a case file.",
         ),
     ],
-    to: Annotated[Kind, typer.Option("--to", help="Kind of file.")],
+    to: Annotated[ExportKind, typer.Option("--to", help="Kind of file.")],
     field: Annotated[
         str | None,
         typer.Option("--field", help="What the colours show, as fluid_pressure."),
@@ -67,7 +67,7 @@ def export(
         raise InputError(
             f'"{path.name}" does not end with .{to}', where="--out", allowed=f"a name with .{to}"
         )
-    if to is Kind.STEP:
+    if to is ExportKind.STEP:
         _write_solid(Case.load(run / "case.toml" if run.is_dir() else run), path)
         return
     if not run.is_dir():
@@ -77,7 +77,7 @@ def export(
             allowed="a folder that underfoot run made; a case file with --to step",
             remedy=f"First: underfoot run {run}",
         )
-    if to is Kind.INP:
+    if to is ExportKind.INP:
         print(f"wrote {write_solver_input(Result.load(run), path).sentence()}")
         return
     written = export_result(Result.load(run), path, field=field, pressed=pressed)

@@ -8,9 +8,9 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from underfoot.core import InputError
-from underfoot.core.registry import offered, offers
+from underfoot.core.registry import find_offer, offers
 
-from .guard import guarded, say
+from .guard import guard_command, say
 
 RENAMED = {
     "risk": {"--wanted": "--target"},
@@ -78,12 +78,12 @@ class Group(TyperGroup):
 
     def _offered(self, name: str) -> Any:
         """Return a command that another package offers as a function or group, or None."""
-        item = offered("commands", self._prefix + name)
+        item = find_offer("commands", self._prefix + name)
         if item is None:
             return None
         if not isinstance(item, typer.Typer):
             function, item = item, typer.Typer(add_completion=False)
-            item.command(name, cls=Command)(guarded(function))
+            item.command(name, cls=Command)(guard_command(function))
         command = get_command(item)
         command.name = name
         return command

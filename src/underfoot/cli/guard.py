@@ -20,7 +20,7 @@ class Terminated(KeyboardInterrupt):
     """The process was asked to end (SIGTERM); it cleans up as after Ctrl-C."""
 
 
-def guarded(command: Callable[..., None]) -> Callable[..., None]:
+def guard_command(command: Callable[..., None]) -> Callable[..., None]:
     """Return the command with its errors on standard error; UNDERFOOT_DEBUG=1 shows tracebacks."""
 
     @functools.wraps(command)

@@ -154,7 +154,7 @@ def _write(
     import numpy as np
     import pandas
 
-    from underfoot.report.study_figures import drawn
+    from underfoot.report.study_figures import draw_figure
     from underfoot.studies.g1 import history_figure
 
     text = dumps(content, indent=2, ensure_ascii=False)
@@ -165,7 +165,7 @@ def _write(
         table = pandas.DataFrame(dict(zip(COLUMNS, history.values(), strict=True)))
         table.to_csv(folder / f"history_{speed:g}.csv", index=False, lineterminator="\r\n")
         histories[chosen.name, speed] = history
-    figure = drawn(history_figure(histories, chosen.floor.wavelength, chosen.name))
+    figure = draw_figure(history_figure(histories, chosen.floor.wavelength, chosen.name))
     figure.savefig(folder / "history.png", dpi=150)
 
 

@@ -119,7 +119,7 @@ class Shared:
 
     def case(self, path: Path, settings: Sequence[str] = ()) -> Case:
         """Return the case of a file with ``settings`` and the changes of ``--set``."""
-        return loaded(path, self.catalogue, [*(self.set_ or ()), *settings])
+        return load_case(path, self.catalogue, [*(self.set_ or ()), *settings])
 
     def answer(self, title: str, compute: Callable[..., Presentable]) -> None:
         """Compute, write and print the answer of ``compute(progress)``."""
@@ -170,7 +170,7 @@ def catalogue_for(case: Path | None, folders: list[Path] | None) -> Catalogue:
     return Catalogue.load(catalogue_folders(beside, folders or ()))
 
 
-def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | None) -> Case:
+def load_case(path: Path, folders: list[Path] | None, settings: Sequence[str] | None) -> Case:
     """Return the case of a file with the changes of ``--set``."""
     from underfoot.case import Case
     from underfoot.core import InputError
@@ -190,7 +190,7 @@ def loaded(path: Path, folders: list[Path] | None, settings: Sequence[str] | Non
 def setting(text: str) -> tuple[str, Any]:
     """Return path and value of one ``--set``."""
     from underfoot.core import InputError
-    from underfoot.core.typed import held
+    from underfoot.core.typed import float_of_text
 
     path, sign, value = text.partition("=")
     if not sign or not path.strip():
@@ -201,6 +201,6 @@ def setting(text: str) -> tuple[str, Any]:
         )
     value = value.strip()
     try:
-        return path.strip(), tomllib.loads(f"x = {value}", parse_float=held)["x"]
+        return path.strip(), tomllib.loads(f"x = {value}", parse_float=float_of_text)["x"]
     except tomllib.TOMLDecodeError:
         return path.strip(), value

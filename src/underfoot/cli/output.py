@@ -110,11 +110,11 @@ def show(shown: Presentable, *, everything: bool = False) -> None:
     from rich.console import Console
 
     console = Console(highlight=False)
-    console.print(f"\n[bold]{escaped(shown.heading())}[/bold]")
+    console.print(f"\n[bold]{escape_markup(shown.heading())}[/bold]")
     for sentence in shown.headline():
         console.print(sentence, markup=False)
     for caution in shown.cautions():
-        console.print(f"[yellow]Caution:[/yellow] {escaped(caution)}")
+        console.print(f"[yellow]Caution:[/yellow] {escape_markup(caution)}")
     for table in shown.tables():
         if table.rows:
             console.print()
@@ -126,12 +126,12 @@ def show(shown: Presentable, *, everything: bool = False) -> None:
         console.print(f"\n{title}{count}:", markup=False)
         told = lines if everything else lines[:MOST_LINES]
         for line in told:
-            console.print(f"  - {line if everything else shortened(line)}", markup=False)
+            console.print(f"  - {line if everything else shorten_remark(line)}", markup=False)
         if len(told) < len(lines):
             console.print(f"  … {len(lines) - len(told)} more: --all", markup=False)
 
 
-def shortened(line: str) -> str:
+def shorten_remark(line: str) -> str:
     """Return a remark without the source or reason in brackets, on one line of a terminal."""
     return shorten(line.partition(" (")[0], LONGEST_LINE, placeholder=" …")
 
@@ -147,8 +147,8 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     cells = table.cells()
     last = len(table.columns) - 1
     if not everything and last > 1:
-        ends = [c if len(c) <= LONGEST_VALUE else shortened(c) for *_, c in cells]
-        cells = [[*map(narrowed, row[:-1]), end] for row, end in zip(cells, ends, strict=True)]
+        ends = [c if len(c) <= LONGEST_VALUE else shorten_remark(c) for *_, c in cells]
+        cells = [[*map(narrow_cell, row[:-1]), end] for row, end in zip(cells, ends, strict=True)]
     widths = [
         max(len(line) for cell in column for line in cell.split("\n"))
         for column in zip(table.columns, *cells, strict=True)
@@ -169,17 +169,17 @@ def print_table(table: Table, *, everything: bool = True) -> None:
     drawn = RichTable(box=None, pad_edge=False, show_header=any(table.columns))
     for number, name in enumerate(table.columns):
         drawn.add_column(
-            escaped(name),
+            escape_markup(name),
             no_wrap=number != last and (roomy or last == 1 or (number == 0 and short)),
             overflow="fold",
             style="dim" if number == last > 1 and name in REMARKS else None,
         )
     for row in cells:
-        drawn.add_row(*map(escaped, row))
+        drawn.add_row(*map(escape_markup, row))
     console.print(drawn)
 
 
-def narrowed(cell: str) -> str:
+def narrow_cell(cell: str) -> str:
     """Return a long path by its end, a checksum by its beginning, a dotted name on two lines."""
     if len(cell) <= LONGEST_VALUE or re.search(r"\s", cell):
         return cell
@@ -242,6 +242,6 @@ def _say_rest(console: Console, rest: int) -> None:
         console.print(f"  … {rest} more rows: --all, or the CSV of --out", markup=False)
 
 
-def escaped(text: str) -> str:
+def escape_markup(text: str) -> str:
     """Return text with brackets that are not taken for markup."""
     return text.replace("[", "\\[")

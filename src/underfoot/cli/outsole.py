@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from .guard import guarded
+from .guard import guard_command
 from .options import AsJson, Overwrite, ShowAll
 from .output import answer
 from .outsole_make import make
@@ -56,7 +56,7 @@ def inspect(
     the sole, ready to run.
     """
     from underfoot.core import to_si
-    from underfoot.report.outsole import case_text, inspected
+    from underfoot.report.outsole import case_text, inspect_outsole
     from underfoot.report.writing import write_text
     from underfoot.shoe.files import FileSettings
 
@@ -77,7 +77,7 @@ def inspect(
     )
     answer(
         file.name,
-        lambda progress: inspected(file, settings),
+        lambda progress: inspect_outsole(file, settings),
         out=out,
         overwrite=overwrite,
         json=json,
@@ -93,5 +93,5 @@ def inspect(
         print(f"Next: underfoot run {quote(str(out / case))}{into}")
 
 
-outsole_app.command()(guarded(inspect))
-outsole_app.command()(guarded(make))
+outsole_app.command()(guard_command(inspect))
+outsole_app.command()(guard_command(make))

@@ -149,10 +149,10 @@ def _from_file(spec: Path, settings: list[str] | None) -> SoleShape:
     from underfoot.case import text as toml
     from underfoot.compute.sole import new_sole, read_outsole
 
-    from .options import loaded
+    from .options import load_case
 
-    if spec.is_file() and "shoe" in toml.parsed(toml.read(spec), str(spec)):
-        return new_sole(loaded(spec, None, settings))
+    if spec.is_file() and "shoe" in toml.parse_toml(toml.read_text(spec), str(spec)):
+        return new_sole(load_case(spec, None, settings))
     return read_outsole(spec, _settings(settings)).shape()
 
 

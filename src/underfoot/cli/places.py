@@ -20,11 +20,13 @@ def choose(
     Floors and shoes may carry readings (PTV, ramp angle, DCOF, EN values, slip class); each
     narrows every shoe on that floor, or that shoe on every floor.
     """
-    from underfoot.places.choice import chosen
+    from underfoot.places.choice import choose_shoe
     from underfoot.places.place import read_place
 
     told = read_place(place)
-    shared.answer(told.name, lambda progress: chosen(told, quick=shared.quick, progress=progress))
+    shared.answer(
+        told.name, lambda progress: choose_shoe(told, quick=shared.quick, progress=progress)
+    )
 
 
 @sharing(without=("quick", "set_", "processes", "catalogue"))
@@ -86,10 +88,10 @@ def calibrate_machine(
     from underfoot.core import InputError
     from underfoot.places.calibration import calibrated_floor
 
-    from .options import loaded
+    from .options import load_case
 
     if out.exists() and not shared.overwrite:
         raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
-    told = calibrated_floor(loaded(case, None, None), name, reading, kind=kind, fluid=fluid)
+    told = calibrated_floor(load_case(case, None, None), name, reading, kind=kind, fluid=fluid)
     told.draws.write(out)
     shared.answer(told.heading(), lambda _: told)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, loaded
+from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, load_case
 
 if TYPE_CHECKING:
     from underfoot.calibrate.stribeck_curve import StribeckCurve
@@ -53,7 +53,7 @@ def stribeck(
         raise InputError(f"{slowest} to {fastest}", where="--slowest", allowed="above 0, rising")
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
-    given = loaded(case, catalogue, settings)
+    given = load_case(case, catalogue, settings)
     if law is not None:
         given = given.replace("friction.model", law)
     load = to_si(pressure, "Pa", where="--pressure")

@@ -9,14 +9,14 @@ import typer
 
 from underfoot.core import InputError
 
-from .guard import guarded, say
+from .guard import guard_command, say
 from .options import AsJson, OutFolder, Overwrite, Quick, ShowAll
 from .output import print_table, show
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from underfoot.studies import StudyResult
+    from underfoot.studies import PublishedStudyResult
 
 studies_app = typer.Typer(
     name="studies",
@@ -92,7 +92,7 @@ def run_study(
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
     chosen = None if everything else study(name)
-    results: list[StudyResult]
+    results: list[PublishedStudyResult]
     try:
         with bar(name) as progress:
             options = Options(quick, processes, 0, settings, progress)
@@ -184,7 +184,7 @@ def _settings(
 
 
 def _deliver(
-    results: Sequence[StudyResult],
+    results: Sequence[PublishedStudyResult],
     out: Path | None,
     *,
     everything: bool,
@@ -229,7 +229,7 @@ def _print_json(content: Any) -> None:
     print(json_text.dumps(content, indent=2, ensure_ascii=False))
 
 
-def _show_headline(results: Sequence[StudyResult]) -> None:
+def _show_headline(results: Sequence[PublishedStudyResult]) -> None:
     from underfoot.core.presentation import Table
     from underfoot.studies import Verdict, headline
 
@@ -240,7 +240,7 @@ def _show_headline(results: Sequence[StudyResult]) -> None:
             say(f"{result.study.name} failed: {result.error}")
 
 
-studies_app.command("list")(guarded(list_studies))
-studies_app.command("run")(guarded(run_study))
-studies_app.command("summary")(guarded(summarise))
-studies_app.command("errata")(guarded(errata))
+studies_app.command("list")(guard_command(list_studies))
+studies_app.command("run")(guard_command(run_study))
+studies_app.command("summary")(guard_command(summarise))
+studies_app.command("errata")(guard_command(errata))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .guard import guarded, say
+from .guard import guard_command, say
 from .options import AsJson, On, Overwrite, ShowAll, Workers, optional
 from .output import finish, print_table
 
@@ -196,9 +196,9 @@ def export(
     overwrite: Overwrite = False,
 ) -> None:
     """Write the table of all cases, and of the best designs case files and soles as STEP."""
-    from underfoot.explore.export import exported
+    from underfoot.explore.export import export_designs
 
-    for line in exported(_study(study, out), to, count=count, step=step, overwrite=overwrite):
+    for line in export_designs(_study(study, out), to, count=count, step=step, overwrite=overwrite):
         say(line)
     print(f"Files in {to}")
 
@@ -242,4 +242,4 @@ def posterior(
 
 
 for command in (check, run, work, stop, status, live, report, best, export):
-    study_app.command()(guarded(command))
+    study_app.command()(guard_command(command))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .guard import say
-from .options import AsJson, CasePath, CatalogueFolders, Overwrite, catalogue_for, loaded
+from .options import AsJson, CasePath, CatalogueFolders, Overwrite, catalogue_for, load_case
 from .output import print_table
 
 
@@ -122,7 +122,7 @@ def migrate(
     catalogue: CatalogueFolders = None,
 ) -> None:
     """Write a case file in the present version of the format; comments are kept."""
-    read = loaded(case, catalogue, None)
+    read = load_case(case, catalogue, None)
     if read.to_toml() == case.read_text(encoding="utf-8") and out is None:
         print(f"{case} is up to date")
         return

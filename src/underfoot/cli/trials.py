@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .groups import Group
-from .guard import guarded, say
+from .guard import guard_command, say
 from .options import AsJson, Overwrite, PlateFrame, RampAngle, optional
 from .trials_analyse import analyse, persons
 from .trials_bundle import bundle
@@ -104,4 +104,4 @@ for command in (
     persons,
     plan,
 ):
-    trials_app.command()(guarded(command))
+    trials_app.command()(guard_command(command))

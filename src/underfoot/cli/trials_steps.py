@@ -120,8 +120,8 @@ def export(
 ) -> None:
     """Write a recording as C3D with the contacts found as events, or as TRC or MOT of OpenSim."""
     from underfoot.core import InputError
-    from underfoot.trials.readers import Profile, read_profile, read_trial
-    from underfoot.trials.recording.trial import joined
+    from underfoot.trials.readers import TrialsProfile, read_profile, read_trial
+    from underfoot.trials.recording.trial import join_trials
     from underfoot.trials.study.export import c3d_with_events, mot_text, trc_text
     from underfoot.trials.walking.events import stances
     from underfoot.trials.walking.walkway import walkway_of
@@ -132,10 +132,10 @@ def export(
     if kind not in (".c3d", ".trc", ".mot", ".sto"):
         raise InputError(f'"{out.suffix}" is no format of an export', where="--out",
                          allowed=".c3d, .trc, .mot, .sto")  # fmt: skip
-    read = read_profile(profile) if profile else Profile()
+    read = read_profile(profile) if profile else TrialsProfile()
     trial = read_trial(file, read)
     if companion is not None:
-        trial = joined(trial, read_trial(companion, read))
+        trial = join_trials(trial, read_trial(companion, read))
     if kind != ".c3d":
         made = trc_text(trial) if kind == ".trc" else mot_text(trial)
         out.write_text(made, encoding="utf-8")

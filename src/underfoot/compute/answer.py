@@ -6,8 +6,8 @@ from typing import Any
 
 from underfoot.case import assumptions
 from underfoot.core import Breach, Provenance, Status
-from underfoot.core.fields import Fields, labelled
-from underfoot.core.remark import Remark, joined, remarks
+from underfoot.core.fields import Fields, labelled_fields
+from underfoot.core.remark import Remark, join_lines, remarks
 from underfoot.film import NewtonianFilm
 
 from . import numbers
@@ -15,7 +15,7 @@ from .histories import history_fields
 from .pictured import pictured_fields
 from .position_draws import TreadPositions
 from .prepare import Prepared, case_hash, object_texts
-from .read import Reading
+from .read import ResultNumbers
 from .result import Result
 from .sole import compression_breaches, forefoot_breaches, outsole_notes, tread_breaches
 from .solve import Solution
@@ -30,7 +30,7 @@ def answer(
     parts: Prepared,
     solution: Solution,
     positions: TreadPositions | None,
-    reading: Reading,
+    reading: ResultNumbers,
     timings: Mapping[str, float],
 ) -> Result:
     """Return the result of a case."""
@@ -41,7 +41,7 @@ def answer(
     objects = object_texts(parts.objects)
     labels = dict(reading.labels)
     if objects:
-        labels["objects"] = joined(Remark.of(slot, text) for slot, text in objects.items())
+        labels["objects"] = join_lines(Remark.of(slot, text) for slot, text in objects.items())
     risk = reading.risk
     return Result(
         name=case.name,
@@ -68,7 +68,7 @@ def answer(
     )
 
 
-def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Breach | str]:
+def _breaches(parts: Prepared, solution: Solution, reading: ResultNumbers) -> list[Breach | str]:
     """Return what left the range on which it was tested."""
     case, contact, speed = parts.case, solution.contact, parts.case.motion.speed
     return [
@@ -89,7 +89,10 @@ def _breaches(parts: Prepared, solution: Solution, reading: Reading) -> list[Bre
 
 
 def _provenance(
-    parts: Prepared, reading: Reading, objects: Mapping[str, str], timings: Mapping[str, float]
+    parts: Prepared,
+    reading: ResultNumbers,
+    objects: Mapping[str, str],
+    timings: Mapping[str, float],
 ) -> Provenance:
     case, modulus = parts.case, parts.context.modulus
     cited = (parts.law, parts.asperities, modulus, reading.values["slip_probability"])
@@ -129,7 +132,7 @@ def _unique(*texts: Iterable[str]) -> tuple[str, ...]:
 
 
 def _fields(
-    parts: Prepared, solution: Solution, positions: TreadPositions | None, reading: Reading
+    parts: Prepared, solution: Solution, positions: TreadPositions | None, reading: ResultNumbers
 ) -> Fields:
     """Return maps, histories and draws with their axes."""
     sole, contact, sampled = parts.sole, solution.contact, reading.sampled
@@ -144,7 +147,7 @@ def _fields(
     if sampled is not None:
         drawn = {"units": "1", "long_name": "draws of COF"}
         variables["cof_draws"] = ("draw", sampled.cof, drawn)
-    data = labelled(
+    data = labelled_fields(
         {
             **_sole_maps(parts, solution),
             "sensor_pressure": (

@@ -16,7 +16,7 @@ from underfoot.core.remark import Remark
 from underfoot.sole_contact.cost import Cost, megabytes
 
 from .positions import run_cost
-from .resolve import resolved
+from .resolve import resolve_context
 from .sole import outsole_notes
 from .summary import in_words, ranked_assumptions
 
@@ -100,7 +100,7 @@ def case_check(case: Case) -> CaseCheck:
     """Return what is known of a case before it is computed."""
     breaches, refusal = [*tested_range_breaches(case)], ""
     try:
-        context = resolved(case)
+        context = resolve_context(case)
         if not case.value("rough_contact.file"):  # a check computes no contact
             context = replace(context, rough_contact=lambda _: None)
         breaches += [breach.remark for breach in context.modulus_breaches]

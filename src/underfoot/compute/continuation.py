@@ -28,9 +28,9 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import ContactFriction, contact_friction
 from .position_draws import COF_PARTS, LOADS
-from .positions import place_numbers, treaded
-from .prepare import Prepared, prepared
-from .solve import continued, film_spreads, law_without, solved_motion, stated_effects
+from .positions import has_lugs, place_numbers
+from .prepare import Prepared, prepare_case
+from .solve import continue_contact, film_spreads, law_without, solved_motion, stated_effects
 from .stated_spreads import StatedEffects
 
 SAFETY, SHARE = 2.0, 0.1
@@ -105,7 +105,7 @@ class Continuation:
         self.case = case
         numerics = case.numerics
         self.spacing = numerics.quick_grid_spacing if quick else numerics.grid_spacing
-        self._parts = prepared(case, self.spacing)
+        self._parts = prepare_case(case, self.spacing)
         self.contact = solved_motion(self._parts, progress=progress)
         if not self.contact.status.usable:
             raise ConvergenceError(
@@ -205,7 +205,7 @@ class Continuation:
     def _steps(self, case: Case) -> tuple[Prepared, SoleContact, SoleContact]:
         """Return the contact after one step and after two, on the grid of the march."""
         angle, speed = self.case.motion.shoe_angle, self.case.motion.speed
-        if (case.motion.shoe_angle, case.motion.speed) != (angle, speed) and not treaded(case):
+        if (case.motion.shoe_angle, case.motion.speed) != (angle, speed) and not has_lugs(case):
             raise InputError(
                 "the shoe angle or the speed of a sole without lugs changes",
                 where="continued",
@@ -223,7 +223,7 @@ class Continuation:
                 allowed="fluid, speed, load, angle, wear, hardness, roughness",
                 remedy="Run the changed case",
             )
-        first, second = continued(self.contact, parts, turn=case.motion.shoe_angle - angle)
+        first, second = continue_contact(self.contact, parts, turn=case.motion.shoe_angle - angle)
         return parts, first, second
 
 
@@ -258,4 +258,6 @@ def _refuse_history(case: Case) -> None:
 def _changed(parts: Prepared, case: Case) -> Prepared:
     """Return another case on the same grid; sole and compliance stay where nothing makes others."""
     same = all(getattr(case, name) == getattr(parts.case, name) for name in _OF_THE_SOLE)
-    return prepared(case, parts.spacing, geometry=(parts.sole, parts.compliance) if same else None)
+    return prepare_case(
+        case, parts.spacing, geometry=(parts.sole, parts.compliance) if same else None
+    )

@@ -18,7 +18,7 @@ from underfoot.sole_contact.solver import SoleContact
 
 from .contact_friction import friction_sums
 from .numbers import contact_area
-from .sensors import scanned
+from .sensors import scan_reading
 
 READ_STEPS = 24
 """Instants, spread over the time steps, at which the scans are read for a history."""
@@ -79,7 +79,7 @@ class Recorder:
             self.sensor_load.append(math.nan)
             self.sensor_peak.append(math.nan)
         else:
-            read = scanned(
+            read = scan_reading(
                 self.case, self.sole, state, viscosity=self.viscosity, offsets=READ_OFFSETS
             )
             self.sensor_load.append(read.load.value or 0.0)

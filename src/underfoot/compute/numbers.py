@@ -11,7 +11,7 @@ from underfoot.case import Case
 from underfoot.case.quantity import one_spelling
 from underfoot.core import Breach, SourcedValue, Status, content_hash, display
 from underfoot.core.arrays import Array
-from underfoot.core.remark import NOTHING, Amount, Message, joined
+from underfoot.core.remark import NOTHING, Amount, Message, join_lines
 from underfoot.film import SHARE_LIMITS, Lubrication, lubrication_by_load_share
 from underfoot.friction import FrictionCoefficients, SampledCof
 from underfoot.slip import RcofPopulation, SlipModel, SlipRisk, slip_risk
@@ -20,7 +20,7 @@ from underfoot.sole_contact.sole_state import FAINT, SoleState
 from underfoot.sole_contact.solver import SoleContact
 
 from .sole import file_outsole
-from .stated_spreads import ODDS, WHOLE, added
+from .stated_spreads import ODDS, WHOLE, sum_of_draws
 
 _NOT_ESTIMATED = "heel shape and interface roughness dominate; their spread is not propagated"
 UNKNOWN_SPREAD = ("contact_area", "minimum_film_thickness")
@@ -141,8 +141,8 @@ def with_film_spread(
         return dict(values)
     loads = load if drawn is None else drawn("fluid_load", film_odds.size)
     share = np.minimum(np.asarray(loads) / whole, 1.0)
-    factors = 1 / (share + (1 - share) * np.exp(-film_odds - added(stated, ODDS)))
-    most = whole * np.exp(added(stated, WHOLE))
+    factors = 1 / (share + (1 - share) * np.exp(-film_odds - sum_of_draws(stated, ODDS)))
+    most = whole * np.exp(sum_of_draws(stated, WHOLE))
     result = dict(values)
     for name in GRID_NAMES[1:]:
         value = values[name].value
@@ -152,7 +152,11 @@ def with_film_spread(
         if name == "fluid_load":
             draws = np.minimum(draws * (most / whole), most)
         else:
-            beside = added(stated, name) - added(stated, "fluid_load") + added(stated, WHOLE)
+            beside = (
+                sum_of_draws(stated, name)
+                - sum_of_draws(stated, "fluid_load")
+                + sum_of_draws(stated, WHOLE)
+            )
             draws = draws * np.exp(beside)
         low, high = (float(end) for end in np.quantile(draws, [0.025, 0.975]))
         known = values[name].uncertainty or 0.0
@@ -179,7 +183,7 @@ def with_stated(
     """
     result = dict(values)
     for name in UNKNOWN_SPREAD:
-        value, draws = values[name], added(stated, name)
+        value, draws = values[name], sum_of_draws(stated, name)
         if value.value and np.std(draws) > 0:
             off = display(float(np.std(value.value * np.exp(draws))), value.unit)
             words = f"± {off} by what the case states"
@@ -228,7 +232,7 @@ def slip_probability(
     probability = replace(
         risk.probability,
         assumed=risk.probability.assumed or mean.assumed or spread.assumed,
-        note=joined(
+        note=join_lines(
             Message(
                 "extrapolated: {quantity} = {value:.3f} is outside the tested {low:g} to {high:g}",
                 quantity=breach.quantity,
@@ -242,7 +246,7 @@ def slip_probability(
     return probability, risk
 
 
-def undetermined(case: Case, status: Status) -> dict[str, SourcedValue]:
+def undetermined_numbers(case: Case, status: Status) -> dict[str, SourcedValue]:
     """Return the same names without numbers: what a computation that failed may show."""
     units = {
         "fluid_load": "N",

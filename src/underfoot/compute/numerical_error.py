@@ -19,14 +19,14 @@ from .position_draws import (
     COF_PARTS,
     LOADS,
     ON_CONTACT,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     log_film_odds,
 )
 from .positions import CLOSEST, RATES, remembers
 from .prepare import Prepared
-from .sensors import scanned
+from .sensors import scan_reading
 from .sole import RESOLVED, cells_along, tread_on_sole
 from .solve import Solution, solved_at
 
@@ -258,10 +258,10 @@ def _compared(
 ) -> NumericalErrors | str:
     """Return the differences of ``numbers`` to the quick grid, and by its steps in time."""
     spacing = parts.case.numerics.quick_grid_spacing
-    here, contact = solved_at(parts, Place(), spacing, progress=progress)
+    here, contact = solved_at(parts, TreadPlace(), spacing, progress=progress)
     contacts = [contact]
     if parts.viscosity is not None:  # a dry contact has no memory
-        contacts.append(solved_at(parts, Place(finer=2), spacing, progress=progress)[1])
+        contacts.append(solved_at(parts, TreadPlace(finer=2), spacing, progress=progress)[1])
     cells = _cells(parts, cells_along(parts.case, here.sole))
     if not all(each.status.usable for each in contacts):
         return Message("not estimated: a march on {cells} did not converge", cells=cells)
@@ -279,7 +279,7 @@ def _cells(parts: Prepared, columns: int) -> str:
 
 def _read(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     friction = friction_sums(parts.local_law, contact, parts.case.motion.speed)
-    sensor = scanned(parts.case, parts.sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(parts.case, parts.sole, contact, viscosity=parts.viscosity)
     return readings(contact, friction.cof.value or 0.0, sensor)
 
 

@@ -37,7 +37,7 @@ def log_film_odds(film: Array | float, contact: Array | float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class TreadPlace:
     """Where a tread lies: its pattern shifted by (x, y), m, and turned by ``yaw``, rad.
 
     ``turn``, rad, is added to the shoe angle; ``finer``: how many times the steps in time.
@@ -110,7 +110,7 @@ class TreadPositions:
     held: ClassVar[str] = "position of the tread"
     several: ClassVar[str] = "positions of the tread"
 
-    places: tuple[Place, ...]
+    places: tuple[TreadPlace, ...]
     values: Mapping[str, Array]
     left_out: int
     at_own_place: Mapping[str, float]

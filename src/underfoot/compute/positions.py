@@ -22,14 +22,14 @@ from .position_draws import (
     COF_PARTS,
     LOADS,
     ON_CONTACT,
-    Place,
     ShoeAngles,
+    TreadPlace,
     TreadPositions,
     UncertainBevel,
     log_film_odds,
 )
 from .prepare import Prepared
-from .sensors import scanned
+from .sensors import scan_reading
 from .sole import bottom_surface, file_surface, landing_front, tread_on_sole
 from .steadiness import later_numbers
 
@@ -60,28 +60,28 @@ RATES = {1: 1.0, 2: 0.75}
 the place (docs/physics/coupled_contact.md)."""
 
 
-def further_angles(case: Case) -> tuple[Place, ...]:
+def further_angles(case: Case) -> tuple[TreadPlace, ...]:
     """Return the angles beyond ``shoe_angles`` that the interval of a case without lugs needs.
 
     One to each side, as far as the angle of its bevel may go; none where that counts as exact.
     """
-    bevel = None if treaded(case) else UncertainBevel.of(case)
+    bevel = None if has_lugs(case) else UncertainBevel.of(case)
     if bevel is None:
         return ()
-    return Place(turn=FURTHER * bevel.deviation), Place(turn=-FURTHER * bevel.deviation)
+    return TreadPlace(turn=FURTHER * bevel.deviation), TreadPlace(turn=-FURTHER * bevel.deviation)
 
 
-def shoe_angles() -> tuple[Place, ...]:
+def shoe_angles() -> tuple[TreadPlace, ...]:
     """Return the case's own shoe angle and one on each side, of the variance of ``ANGLE_BAND``."""
     turn = ANGLE_BAND / math.sqrt(2)
-    return Place(), Place(turn=turn), Place(turn=-turn)
+    return TreadPlace(), TreadPlace(turn=turn), TreadPlace(turn=-turn)
 
 
-TURNED = (Place(turn=ANGLE_DEVIATION), Place(turn=-ANGLE_DEVIATION))
+TURNED = (TreadPlace(turn=ANGLE_DEVIATION), TreadPlace(turn=-ANGLE_DEVIATION))
 """The shoe turned toe up and toe down, the tread as it lies."""
 
 
-def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Place, ...]:
+def places(periods: Array, count: int, begin: Array | None = None) -> tuple[TreadPlace, ...]:
     """Return ``count`` places of a pattern with the periods (n, 2), m.
 
     The first at ``begin``, shares (n,) of the periods; at rest without. Even along the first period
@@ -93,7 +93,7 @@ def places(periods: Array, count: int, begin: Array | None = None) -> tuple[Plac
     periods, at = np.asarray(periods, dtype=float), np.arange(count)
     shares = np.column_stack([at, at * _step(periods, count)])[:, : len(periods)] / count
     shares = np.mod(shares + (0.0 if begin is None else begin), 1)
-    return tuple(Place((float(x), float(y))) for x, y in shares @ periods)
+    return tuple(TreadPlace((float(x), float(y))) for x, y in shares @ periods)
 
 
 def _step(periods: Array, count: int) -> int:
@@ -107,7 +107,7 @@ def _step(periods: Array, count: int) -> int:
     return 1 + int(np.argmax(met))
 
 
-def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
+def case_places(case: Case, *, quick: bool) -> tuple[TreadPlace, ...]:
     """Return the places of a run of a treaded sole.
 
     The pattern begins at the front of what lands first, where the teeth of its film lie: so all
@@ -124,7 +124,7 @@ def case_places(case: Case, *, quick: bool) -> tuple[Place, ...]:
     lie = places(ahead, position_count(case, quick=quick), origin @ np.linalg.pinv(ahead))
     signs = (1, -1, -1, 1)
     return tuple(
-        Place((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
+        TreadPlace((place.shift[0], hand * place.shift[1]), yaw=hand * signs[k % 4] * YAW)
         for k, place in enumerate(lie)
     )
 
@@ -143,9 +143,9 @@ def _reduced(periods: Array) -> Array:
 
 def tread_positions(
     case: Case,
-    known: Mapping[Place, Mapping[str, float]],
+    known: Mapping[TreadPlace, Mapping[str, float]],
     at_places: Callable[
-        [Sequence[tuple[Place, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
+        [Sequence[tuple[TreadPlace, float]]], Iterator[tuple[int, Mapping[str, float] | None]]
     ],
     *,
     spacing: float,
@@ -155,7 +155,7 @@ def tread_positions(
 
     All places are solved on the quick grid, every other one, of shoe angles the own, on the grid of
     the run too. The ratio of the means on both takes all to the grid of the run, and under lugs on
-    to that of ``FINEST``, where numbers move by the first order of the cells (``carried``).
+    to that of ``FINEST``, where numbers move by the first order of the cells (``carry_to_finer``).
     What the angle adds under a tread is half the difference of the shoe turned up and down, at the
     case's own position. A motion that ends is solved at the first place on the quick grid with
     twice the steps in time too.
@@ -165,7 +165,7 @@ def tread_positions(
     each on a grid (m), and gives the index of each with its numbers as they end, None where a
     contact did not converge.
     """
-    lugs, own = treaded(case), known[Place()]
+    lugs, own = has_lugs(case), known[TreadPlace()]
     all_places, on_run_grid, coarse = _places_on_grids(case, spacing, quick=quick)
     angles = TURNED * lugs
     asked = [(place, spacing) for place in (*on_run_grid, *angles) if place not in known]
@@ -179,16 +179,16 @@ def tread_positions(
     at |= {one: numbers for k, one in enumerate(asked) if (numbers := ended[k]) is not None}
     pairs = [p for p in on_run_grid if (p, spacing) in at and (p, coarse) in at]
     if not pairs:  # nothing compares the grids
-        pairs = [place for place in on_run_grid if (place, spacing) in at] or [Place()]
+        pairs = [place for place in on_run_grid if (place, spacing) in at] or [TreadPlace()]
         coarse = spacing
-    answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {Place(): own}
+    answers = {p: at[p, coarse] for p in all_places if (p, coarse) in at} or {TreadPlace(): own}
     failed = {*all_places} - {*answers} | {p for p in on_run_grid if (p, spacing) not in at}
     each = _arrays(own, answers.values())
     before, after = (_arrays(own, [at[p, h] for p in pairs]) for h in (coarse, spacing))
     compared = coarse > spacing
     onward = max(spacing - FINEST, 0.0) / (coarse - spacing) if lugs and compared else 0.0
     rate = RATES[len(tread_on_sole(case)[0])] if lugs else 1.0
-    values, near = (carried(each, before, after, order) for order in (onward, 0.0))
+    values, near = (carry_to_finer(each, before, after, order) for order in (onward, 0.0))
     # of a flat sole the first order of the cells, as the quick grid and that of a run tell it
     onto = 1 + onward if lugs else USUAL_STEP * spacing / (coarse - spacing) if compared else 0.0
     between = {}
@@ -207,7 +207,7 @@ def tread_positions(
         by_film = float(odds[0] - odds[1]) / 2
     if not all((place, coarse) in at for place in further):
         further = ()
-    beyond = carried(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
+    beyond = carry_to_finer(_arrays(own, [at[p, coarse] for p in further]), before, after, onward)
     bevel_known = by_angle if lugs else further
     return (TreadPositions if lugs else ShoeAngles)(
         tuple(answers),
@@ -231,7 +231,7 @@ def _arrays(names: Iterable[str], numbers: Iterable[Mapping[str, float]]) -> dic
     return {name: np.array([each[name] for each in listed]) for name in names}
 
 
-def carried(
+def carry_to_finer(
     each: Mapping[str, Array], coarse: Mapping[str, Array], fine: Mapping[str, Array], onward: float
 ) -> dict[str, Array]:
     """Return numbers (n,) of a coarse grid on a finer one by name, by some of both (m,).
@@ -285,10 +285,10 @@ def _hand(case: Case) -> int:
 
 def _places_on_grids(
     case: Case, spacing: float, *, quick: bool
-) -> tuple[tuple[Place, ...], tuple[Place, ...], float]:
+) -> tuple[tuple[TreadPlace, ...], tuple[TreadPlace, ...], float]:
     """Return the places of a run, those that the grid of the run solves, and that of all, m."""
     coarse = case.numerics.quick_grid_spacing
-    if treaded(case):
+    if has_lugs(case):
         all_places = case_places(case, quick=quick)
         if quick or coarse < CLOSEST * spacing:
             return all_places, all_places, spacing
@@ -306,12 +306,12 @@ def position_count(case: Case, *, quick: bool) -> int:
     count = case.numerics.tread_positions
     if count == 1:
         return 1
-    if not treaded(case):
+    if not has_lugs(case):
         return len(shoe_angles())
     return math.ceil(count / 2) if quick else count
 
 
-def treaded(case: Case) -> bool:
+def has_lugs(case: Case) -> bool:
     """Return whether the sole of a case has lugs."""
     if case.shoe.outsole is None:
         return _tread(case) is not None
@@ -325,7 +325,7 @@ def remembers(case: Case) -> bool:
 
 def first_share(case: Case, *, quick: bool) -> float:
     """Return the share of a run's work that its march at the case's own place takes."""
-    count, lugs, numerics = position_count(case, quick=quick), treaded(case), case.numerics
+    count, lugs, numerics = position_count(case, quick=quick), has_lugs(case), case.numerics
     if count == 1:
         return 1.0
     share = numerics.grid_spacing / numerics.quick_grid_spacing
@@ -344,7 +344,7 @@ def run_cost(case: Case, *, quick: bool) -> Cost:
     """Return what a run will take, all places together."""
     numerics = case.numerics
     one = cost(case, numerics.quick_grid_spacing if quick else numerics.grid_spacing)
-    times = (1.0 if treaded(case) else WITHOUT_LUGS) / first_share(case, quick=quick)
+    times = (1.0 if has_lugs(case) else WITHOUT_LUGS) / first_share(case, quick=quick)
     low, high = (seconds * times for seconds in one.seconds)
     return replace(one, seconds=(low, high))
 
@@ -358,7 +358,7 @@ def place_numbers(parts: Prepared, contact: SoleContact) -> dict[str, float]:
     """Return the numbers of a result that depend on where the tread lies."""
     case, sole = parts.case, parts.sole
     friction = friction_sums(parts.local_law, contact, case.motion.speed)
-    sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(case, sole, contact, viscosity=parts.viscosity)
     numbers, _ = scalars(case, contact, friction, sensor)
     numbers |= later_numbers(parts, contact)
     values = {

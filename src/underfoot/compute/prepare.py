@@ -22,7 +22,7 @@ from underfoot.sole_contact.compliance import Compliance
 from underfoot.sole_contact.lug_edges import EdgedLaw, lug_edges
 
 from .contact_friction import of_known_class, with_known_tread
-from .resolve import resolved, turned
+from .resolve import resolve_context, turn_context
 from .sole import sole_map
 
 PROTOCOLS: Mapping[str, type] = {
@@ -76,7 +76,7 @@ class Prepared:
         """
         compliance = self.compliance
         if sole is not None and "compliance" not in self.objects:
-            context = turned(self.context, turn)
+            context = turn_context(self.context, turn)
             compliance = self.case.compliance.rebuilt(self.compliance, context, sole)
         sole = self.sole if sole is None else sole
         asperities = self.asperities if asperities is None else asperities
@@ -91,7 +91,7 @@ class Prepared:
         )
 
 
-def prepared(
+def prepare_case(
     case: Case,
     spacing: float,
     objects: Mapping[str, Any] | None = None,
@@ -106,7 +106,7 @@ def prepared(
         geometry: Sole and compliance, where they are known already.
     """
     objects = dict(objects or {})
-    context = resolved(case, progress)
+    context = resolve_context(case, progress)
 
     def chosen(slot: str, build: Callable[[], Any]) -> Any:
         return objects[slot] if slot in objects else with_members(slot, build(), f"{slot}.model")

@@ -29,7 +29,7 @@ from .summary import FILM_MATTERS
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class ResultNumbers:
     """The numbers of a result, and what is to be said of them.
 
     Attributes:
@@ -54,7 +54,7 @@ def readings(
     *,
     quick: bool,
     progress: Progress = silent,
-) -> Reading:
+) -> ResultNumbers:
     """Return the numbers of a solved case, as means over the positions of its tread.
 
     Raises:
@@ -63,9 +63,9 @@ def readings(
     case, contact = parts.case, solution.contact
     overload = overload_breaches(contact, parts.context.youngs_modulus)
     if not contact.status.usable:
-        nothing = numbers.undetermined(case, contact.status)
+        nothing = numbers.undetermined_numbers(case, contact.status)
         labels: dict[str, str] = {"no_result": numbers.no_result_words(contact, overload)}
-        return Reading(nothing, labels, solution.friction.sampled, overload)
+        return ResultNumbers(nothing, labels, solution.friction.sampled, overload)
     friction, sampled = solution.friction.sums, solution.friction.sampled
     if positions:
         friction, sampled = positions.friction(friction, sampled)
@@ -118,7 +118,7 @@ def readings(
     if overload:
         reason = "not resolved: pressures above the modulus of the rubber, which gives way"
         values["peak_fluid_pressure"] = SourcedValue(None, "Pa", reason=reason)
-    return Reading(values, labels, sampled, overload, risk, drainage)
+    return ResultNumbers(values, labels, sampled, overload, risk, drainage)
 
 
 def _remarks(parts: Prepared, solution: Solution, more: dict[str, str]) -> dict[str, str]:

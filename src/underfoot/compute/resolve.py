@@ -7,14 +7,14 @@ from underfoot.case import Case
 from underfoot.case.contact import HARDNESS_SPREAD
 from underfoot.case.context import Context
 from underfoot.case.surfaces import STYLUS_WAVES
-from underfoot.core import Breach, Progress, Range, SourcedValue, breaches, silent
+from underfoot.core import Breach, Progress, SourcedValue, ValidityRange, breaches, silent
 from underfoot.material import shore_a_gent
 
 SOFTEST = 0.16e6
 """Pa, Young's modulus of Shore A 0 (Gent)."""
 
 
-def resolved(case: Case, progress: Progress = silent) -> Context:
+def resolve_context(case: Case, progress: Progress = silent) -> Context:
     """Return what the options of a case are built from."""
     modulus, beyond = youngs_modulus(case)
     surfaces = case.shoe.roughness, case.floor.roughness
@@ -42,7 +42,7 @@ def _untested_rates(case: Case) -> list[Breach]:
     material, waves = case.shoe.material, (STYLUS_WAVES[1], STYLUS_WAVES[0])
     if material.relaxation is None or material.fastest_tested is None:
         return []
-    tested = Range(
+    tested = ValidityRange(
         material.slowest_tested or 0.0, material.fastest_tested, "rad/s", "test of the compound"
     )
     rates = [2 * math.pi * abs(case.motion.speed) / wave for wave in waves]
@@ -55,11 +55,13 @@ def _soft_floor(case: Case, modulus: SourcedValue) -> list[Breach]:
         return []
     least = modulus.value * (1 / HARDNESS_SPREAD - 1)  # of the floor: E E_f / (E + E_f) is 0.7 E
     softest = float(shore_a_gent(max(least, SOFTEST)))
-    rigid = Range(softest, 100.0, "1", "a rigid floor: it softens the contact by less than 30 %")
+    rigid = ValidityRange(
+        softest, 100.0, "1", "a rigid floor: it softens the contact by less than 30 %"
+    )
     return breaches("floor", {"Shore A": rigid}, {"Shore A": case.floor.shore_a})
 
 
-def turned(context: Context, turn: float) -> Context:
+def turn_context(context: Context, turn: float) -> Context:
     """Return the context with ``turn`` (rad) added to the shoe angle."""
     angle = {"shoe_angle": context.motion.shoe_angle + turn}
     return replace(context, motion=context.motion.model_copy(update=angle))

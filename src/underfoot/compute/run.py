@@ -15,10 +15,10 @@ from underfoot.sole_contact.cost import refuse_too_large
 from .answer import answer
 from .cost import cost
 from .positions import first_share, run_cost
-from .prepare import case_and_objects, prepared
+from .prepare import case_and_objects, prepare_case
 from .read import readings
 from .result import Result
-from .solve import averaged, solved
+from .solve import average_positions, solve_case
 
 LONG = 5.0
 """s, at least, of a run whose positions are worth the start of processes of their own."""
@@ -65,15 +65,15 @@ def run(
     spacing, most = case.value(grid), case.numerics.most_memory
     expected = cost(case, spacing)
     refuse_too_large(expected, most_memory=most, where=grid, spacing=spacing)
-    parts = prepared(case, spacing, given, progress=progress)
+    parts = prepare_case(case, spacing, given, progress=progress)
     moments.append(time.perf_counter())
     first = first_share(case, quick=quick)
     if processes is None and run_cost(case, quick=quick).seconds[0] < LONG:
         processes = 1
     beside = min(workers(processes), max(int(most / expected.memory), 1))
-    solution = solved(parts, part(progress, 0.0, first), processes=beside)
+    solution = solve_case(parts, part(progress, 0.0, first), processes=beside)
     rest = part(progress, first, 1.0)
-    positions = averaged(parts, solution, quick=quick, processes=beside, progress=rest)
+    positions = average_positions(parts, solution, quick=quick, processes=beside, progress=rest)
     moments.append(time.perf_counter())
     reading = readings(parts, solution, positions, quick=quick, progress=progress)
     moments.append(time.perf_counter())

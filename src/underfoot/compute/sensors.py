@@ -12,7 +12,7 @@ FILM_WORTH_SEEING = 0.01
 """Share of the load on the film below which no caution about the sensor is given."""
 
 
-def scanned(
+def scan_reading(
     case: Case, sole: SoleMap, state: SoleState, *, viscosity: float | None, offsets: int = 11
 ) -> SensorReading:
     """Return what the scans of the case read under one state."""

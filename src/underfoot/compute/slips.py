@@ -22,7 +22,7 @@ from underfoot.sole_contact.lug_edges import EdgedLaw
 from underfoot.sole_contact.sole_state import SolverSettings
 
 from .numbers import required_friction
-from .prepare import prepared
+from .prepare import prepare_case
 from .solve import pool_depth, start_film
 
 WIDE = 3.0
@@ -35,7 +35,7 @@ def slip_setting(case: Case, *, quick: bool = True) -> Setting:
     ``quick`` takes the coarse grid: a slip is some hundred contacts.
     """
     spacing = case.numerics.quick_grid_spacing if quick else case.numerics.grid_spacing
-    parts, strangers = prepared(case, spacing), case.model_copy(update={"slip": Walkers()})
+    parts, strangers = prepare_case(case, spacing), case.model_copy(update={"slip": Walkers()})
     return Setting(
         sole=parts.sole,
         compliance=parts.compliance,

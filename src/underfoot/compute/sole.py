@@ -15,14 +15,14 @@ from pydantic import Field, ValidationError
 from underfoot import shoe
 from underfoot.case import Case, CaseError, Section
 from underfoot.case.case import with_settings
-from underfoot.case.compose import expanded
+from underfoot.case.compose import expand_sections
 from underfoot.case.context import Context
-from underfoot.case.errors import placed, translated
+from underfoot.case.errors import place_error, translate_errors
 from underfoot.case.quantity import DOOR, Length, default
 from underfoot.case.section import walk
 from underfoot.case.sole import SolePlan, TreadPattern, WholePlan
 from underfoot.case.tables import meant_file
-from underfoot.case.text import Places, parsed, read
+from underfoot.case.text import Places, parse_toml, read_text
 from underfoot.case.wear import ArchardWear
 from underfoot.core import (
     Breach,
@@ -30,7 +30,7 @@ from underfoot.core import (
     ConvergenceError,
     InputError,
     Progress,
-    Range,
+    ValidityRange,
     breaches,
     content_hash,
     display,
@@ -49,7 +49,7 @@ from underfoot.sole_contact.sole_state import SoleState
 from underfoot.sole_contact.solver import SolverSettings, solve_sliding
 from underfoot.sole_contact.stepping import rolled_clearance
 
-from .resolve import resolved, youngs_modulus
+from .resolve import resolve_context, youngs_modulus
 
 if TYPE_CHECKING:
     from underfoot.shoe.files import FileOutsole, FileSettings
@@ -58,10 +58,10 @@ RESOLVED = 8
 """Cells along the sliding in one spacing that hold the inlet of a film at the corner of a sole."""
 BOTTOMED = 0.5
 """Share of the outsole's thickness beyond which the load bottoms it out: refused."""
-LINEAR_STRAIN = Range(0.0, 0.25, "1", "linear elasticity of rubber in compression")
+LINEAR_STRAIN = ValidityRange(0.0, 0.25, "1", "linear elasticity of rubber in compression")
 SUMMITS = 3.0
 """Times Rq: how far summits stand out of the mean plane."""
-FOREFOOT_RIGID = Range(
+FOREFOOT_RIGID = ValidityRange(
     math.radians(-7.5),
     math.radians(60.0),
     "rad",
@@ -115,7 +115,7 @@ def sole_map(
     sole = shoe.heel_map(shape, shoe_angle=angle, spacing=spacing)
     plan = case.shoe.heel
     if isinstance(plan, WholePlan):
-        sole = trimmed(_jointed(case, sole, plan.length), plan.reach, rolls(case))
+        sole = trim_map(_jointed(case, sole, plan.length), plan.reach, rolls(case))
     return _with_cells(
         case,
         _pressed(case, sole),
@@ -211,7 +211,7 @@ def archard_state(case: Case, *, progress: Progress = silent) -> ArchardStep:
     The contact is dry, on the quick grid, at three shoe angles. Every ``WEAR_STEP`` is kept on
     disk, so that a sole worn further goes on from there.
     """
-    context, new, wear = resolved(case), new_sole(case), case.shoe.wear
+    context, new, wear = resolve_context(case), new_sole(case), case.shoe.wear
     if not isinstance(wear, ArchardWear):
         raise InputError(f'mode = "{wear.name}"', where="shoe.wear.mode", allowed="archard")
     spacing = case.numerics.quick_grid_spacing
@@ -404,7 +404,7 @@ def _map_of_surface(case: Case, surface: SoleSurface, spacing: float, angle: flo
     sole = surface_map(surface, shoe_angle=angle, spacing=spacing)
     if surface.length > WHOLE * file_outsole(case).whole_length:
         sole = _jointed(case, sole, surface.length)
-    sole = trimmed(sole, case.shoe.outsole.reach, rolls(case))
+    sole = trim_map(sole, case.shoe.outsole.reach, rolls(case))
     check_load(case, sole)
     return _with_cells(
         case,
@@ -428,7 +428,7 @@ def _pressed(case: Case, sole: SoleMap) -> SoleMap:
     )
 
 
-def trimmed(
+def trim_map(
     sole: SoleMap, reach: float, rolled_by: ArrayLike = 0.0, padding: float = 0.004
 ) -> SoleMap:
     """Return the map without rows and columns that stay more than ``reach`` (m) above the floor.
@@ -520,7 +520,7 @@ def forefoot_breaches(case: Case, sole: SoleMap) -> list[Breach]:
 def tread_breaches(sole: SoleMap, rq: float) -> list[Breach]:
     """Return whether the summits of a roughness of ``rq`` (m) fill the channels of a tread."""
     depth = float(sole.tread_depth.max())
-    deeper = Range(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
+    deeper = ValidityRange(SUMMITS * rq, math.inf, "m", "summits of the rough surfaces, 3 Rq")
     return (
         breaches("tread", {"depth of the channels": deeper}, {"depth of the channels": depth})
         if depth
@@ -568,9 +568,9 @@ def read_outsole(path: Path | str, settings: Mapping[str, Any] | None = None) ->
     Raises:
         CaseError: Everything that is wrong with the file, each with its line.
     """
-    path, text = Path(path), read(Path(path))
+    path, text = Path(path), read_text(Path(path))
     places = Places(str(path), text, changed=settings or ())
-    return outsole_from(parsed(text, str(path)), places, settings)
+    return outsole_from(parse_toml(text, str(path)), places, settings)
 
 
 def outsole_from(
@@ -590,14 +590,14 @@ def outsole_from(
     parts = {key: item for key, item in mapping.items() if key not in plain}
     inside = {f"shoe.{path}": value for path, value in (settings or {}).items()}
     tree = with_settings({"shoe": parts}, inside)["shoe"]
-    tree = {key: expanded(item, f"shoe.{key}") for key, item in tree.items()}
+    tree = {key: expand_sections(item, f"shoe.{key}") for key, item in tree.items()}
     try:
         outsole = Outsole.model_validate({**plain, **tree}, context=DOOR)
     except ValidationError as error:
-        raise CaseError(translated(error, Outsole, tree, places)) from None
+        raise CaseError(translate_errors(error, Outsole, tree, places)) from None
     fine = SimpleNamespace(grid_spacing=0.0, quick_grid_spacing=0.0)  # no grid sets what is small
     view = cast("Any", SimpleNamespace(shoe=outsole, numerics=fine))
     problems = [p for path, part in walk(outsole) for p in part.problems(view, path)]
     if problems:
-        raise CaseError([placed(error, places) for error in problems])
+        raise CaseError([place_error(error, places) for error in problems])
     return outsole

@@ -25,18 +25,18 @@ from underfoot.sole_contact.solver import SoleContact, solve_on, solve_sliding
 from .contact_friction import ContactFriction, contact_friction
 from .histories import Recorder
 from .micro_contact import micro_contact
-from .position_draws import Place, TreadPositions, log_film_odds
+from .position_draws import TreadPlace, TreadPositions, log_film_odds
 from .positions import (
     TURNED,
     case_places,
+    has_lugs,
     place_numbers,
     position_count,
     shoe_angles,
     tread_positions,
-    treaded,
 )
-from .prepare import Prepared, prepared
-from .sensors import scanned
+from .prepare import Prepared, prepare_case
+from .sensors import scan_reading
 from .sole import sole_map
 from .stated_spreads import Numbers, StatedEffects, solved_effects, stated_spreads
 
@@ -76,8 +76,8 @@ class Solution:
     stated: StatedEffects
 
 
-def solved(parts: Prepared, progress: Progress = silent, *, processes: int = 1) -> Solution:
-    """Return the contact of a prepared case; ``processes`` as in ``averaged``.
+def solve_case(parts: Prepared, progress: Progress = silent, *, processes: int = 1) -> Solution:
+    """Return the contact of a prepared case; ``processes`` as in ``average_positions``.
 
     Raises:
         ConvergenceError: Not even the first contact could be solved.
@@ -95,7 +95,7 @@ def solved(parts: Prepared, progress: Progress = silent, *, processes: int = 1) 
     on = case, parts.context, law, sole, contact
     drawn_law = law_without(parts, stated)
     friction = contact_friction(*on, spreads=spreads, stated=stated, drawn_law=drawn_law)
-    sensor = scanned(case, sole, contact, viscosity=parts.viscosity)
+    sensor = scan_reading(case, sole, contact, viscosity=parts.viscosity)
     return Solution(contact, recorder, friction, sensor, spreads, stated)
 
 
@@ -110,16 +110,16 @@ def stated_effects(
     start on the quick grid, as the tread lies at the places of a quick run (``effect_places``).
     """
     steady = parts.case.motion.end_time is None
-    beside = not treaded(parts.case) and parts.case.numerics.tread_positions > 1
-    turns = shoe_angles() if beside else (Place(),)
+    beside = not has_lugs(parts.case) and parts.case.numerics.tread_positions > 1
+    turns = shoe_angles() if beside else (TreadPlace(),)
 
     def stepped(case: Case) -> Numbers | None:
         same = all(getattr(case.shoe, name) == getattr(parts.case.shoe, name) for name in OF_PLAN)
         if not (steady and same and case.motion.shoe_angle == parts.case.motion.shoe_angle):
             return None
         try:
-            here = prepared(case, parts.spacing, parts.objects)
-            ends = [continued(contact, here, turn=place.turn)[-1] for place in turns]
+            here = prepare_case(case, parts.spacing, parts.objects)
+            ends = [continue_contact(contact, here, turn=place.turn)[-1] for place in turns]
         except (InputError, ConvergenceError):
             return None
         usable = all(end.status.usable for end in ends)
@@ -139,12 +139,12 @@ def stated_effects(
     return solved_effects(parts.case, stepped, marched)
 
 
-def effect_places(case: Case) -> tuple[Place, ...]:
+def effect_places(case: Case) -> tuple[TreadPlace, ...]:
     """Return where the tread lies as the effect of a stated spread is solved."""
     one = case.numerics.tread_positions == 1 or case.motion.build() is not None
     if one:
-        return (Place(),)
-    return case_places(case, quick=True) if treaded(case) else shoe_angles()
+        return (TreadPlace(),)
+    return case_places(case, quick=True) if has_lugs(case) else shoe_angles()
 
 
 def law_without(parts: Prepared, stated: StatedEffects) -> FrictionLaw | EdgedLaw | None:
@@ -157,7 +157,7 @@ def law_without(parts: Prepared, stated: StatedEffects) -> FrictionLaw | EdgedLa
     if exact is None:
         return None
     geometry = parts.sole, parts.compliance
-    return prepared(exact, parts.spacing, parts.objects, geometry=geometry).local_law
+    return prepare_case(exact, parts.spacing, parts.objects, geometry=geometry).local_law
 
 
 def _effect_spacing(parts: Prepared) -> float:
@@ -209,7 +209,9 @@ def film_spreads(
 
     def odds(asperities: PressureGapLaw, report: Progress) -> float:
         here = moving.on(asperities=asperities)
-        end = continued(contact, here)[-1] if steady else solved_motion(here, progress=report)
+        end = (
+            continue_contact(contact, here)[-1] if steady else solved_motion(here, progress=report)
+        )
         if not end.status.usable:
             raise ConvergenceError(str(end.status), history=[])
         return film_odds(end)
@@ -242,7 +244,7 @@ def _leaking(parts: Prepared, factor: float) -> PressureGapLaw:
 
 
 def solved_at(
-    parts: Prepared, place: Place, spacing: float, *, progress: Progress = silent
+    parts: Prepared, place: TreadPlace, spacing: float, *, progress: Progress = silent
 ) -> tuple[Prepared, SoleContact]:
     """Return case and contact with the tread at a place, on cells of ``spacing`` (m)."""
     sole = sole_map(parts.case, spacing, shift=place.shift, turn=place.turn, yaw=place.yaw)
@@ -250,7 +252,7 @@ def solved_at(
     return here, solved_motion(here, finer=place.finer, progress=progress)
 
 
-def averaged(
+def average_positions(
     parts: Prepared,
     solution: Solution,
     *,
@@ -272,7 +274,7 @@ def averaged(
         return None
 
     def at_places(
-        asked: Sequence[tuple[Place, float]],
+        asked: Sequence[tuple[TreadPlace, float]],
     ) -> Iterator[tuple[int, Mapping[str, float] | None]]:
         if processes > 1 and not parts.objects:
             yield from in_processes(
@@ -288,13 +290,13 @@ def averaged(
             name, begin, end = f"Position {k + 2} of {len(asked) + 1}", *ends[k : k + 2] / ends[-1]
             yield k, _numbers_at(parts, place, spacing, part(progress, begin, end, name))
 
-    known = {Place(): place_numbers(parts, solution.contact)}
-    if treaded(parts.case):
+    known = {TreadPlace(): place_numbers(parts, solution.contact)}
+    if has_lugs(parts.case):
         known |= _turned(parts, solution.contact)
     return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
-def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, float]]:
+def _turned(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
     """Return the numbers of a contact that goes on in two steps with the shoe turned up and down.
 
     Empty where the steps can't be made, or the motion follows a history.
@@ -302,7 +304,7 @@ def _turned(parts: Prepared, contact: SoleContact) -> dict[Place, Mapping[str, f
     if parts.case.motion.build() is not None:
         return {}
     try:
-        ends = [continued(contact, parts, turn=place.turn)[-1] for place in TURNED]
+        ends = [continue_contact(contact, parts, turn=place.turn)[-1] for place in TURNED]
     except ConvergenceError:
         return {}
     return {place: place_numbers(parts, end) for place, end in zip(TURNED, ends, strict=True)}
@@ -317,9 +319,9 @@ class _PlaceNumbers:
 
     @cached_property
     def _parts(self) -> Prepared:
-        return prepared(self.case, self.own_spacing)
+        return prepare_case(self.case, self.own_spacing)
 
-    def __call__(self, asked: tuple[Place, float]) -> Mapping[str, float] | None:
+    def __call__(self, asked: tuple[TreadPlace, float]) -> Mapping[str, float] | None:
         return _numbers_at(self._parts, *asked)
 
 
@@ -331,17 +333,17 @@ class _NumbersOfCases:
     spacing: float
     objects: Mapping[str, Any]
 
-    def __call__(self, asked: tuple[int, Place]) -> Numbers | None:
+    def __call__(self, asked: tuple[int, TreadPlace]) -> Numbers | None:
         number, place = asked
         try:
-            parts = prepared(self.cases[number], self.spacing, self.objects)
+            parts = prepare_case(self.cases[number], self.spacing, self.objects)
         except InputError:
             return None
         return _numbers_at(parts, place, self.spacing)
 
 
 def _numbers_at(
-    parts: Prepared, place: Place, spacing: float, progress: Progress = silent
+    parts: Prepared, place: TreadPlace, spacing: float, progress: Progress = silent
 ) -> Mapping[str, float] | None:
     """Return the numbers of a result at a place; None where its contact did not converge."""
     try:
@@ -421,7 +423,9 @@ def solved_motion(
     )
 
 
-def continued(start: SoleContact, parts: Prepared, *, turn: float = 0.0) -> list[SoleContact]:
+def continue_contact(
+    start: SoleContact, parts: Prepared, *, turn: float = 0.0
+) -> list[SoleContact]:
     """Return what a steady contact becomes under a changed case after one step and after two.
 
     ``turn``: change of the shoe angle since the map was made, rad.

@@ -15,7 +15,7 @@ from underfoot.core.remark import Message
 from underfoot.friction.propagation import LOGNORMAL_ABOVE
 
 from .position_draws import COF_PARTS, LOADS, ON_CONTACT, UncertainBevel, log_film_odds
-from .resolve import resolved
+from .resolve import resolve_context
 
 ODDS, WHOLE, NORMAL = "odds", "whole", "normal"
 """Names in the draws of a stated spread, beside those of a result: what it adds to ln F / (W - F),
@@ -139,7 +139,7 @@ def odds_changes(less: float, more: float, normal: Array) -> Array:
     return np.where(normal > 0, more, -less) * normal
 
 
-def added(draws: Mapping[str, Mapping[str, Array]], name: str) -> Array | float:
+def sum_of_draws(draws: Mapping[str, Mapping[str, Array]], name: str) -> Array | float:
     """Return the sum of the draws of a name over all paths; 0 without any."""
     return sum((each[name] for each in draws.values() if name in each), 0.0)
 
@@ -232,7 +232,7 @@ def solved_effects(
     effects, left_out = [], []
     for spread in spreads:
         before, *after = solved.get(spread.path, [None])
-        moves = [moved(before, one) for one in after if before is not None and one is not None]
+        moves = [log_moves(before, one) for one in after if before is not None and one is not None]
         if not moves:
             left_out.append(spread.path)
             continue
@@ -252,7 +252,7 @@ def _changed(case: Case, change: Mapping[str, object]) -> Case | None:
         return None
 
 
-def moved(before: Numbers, after: Numbers) -> dict[str, float]:
+def log_moves(before: Numbers, after: Numbers) -> dict[str, float]:
     """Return what is added to the logarithms of the numbers of a place, as ``StatedEffect`` has it.
 
     A number that one of both lacks stays.
@@ -323,7 +323,7 @@ def _drawn_without(case: Case, path: str) -> bool:
         return True
     exact = case.replace(path, exactly(case, path))
     if path.startswith("friction."):
-        laws = (one.friction.build(resolved(one)) for one in (case, exact))
+        laws = (one.friction.build(resolve_context(one)) for one in (case, exact))
         with_spread, without = (
             {name: each.uncertainty for name, each in law.inputs.items()} for law in laws
         )

@@ -1,7 +1,8 @@
 """Units at the door, sourced values, errors, status, provenance, progress and the cache."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .cache import Cache as Cache
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from .units import display as display
     from .units import to_si as to_si
     from .validity import Breach as Breach
-    from .validity import Range as Range
+    from .validity import ValidityRange as ValidityRange
     from .validity import breaches as breaches
     from .values import SourcedValue as SourcedValue
 
@@ -47,17 +48,11 @@ _HOMES = {
     "display": ".units",
     "to_si": ".units",
     "Breach": ".validity",
-    "Range": ".validity",
+    "ValidityRange": ".validity",
     "breaches": ".validity",
     "SourcedValue": ".values",
 }
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    # what a command imports to print its help stays light: no arrays, no units
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(_HOMES[name], __name__), name)
-    return value
+__getattr__ = package_names(__name__, _HOMES, gone="0.5", Range="ValidityRange")

@@ -108,7 +108,7 @@ class Fields:
                 stored.attrs.update({**each.attrs, **({"dtype": "bool"} if truth else {})})
 
 
-def labelled(
+def labelled_fields(
     variables: Mapping[str, tuple[Any, ...]], coords: Mapping[str, tuple[Any, ...]]
 ) -> Fields:
     """Return fields of (axis or axes, values, attributes) by name."""

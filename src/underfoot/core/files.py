@@ -13,7 +13,7 @@ from typing import Any
 from uuid import uuid4
 
 from .errors import InputError
-from .typed import held
+from .typed import float_of_text
 
 MARKER = ".underfoot"
 """File that says a folder may be replaced."""
@@ -157,6 +157,6 @@ def checksum(path: Path | str) -> str:
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a TOML file; InputError where it is none."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=held)
+        return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=float_of_text)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"is no TOML file ({error})", where=str(path)) from error

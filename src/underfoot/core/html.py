@@ -26,7 +26,7 @@ def png(figure: Figure, dpi: int = 130) -> bytes:
     return buffer.getvalue()
 
 
-def embedded(picture: bytes) -> str:
+def data_address(picture: bytes) -> str:
     """Return a PNG file as a data address for an ``img`` element."""
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
 

@@ -8,7 +8,9 @@ ALONE = 20.0
 """Spreads of all others that a single number must lie off to be a code."""
 
 
-def coded(values: Array, *, apart: float = 5.0, least: float = 0.0, most: float = 0.5) -> Mask:
+def mask_of_codes(
+    values: Array, *, apart: float = 5.0, least: float = 0.0, most: float = 0.5
+) -> Mask:
     """Return which values are a code: the least or greatest number, far from all others.
 
     Parameters:

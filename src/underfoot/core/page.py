@@ -27,7 +27,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class PageSection:
     """A part of a page under a title: ready HTML, pictures, a table or a list.
 
     ``folded`` hides all of it behind its title until it is asked for. A page shows its first
@@ -49,7 +49,7 @@ class Section:
 
 def page(
     shown: Presentable,
-    sections: Sequence[Section],
+    sections: Sequence[PageSection],
     *,
     script: str = "",
     verdict: tuple[str, str] = ("", ""),
@@ -79,23 +79,23 @@ def page(
     )
 
 
-def page_part(sections: Sequence[Section]) -> str:
+def page_part(sections: Sequence[PageSection]) -> str:
     """Return sections as HTML for a page that has style and scripts already."""
     return environment().get_template("sections.html").render(**_content(sections))
 
 
-def _content(sections: Sequence[Section]) -> dict[str, Any]:
+def _content(sections: Sequence[PageSection]) -> dict[str, Any]:
     return {"sections": sections, "numeric": _is_number, "most": MOST_ITEMS}
 
 
-def table_sections(shown: Presentable) -> list[Section]:
+def table_sections(shown: Presentable) -> list[PageSection]:
     """Return the tables of an object as sections."""
-    return [Section(table.title, table=table) for table in shown.tables() if table.rows]
+    return [PageSection(table.title, table=table) for table in shown.tables() if table.rows]
 
 
-def remark_sections(shown: Presentable) -> list[Section]:
+def remark_sections(shown: Presentable) -> list[PageSection]:
     """Return the lists of remarks of an object as sections."""
-    return [Section(title, items=lines) for title, lines in shown.remarks().items() if lines]
+    return [PageSection(title, items=lines) for title, lines in shown.remarks().items() if lines]
 
 
 def _is_number(cell: str) -> bool:

@@ -59,13 +59,13 @@ def in_processes(
     ``function`` pass through.
     """
     count = min(processes or available_processors(), len(items))
-    answers = answered(_Numbered(function), enumerate(items), count, _Numbered(died))
+    answers = answers_of(_Numbered(function), enumerate(items), count, _Numbered(died))
     for done, (index, answer) in enumerate(answers, start=1):
         yield index, answer
         progress(stage, done / len(items))
 
 
-def answered(
+def answers_of(
     function: Callable[[Item], Answer],
     items: Iterable[Item | None],
     processes: int,

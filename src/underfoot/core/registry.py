@@ -38,7 +38,7 @@ class Offer:
     def load(self) -> Any:
         """Return what is offered; InputError in one line where it can't be had."""
         try:
-            return loaded(self.address)
+            return load_address(self.address)
         except InputError as error:
             remedy = f"Mend or remove {self.package}"
             raise InputError(f"{self}: {error.what}", remedy=remedy) from error
@@ -58,7 +58,7 @@ class Offer:
         raise InputError(f"{self}: there is no such folder", allowed="package:folder")
 
 
-def loaded(address: str) -> Any:
+def load_address(address: str) -> Any:
     """Return what stands at ``module:attribute``, or a module.
 
     Raises:
@@ -83,7 +83,7 @@ def offers(door: str) -> dict[str, Offer]:
     return {offer.name: offer for offer in all_offers() if offer.door == door}
 
 
-def offered(door: str, name: str, check: Callable[[Any], str] = lambda _item: "") -> Any:
+def find_offer(door: str, name: str, check: Callable[[Any], str] = lambda _item: "") -> Any:
     """Return what is offered by a name; None where nobody does.
 
     ``check`` says what is wrong with an object, "" for nothing.
@@ -113,7 +113,7 @@ def broken_offers() -> Iterator[str]:
         if offer.door == "catalogues":
             continue
         try:
-            offered(offer.door, offer.name)
+            find_offer(offer.door, offer.name)
         except InputError as error:
             yield error.what
 

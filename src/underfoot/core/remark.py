@@ -157,7 +157,7 @@ class Remark(Message):
         return cls.of(about, what) if colon else cls.of("", line)
 
 
-def joined(lines: Iterable[object]) -> Message:
+def join_lines(lines: Iterable[object]) -> Message:
     """Return several lines as one, "a; b"; each keeps what it was made of."""
     texts = [line if isinstance(line, str) else str(line) for line in lines]
     return Message("{texts:; }", texts=texts)
@@ -195,7 +195,7 @@ def _span(values: Sequence[Any], spec: str) -> Any:
     return first if low == high else Message("{low} to {high}", low=low, high=high)
 
 
-def assumed(code: str, /, **values: Any) -> Remark:
+def assumption_line(code: str, /, **values: Any) -> Remark:
     """Return the line that tells a guess, of a template and its values."""
     return Remark(ASSUMED, code, **values)
 

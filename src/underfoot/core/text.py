@@ -25,10 +25,12 @@ def numbered_lines(path: Path | str, remedy: str) -> list[tuple[int, str]]:
     Raises:
         DataError: No such file, or a binary or empty one, with the ``remedy`` for that.
     """
-    return list(enumerate(decoded(existing(path).read_bytes(), str(path), remedy).splitlines(), 1))
+    return list(
+        enumerate(decode_text(existing(path).read_bytes(), str(path), remedy).splitlines(), 1)
+    )
 
 
-def decoded(data: bytes, where: str, remedy: str = "Export it again as text") -> str:
+def decode_text(data: bytes, where: str, remedy: str = "Export it again as text") -> str:
     """Return the text of a file: UTF-8, UTF-16, else Latin-1; a DataError for binary content."""
     wide = utf16_of(data)
     try:

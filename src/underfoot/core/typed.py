@@ -61,10 +61,10 @@ def split_quantity(text: str, *, comma: bool = False) -> tuple[float, str] | Non
     plain = _decimal(digits, text, "," if comma else ".")
     if plain is None:
         return None
-    return held(f"{sign}{plain}e{exponent or 0}"), unit.strip()
+    return float_of_text(f"{sign}{plain}e{exponent or 0}"), unit.strip()
 
 
-def held(plain: str) -> float:
+def float_of_text(plain: str) -> float:
     """Return the number of a text as ``float`` takes it.
 
     Raises:

@@ -10,7 +10,7 @@ from .remark import Amount, Message, Remark
 
 
 @dataclass(frozen=True, slots=True)
-class Range:
+class ValidityRange:
     """Tested interval of one input, in SI."""
 
     low: float
@@ -27,7 +27,7 @@ class Breach:
     quantity: str
     low: float
     high: float
-    range: Range
+    range: ValidityRange
 
     @property
     def remark(self) -> Remark:
@@ -53,7 +53,7 @@ class Breach:
 
 
 def breaches(
-    closure: str, ranges: Mapping[str, Range], values: Mapping[str, ArrayLike]
+    closure: str, ranges: Mapping[str, ValidityRange], values: Mapping[str, ArrayLike]
 ) -> list[Breach]:
     """Return which ``values`` leave the tested ``ranges`` (relative slack 1e-9)."""
     exceeded = []

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from .deprecation import renamed
+from .deprecation import renamed_member
 from .errors import DataError
 from .units import display
 
@@ -55,7 +55,7 @@ class SourcedValue:
         """Return plain data for JSON and CSV."""
         return {name: getattr(self, name) for name in self.__slots__}
 
-    as_dict = renamed("as_dict", "to_dict", gone="0.3")
+    as_dict = renamed_member("as_dict", "to_dict", gone="0.3")
 
     def scaled(self, factor: float) -> "SourcedValue":
         """Return the value, its uncertainties and its interval times a factor, 0 or more."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .plan import StudyPlan
@@ -13,18 +14,14 @@ if TYPE_CHECKING:
     from .sweeps import optimise, sweep
 
 _HOMES = {
-    "Study": "study",
-    "StudyPlan": "plan",
-    "StudyResult": "result",
-    "load_plan": "study_file",
-    "optimise": "sweeps",
-    "sweep": "sweeps",
+    "Study": ".study",
+    "StudyPlan": ".plan",
+    "StudyResult": ".result",
+    "load_plan": ".study_file",
+    "optimise": ".sweeps",
+    "sweep": ".sweeps",
 }
 
 __all__ = ["Study", "StudyPlan", "StudyResult", "load_plan", "optimise", "sweep"]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+__getattr__ = package_names(__name__, _HOMES)

@@ -35,7 +35,7 @@ DASK_RATE = 50.0
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class Computer:
     """What a study finds here: processors, and bytes of memory (0: not known) and of disk."""
 
     processors: int
@@ -43,11 +43,11 @@ class Machine:
     disk: float
 
 
-def this_machine(folder: Path) -> Machine:
+def this_machine(folder: Path) -> Computer:
     """Return what is free for a study in a folder, which may not be there yet."""
     place = next(path for path in (folder, *folder.absolute().parents) if path.is_dir())
     memory = status_bytes("/proc/meminfo", "MemAvailable:")
-    return Machine(available_processors(), memory, shutil.disk_usage(place).free)
+    return Computer(available_processors(), memory, shutil.disk_usage(place).free)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class StudyCheck(Presentable):
     infeasible: Mapping[str, int]
     ended: int = 0
     cost: StudyCost | None = None
-    machine: Machine = field(default_factory=lambda: this_machine(Path()))
+    machine: Computer = field(default_factory=lambda: this_machine(Path()))
 
     @property
     def cpu_seconds(self) -> float:

@@ -21,7 +21,7 @@ from underfoot.core import ConvergenceError, InputError, SourcedValue, Status
 from underfoot.shoe import heel_surface
 
 from .plan import job_key
-from .record import Ending, Job, Record, program
+from .record import CaseJob, Ending, Record, program
 
 MEASURES = {
     "land": "1",
@@ -34,7 +34,7 @@ SURFACE = 0.5e-3
 """m: grid of the sole on which rubber and land are measured."""
 
 
-def computed(base: Case, job: Job) -> Record:
+def compute_job(base: Case, job: CaseJob) -> Record:
     """Return the record of a job: the base case with its changes, run. Never raises."""
     wall, cpu = time.perf_counter(), time.process_time()
     outcome: dict[str, Any] = {}
@@ -66,7 +66,7 @@ def computed(base: Case, job: Job) -> Record:
     )
 
 
-def crashed(job: Job) -> Record:
+def crash_record(job: CaseJob) -> Record:
     """Return the record of a job that two workers in turn did not survive."""
     reason = "its worker process ended without an answer, twice: killed, or out of memory"
     return Record(job.key, Ending.CRASHED, reason, program=program(), ended=time.time())

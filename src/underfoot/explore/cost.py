@@ -16,14 +16,14 @@ from scipy.stats import qmc
 
 from underfoot.core.arrays import AnyArray, Array
 
-from .jobs import Jobs
+from .jobs import BatchJobs
 from .plan import StudyPlan
 from .proposals import first_points
-from .record import Ending, Job, Record
+from .record import CaseJob, Ending, Record
 from .records import Records
 from .result import StudyResult
 from .store import Store
-from .surrogate import featured
+from .surrogate import feature_columns
 
 FEWEST = 3
 """Finished cases from which on a cost is estimated."""
@@ -57,17 +57,17 @@ class StudyCost:
     failures: Mapping[str, int]
 
 
-def spread_jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
+def spread_jobs(plan: StudyPlan, count: int) -> Iterator[CaseJob]:
     """Yield up to ``count`` jobs of the first batch, spread evenly over all that differs in it."""
     points = np.array(first_points(plan), dtype=float).reshape(-1, len(plan.dimensions))
-    places = featured(plan.dimensions, points)
+    places = feature_columns(plan.dimensions, points)
     count = min(count, len(points) * plan.cases_per_design)
     wanted = qmc.Sobol(points.shape[1] + 2, rng=plan.method.seed).random_base2(12)
     taken = set[tuple[int, int, int]]()
     for row in wanted:
         if len(taken) == count:
             return
-        away = np.abs(places - featured(plan.dimensions, row[None, :-2])).sum(axis=1)
+        away = np.abs(places - feature_columns(plan.dimensions, row[None, :-2])).sum(axis=1)
         state, draw = (
             int(share * size) for share, size in zip(row[-2:], _sizes(plan), strict=True)
         )
@@ -78,7 +78,7 @@ def spread_jobs(plan: StudyPlan, count: int) -> Iterator[Job]:
         yield plan.job(design, points[design].tolist(), 0, state, draw)
 
 
-def study_cost(plan: StudyPlan, store: Store, jobs: Jobs | None = None) -> StudyCost | None:
+def study_cost(plan: StudyPlan, store: Store, jobs: BatchJobs | None = None) -> StudyCost | None:
     """Return what the cases of a study take, from those in its folder; None from too few.
 
     ``jobs`` are those of the folder, where they are read already.
@@ -146,14 +146,14 @@ def _sizes(plan: StudyPlan) -> tuple[int, int]:
     return len(plan.states), len(plan.draws)
 
 
-def _some(jobs: Jobs, records: Records) -> list[Job]:
+def _some(jobs: BatchJobs, records: Records) -> list[CaseJob]:
     """Return up to ``MOST`` finished jobs, evenly from first to last."""
     ended = [k for k, key in enumerate(jobs.keys) if key in records]
     places = np.linspace(0, len(ended) - 1, min(len(ended), MOST)).round().astype(int)
     return [jobs[ended[k]] for k in places.tolist()]
 
 
-def _steady(pairs: Sequence[tuple[Job, Record]]) -> Sequence[tuple[Job, Record]]:
+def _steady(pairs: Sequence[tuple[CaseJob, Record]]) -> Sequence[tuple[CaseJob, Record]]:
     """Return all but the first case of each process, where enough are left."""
     first: dict[str, float] = {}
     for _, record in pairs:
@@ -165,13 +165,13 @@ def _steady(pairs: Sequence[tuple[Job, Record]]) -> Sequence[tuple[Job, Record]]
 def _features(
     plan: StudyPlan, points: Sequence[Sequence[float]], states: Sequence[int] | AnyArray
 ) -> Array:
-    inputs = featured(plan.dimensions, np.array(points, dtype=float))
+    inputs = feature_columns(plan.dimensions, np.array(points, dtype=float))
     conditions = np.equal.outer(np.asarray(states), np.arange(len(plan.states)))
     return np.column_stack([inputs, conditions])
 
 
 def _disk(
-    plan: StudyPlan, store: Store, known: Sequence[tuple[Job, Record]], records: int
+    plan: StudyPlan, store: Store, known: Sequence[tuple[CaseJob, Record]], records: int
 ) -> float:
     """Return bytes of a case: its line and draws, its job, its row of the table, its maps."""
     sample = known[:: max(1, len(known) // 20)]

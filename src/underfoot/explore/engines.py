@@ -13,12 +13,13 @@ from typing import Any
 
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
-from underfoot.core.pool import TRIES, answered, available_processors
+from underfoot.core.pool import TRIES, answers_of, available_processors
 
-from .record import Job, Record
+from .record import CaseJob, Record
 
 Engine = Callable[
-    [Callable[[Job], Record], Iterable[Job | None], Callable[[Job], Record]], Iterator[Record]
+    [Callable[[CaseJob], Record], Iterable[CaseJob | None], Callable[[CaseJob], Record]],
+    Iterator[Record],
 ]
 DASK = "dask"
 AHEAD = 2
@@ -45,7 +46,7 @@ def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> 
     """
     count = workers or available_processors()
     if on is None or on == "pool":
-        return lambda function, jobs, died: answered(function, jobs, count, died), count
+        return lambda function, jobs, died: answers_of(function, jobs, count, died), count
     kind, _, address = on.partition(":")
     if kind != DASK:
         raise InputError(
@@ -58,9 +59,9 @@ def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> 
 
 
 def _on_dask(
-    function: Callable[[Job], Record],
-    jobs: Iterable[Job | None],
-    died: Callable[[Job], Record],
+    function: Callable[[CaseJob], Record],
+    jobs: Iterable[CaseJob | None],
+    died: Callable[[CaseJob], Record],
     address: str,
     workers: int,
     told: Callable[[str], None],
@@ -129,9 +130,9 @@ def _client(distributed: Any, address: str, workers: int) -> Any:
         ) from error
 
 
-def _next(jobs: Iterator[Job | None], count: int) -> list[Job]:
+def _next(jobs: Iterator[CaseJob | None], count: int) -> list[CaseJob]:
     """Return up to so many jobs, fewer where there are none for now."""
-    chosen: list[Job] = []
+    chosen: list[CaseJob] = []
     while len(chosen) < count and (job := next(jobs, None)) is not None:
         chosen.append(job)
     return chosen

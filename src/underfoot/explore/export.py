@@ -12,7 +12,7 @@ from underfoot.core.files import whole_folder
 from .study import Study
 
 
-def exported(
+def export_designs(
     study: Study, folder: Path, *, count: int = 3, step: bool = True, overwrite: bool = False
 ) -> list[str]:
     """Write results.csv, and a case file and a STEP file of the best designs; return remarks.

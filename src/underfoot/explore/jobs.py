@@ -19,14 +19,14 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.arrays import AnyArray
 
-from .lines import CURRENT, FORMAT, KEY, KEYED, sealed, unsealed, whole_lines, write_all
-from .record import Job
+from .lines import CURRENT, FORMAT, KEY, KEYED, seal_line, unseal_line, whole_lines, write_all
+from .record import CaseJob
 
 TOGETHER = 1000
 """Lines that are written at a time."""
 
 
-class Jobs(Sequence[Job]):
+class BatchJobs(Sequence[CaseJob]):
     """The jobs of the whole batches of a file, in their order; each is read when it is asked for.
 
     Attributes:
@@ -64,26 +64,26 @@ class Jobs(Sequence[Job]):
         return len(self.keys)
 
     @overload
-    def __getitem__(self, index: int) -> Job: ...
+    def __getitem__(self, index: int) -> CaseJob: ...
     @overload
-    def __getitem__(self, index: slice) -> list[Job]: ...
-    def __getitem__(self, index: int | slice) -> Job | list[Job]:
+    def __getitem__(self, index: slice) -> list[CaseJob]: ...
+    def __getitem__(self, index: int | slice) -> CaseJob | list[CaseJob]:
         if isinstance(index, slice):
             return jobs_at(self._path, self.places[index])
         return jobs_at(self._path, [self.places[index]])[0]
 
-    def at(self, indices: Iterable[int]) -> list[Job]:
+    def at(self, indices: Iterable[int]) -> list[CaseJob]:
         """Return the jobs of some indices."""
         return jobs_at(self._path, self.places[np.fromiter(indices, dtype=np.int64)])
 
-    def __iter__(self) -> Iterator[Job]:
+    def __iter__(self) -> Iterator[CaseJob]:
         places = set(self.places.tolist())
         for start, _, body in whole_lines(self._path):
             if start in places:
-                yield Job.from_line(body)
+                yield CaseJob.from_line(body)
 
 
-def jobs_at(path: Path, places: Iterable[int]) -> list[Job]:
+def jobs_at(path: Path, places: Iterable[int]) -> list[CaseJob]:
     """Return the jobs whose lines begin at some bytes.
 
     Raises:
@@ -93,18 +93,18 @@ def jobs_at(path: Path, places: Iterable[int]) -> list[Job]:
     with path.open("rb") as stream:
         for place in places:
             stream.seek(int(place))
-            body = unsealed(stream.readline().removesuffix(b"\n"))
+            body = unseal_line(stream.readline().removesuffix(b"\n"))
             if body is None:
                 raise DataError(
                     f"the job at byte {place} is damaged",
                     where=str(path),
                     remedy="Give underfoot study run again: it sets that batch anew",
                 )
-            jobs.append(Job.from_line(body))
+            jobs.append(CaseJob.from_line(body))
     return jobs
 
 
-def add_batch(path: Path, batch: int, jobs: Iterable[Job], end: int) -> int:
+def add_batch(path: Path, batch: int, jobs: Iterable[CaseJob], end: int) -> int:
     """Write a batch behind byte ``end`` and close it; return its number of jobs.
 
     An empty batch is not written.
@@ -118,12 +118,12 @@ def add_batch(path: Path, batch: int, jobs: Iterable[Job], end: int) -> int:
             while some := list(islice(lines, TOGETHER)):
                 for line in some:
                     hashed.update(line.encode("utf-8"))
-                write_all(descriptor, b"".join(map(sealed, some)))
+                write_all(descriptor, b"".join(map(seal_line, some)))
                 count += len(some)
             if count:
                 closing = {"format": FORMAT, "closes": batch, "count": count}
                 text = json.dumps({**closing, "hash": hashed.hexdigest()})
-                write_all(descriptor, sealed(text))
+                write_all(descriptor, seal_line(text))
                 os.fsync(descriptor)
         except OSError:
             os.ftruncate(descriptor, end)

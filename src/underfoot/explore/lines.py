@@ -30,13 +30,13 @@ SEAL = 10
 """Bytes of a line behind its text: tab, check sum, end of line."""
 
 
-def sealed(text: str) -> bytes:
+def seal_line(text: str) -> bytes:
     """Return a line: the text (JSON), a tab, its CRC-32 in hexadecimal digits."""
     body = text.encode("utf-8")
     return b"%s\t%08x\n" % (body, crc32(body))
 
 
-def unsealed(line: bytes) -> bytes | None:
+def unseal_line(line: bytes) -> bytes | None:
     """Return the text of a line without its end; None of a torn or damaged one.
 
     Lines of version 1 have no check sum and are taken as they are.
@@ -76,7 +76,7 @@ def whole_lines(path: Path, start: int = 0) -> Iterator[tuple[int, int, bytes]]:
                 start = end
                 continue
             try:
-                body = unsealed(line[:-1]) if line.endswith(b"\n") else None
+                body = unseal_line(line[:-1]) if line.endswith(b"\n") else None
             except NewerFormat as error:
                 raise DataError(error.what, where=str(path), **error.parts) from None
             if body is not None:
@@ -87,7 +87,7 @@ def whole_lines(path: Path, start: int = 0) -> Iterator[tuple[int, int, bytes]]:
 def line_of(stream: BinaryIO, place: int) -> bytes | None:
     """Return the text of the line of a file that begins at a byte; None where it is damaged."""
     stream.seek(place)
-    return unsealed(stream.readline().removesuffix(b"\n"))
+    return unseal_line(stream.readline().removesuffix(b"\n"))
 
 
 def write_all(descriptor: int, data: bytes) -> None:

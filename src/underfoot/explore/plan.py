@@ -15,13 +15,13 @@ from scipy.stats import qmc
 from underfoot.case import Case
 from underfoot.case.quantity import Flag
 from underfoot.case.section import Section
-from underfoot.compute.positions import position_count, treaded
+from underfoot.compute.positions import has_lugs, position_count
 from underfoot.core import InputError, content_hash
 from underfoot.core.arrays import Array
 
 from .goals import AnyGoal, Condition, Goal, Requirement
 from .inputs import Distribution, Follow, Input
-from .record import Job
+from .record import CaseJob
 
 Count = Annotated[int, Field(ge=1, le=10**6, strict=True)]
 POSITIONS, MOST_POSITIONS = "numerics.tread_positions", 64
@@ -180,7 +180,7 @@ class StudyPlan:
 
     def jobs(
         self, design: int, point: Sequence[float], batch: int, *, again: bool = False
-    ) -> Iterator[Job]:
+    ) -> Iterator[CaseJob]:
         """Yield the jobs of a design: every condition with every draw; ``again``: ``job``."""
         for state, draw in product(range(len(self.states)), range(len(self.draws))):
             yield self.job(design, point, batch, state, draw, again=again)
@@ -194,7 +194,7 @@ class StudyPlan:
         draw: int,
         *,
         again: bool = False,
-    ) -> Job:
+    ) -> CaseJob:
         """Return the job of a design in one condition with one draw.
 
         ``again`` takes the grid of ``Method.again_on``, and other positions of the tread where it
@@ -207,7 +207,7 @@ class StudyPlan:
             quick = self.method.again_on == "quick"
             changes |= self._elsewhere(changes, quick)
         key = self._key(changes, quick)
-        return Job(key, design, state, draw, batch, place, changes, quick, fields)
+        return CaseJob(key, design, state, draw, batch, place, changes, quick, fields)
 
     def _elsewhere(self, changes: Mapping[str, Any], quick: bool) -> dict[str, Any]:
         """Return the number of positions whose lattice shares the first alone with a first run's.
@@ -219,7 +219,7 @@ class StudyPlan:
         except InputError:  # no case: its record will say why
             return {}
         count = case.numerics.tread_positions
-        if count == 1 or not treaded(case):
+        if count == 1 or not has_lugs(case):
             return {}
         step = 1 if count < MOST_POSITIONS - 1 else -1
         first = position_count(case, quick=self.method.quick)

@@ -26,9 +26,9 @@ from underfoot.core.threads import threads_limited
 from .effects import sampled_effect_points
 from .goals import Goal
 from .plan import StudyPlan
-from .record import Job
+from .record import CaseJob
 from .result import StudyResult
-from .surrogate import FEWEST, Surrogate, featured
+from .surrogate import FEWEST, Surrogate, feature_columns
 
 FIRST = 0.4
 """Share of an optimisation's designs that are spread evenly first."""
@@ -48,7 +48,7 @@ BEYOND = 0.1
 
 
 @threads_limited(1)
-def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[Job]:
+def next_batch(plan: StudyPlan, so_far: StudyResult) -> Iterable[CaseJob]:
     """Return the jobs of the next batch; none where the study is done."""
     if not so_far.jobs:
         return _jobs(plan, first_points(plan), 0, 0)
@@ -89,7 +89,7 @@ def first_points(plan: StudyPlan) -> list[tuple[float, ...]]:
 
 def _jobs(
     plan: StudyPlan, points: Sequence[Sequence[float]], first: int, batch: int
-) -> Iterator[Job]:
+) -> Iterator[CaseJob]:
     for number, point in enumerate(points, start=first):
         yield from plan.jobs(number, point, batch)
 
@@ -158,8 +158,8 @@ def _promising(so_far: StudyResult, count: int) -> list[tuple[float, ...]]:
 
 def _apart(plan: StudyPlan, points: Array, taken: Sequence[float]) -> Mask:
     """Return which places make another design than one that is taken."""
-    own = featured(plan.dimensions, np.array([taken]))
-    return np.abs(featured(plan.dimensions, points) - own).max(axis=1) > SAME
+    own = feature_columns(plan.dimensions, np.array([taken]))
+    return np.abs(feature_columns(plan.dimensions, points) - own).max(axis=1) > SAME
 
 
 def _surrogate_front(

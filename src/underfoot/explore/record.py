@@ -39,7 +39,7 @@ class Ending(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class CaseJob:
     """A case that is to be computed: the changes of the base case, by dotted path.
 
     Attributes:
@@ -66,7 +66,7 @@ class Job:
         return json.dumps({"format": FORMAT, **asdict(self)}, ensure_ascii=False)
 
     @classmethod
-    def from_line(cls, text: str | bytes) -> Job:
+    def from_line(cls, text: str | bytes) -> CaseJob:
         """Return the job of a line."""
         plain = json.loads(text)
         return cls(**{**_known(cls, plain), "point": tuple(plain["point"])})

@@ -24,11 +24,11 @@ from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.friction.propagation import probability_higher
 
 from .goals import AnyGoal, Goal, output_array
-from .jobs import Jobs
+from .jobs import BatchJobs
 from .plan import StudyPlan
-from .record import Ending, Job, Record, program
+from .record import CaseJob, Ending, Record, program
 from .records import Records
-from .surrogate import FEWEST, Surrogate, fitted
+from .surrogate import FEWEST, Surrogate, fit_surrogate
 
 if TYPE_CHECKING:
     import xarray
@@ -128,7 +128,7 @@ class StudyResult(Presentable):
     kind: ClassVar[str] = "study"
 
     plan: StudyPlan
-    jobs: Sequence[Job]
+    jobs: Sequence[CaseJob]
     records: Mapping[str, Record]
     sessions: Sequence[Mapping[str, Any]] = ()
 
@@ -139,7 +139,7 @@ class StudyResult(Presentable):
         """Return the name of the study."""
         return self.plan.name
 
-    def record(self, job: Job) -> Record:
+    def record(self, job: CaseJob) -> Record:
         """Return what came of a job; where nothing did yet, that it is open."""
         return self.records.get(job.key) or Record(job.key, Ending.OPEN)
 
@@ -147,7 +147,7 @@ class StudyResult(Presentable):
     def all_designs(self) -> list[Design]:
         """Every design by number, after its first run the second."""
         keys: dict[tuple[int, int], dict[tuple[int, int], str]] = {}
-        first: dict[tuple[int, int], Job] = {}
+        first: dict[tuple[int, int], CaseJob] = {}
         for job in self.jobs:
             run = job.design, job.batch
             keys.setdefault(run, {})[job.condition, job.draw] = job.key
@@ -155,7 +155,7 @@ class StudyResult(Presentable):
         return self._designs_of(first.values(), keys)
 
     def _designs_of(
-        self, jobs: Iterable[Job], keys: Mapping[tuple[int, int], Mapping[tuple[int, int], str]]
+        self, jobs: Iterable[CaseJob], keys: Mapping[tuple[int, int], Mapping[tuple[int, int], str]]
     ) -> list[Design]:
         """Return the designs of a job each; ``keys`` are those of all, by (design, batch)."""
         first = {(job.design, job.batch): job for job in jobs}
@@ -233,7 +233,7 @@ class StudyResult(Presentable):
             errors = np.array([goal.error(run.records, self.plan.states) for run in runs])
             finer = np.array([run.again for run in runs], dtype=bool)
             own = points, self.values(runs, [goal])[:, 0], errors, finer
-            self._fitted[goal] = fitted(str(goal), goal.unit, dimensions, *own)
+            self._fitted[goal] = fit_surrogate(str(goal), goal.unit, dimensions, *own)
         return self._fitted[goal]
 
     @cached_property
@@ -369,7 +369,9 @@ class StudyResult(Presentable):
     @property
     def keys(self) -> Sequence[str]:
         """Keys of the cases that were set so far, in order."""
-        return self.jobs.keys if isinstance(self.jobs, Jobs) else [job.key for job in self.jobs]
+        return (
+            self.jobs.keys if isinstance(self.jobs, BatchJobs) else [job.key for job in self.jobs]
+        )
 
     @cached_property
     def endings(self) -> Counter[str]:

@@ -29,7 +29,7 @@ MOST_DRAWS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Scan:
+class DesignScan:
     """Columns over the finished cases and, last, one that is not; nan where there is no number.
 
     Attributes:
@@ -50,7 +50,9 @@ class Scan:
     programs: Collection[str]
 
 
-def scanned(records: Records, outputs: Collection[str] = (), *, draws: bool = False) -> Scan:
+def scan_cases(
+    records: Records, outputs: Collection[str] = (), *, draws: bool = False
+) -> DesignScan:
     """Return some outputs of all finished cases, and with ``draws`` those of COF.
 
     Raises:
@@ -62,7 +64,7 @@ def scanned(records: Records, outputs: Collection[str] = (), *, draws: bool = Fa
         return _scanned(records.look(), outputs, draws)
 
 
-def _scanned(records: Records, outputs: Collection[str], draws: bool) -> Scan:
+def _scanned(records: Records, outputs: Collection[str], draws: bool) -> DesignScan:
     keys = list(records)
     case, numbers, errors = (
         {name: np.full(len(keys) + 1, np.nan) for name in names}
@@ -94,7 +96,7 @@ def _scanned(records: Records, outputs: Collection[str], draws: bool) -> Scan:
                 table = np.repeat(table[:, :1], row.size, axis=1)  # the first that has draws
             table[k] = row if row.size == table.shape[1] else row.mean()
     rows = {key: k for k, key in enumerate(keys)}
-    return Scan(rows, case, numbers, errors, table if draws else None, every, programs - {""})
+    return DesignScan(rows, case, numbers, errors, table if draws else None, every, programs - {""})
 
 
 def _pattern(name: str) -> re.Pattern[bytes]:

@@ -17,7 +17,7 @@ from underfoot.core.progress import time_text
 from .record import Ending
 from .records import Records
 from .result import StudyResult
-from .scan import Scan, scanned
+from .scan import DesignScan, scan_cases
 from .study import Study
 
 USUAL = (Ending.OPEN, Ending.COMPUTED)
@@ -46,9 +46,9 @@ class StudyStatus(StudyResult):
         return sum(one["workers"] for one in self._alive)
 
     @cached_property
-    def scan(self) -> Scan:
+    def scan(self) -> DesignScan:
         """Numbers of all finished cases."""
-        return scanned(self.records)
+        return scan_cases(self.records)
 
     @property
     def case_seconds(self) -> float:

@@ -44,10 +44,10 @@ from underfoot.core.optional import optional_module
 from underfoot.core.text import harmless
 
 from .claims import Round, begin_round, clear, latest_round
-from .jobs import Jobs, add_batch, jobs_at
-from .lines import FORMAT, sealed, whole_lines, write_all, write_file
+from .jobs import BatchJobs, add_batch, jobs_at
+from .lines import FORMAT, seal_line, whole_lines, write_all, write_file
 from .plan import StudyPlan
-from .record import Job, Record
+from .record import CaseJob, Record
 from .records import DRAWS, LINES, Records
 from .study_file import read_plan
 
@@ -133,7 +133,7 @@ class Store:
         with suppress(FileNotFoundError):
             aside = f"jobs-before-{uuid4().hex[:8]}.jsonl"
             os.rename(self.folder / "jobs.jsonl", self.folder / aside)
-        self.begin_round(Jobs(self.folder / "jobs.jsonl"), ended=False)
+        self.begin_round(BatchJobs(self.folder / "jobs.jsonl"), ended=False)
         for path, text in paths.items():
             write_file(path, text)
 
@@ -184,7 +184,7 @@ class Store:
         for _, _, body in whole_lines(self.folder / "jobs.jsonl"):
             if b'"point": ' not in body:
                 continue  # closes a batch
-            job = Job.from_line(body)
+            job = CaseJob.from_line(body)
             if not 0 <= job.condition < len(plan.states) or job.draw >= len(plan.draws):
                 return False
             if len(job.point) not in (0, len(plan.dimensions)):
@@ -195,9 +195,9 @@ class Store:
 
     # --- what is there ---
 
-    def jobs(self) -> Jobs:
+    def jobs(self) -> BatchJobs:
         """Return the jobs of the batches that were set, in their order."""
-        return Jobs(self.folder / "jobs.jsonl")
+        return BatchJobs(self.folder / "jobs.jsonl")
 
     def records(self) -> Records:
         """Return the finished cases by key; only what is new is read again."""
@@ -205,7 +205,7 @@ class Store:
 
     # --- what is added ---
 
-    def add_batch(self, before: Jobs, jobs: Iterable[Job]) -> int:
+    def add_batch(self, before: BatchJobs, jobs: Iterable[CaseJob]) -> int:
         """Set a batch behind those that are there; return its number of jobs.
 
         Only the leading process does. A batch that was cut off is written over.
@@ -215,7 +215,7 @@ class Store:
         except OSError as error:
             raise self._full(error) from error
 
-    def close_batches(self, before: Iterable[Job]) -> None:
+    def close_batches(self, before: Iterable[CaseJob]) -> None:
         """Write jobs of version 1 anew, in closed batches."""
         whole = self.folder / f".jobs-{uuid4().hex}"
         whole.touch()
@@ -269,7 +269,7 @@ class Store:
     def _write(self, record: Record) -> None:
         draws, path = record.packed_draws, self.folder / f"{LINES}{self.name}.jsonl"
         first = self._append(self.folder / f"{DRAWS}{self.name}.f4", draws) if draws else 0
-        line = sealed(record.line((first, len(draws) // 4, crc32(draws))))
+        line = seal_line(record.line((first, len(draws) // 4, crc32(draws))))
         place = self._append(path, line)
         self.known.add(record.key, record.ending, path, place, place + len(line))
         if time.monotonic() - self._committed > COMMIT:
@@ -367,7 +367,7 @@ class Store:
             return (self.folder / "lead.lock").read_text(encoding="utf-8")
         return ""
 
-    def begin_round(self, jobs: Jobs, *, ended: bool) -> int:
+    def begin_round(self, jobs: BatchJobs, *, ended: bool) -> int:
         """Give out the jobs that have no record; return their number.
 
         Only the leading process does. ``ended`` says that a round without jobs is the last one;
@@ -394,7 +394,7 @@ class Store:
         self._round = latest
         return latest
 
-    def take(self, *, in_order: bool) -> list[Job] | None:
+    def take(self, *, in_order: bool) -> list[CaseJob] | None:
         """Return jobs that this process is to compute now, [] where they are; None without any."""
         latest, claimed = self.round, None
         with suppress(FileNotFoundError):  # the round ended, or a leader looks whether it did
@@ -500,7 +500,9 @@ class Store:
         ended = {
             session["name"]: session for session in self.sessions() if session["ended"] is not None
         }
-        lines = [sealed(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()]
+        lines = [
+            seal_line(json.dumps({"format": FORMAT, "session": one})) for one in ended.values()
+        ]
         if lines:
             write_file(self.folder / "sessions.jsonl", b"".join(lines))
         for name in ended:

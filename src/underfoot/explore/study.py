@@ -12,12 +12,12 @@ from underfoot.core import InputError, Progress, nearest_match, silent
 from underfoot.core.errors import Cancelled
 
 from .claims import Round
-from .computing import computed, crashed
+from .computing import compute_job, crash_record
 from .cost import spread_jobs
 from .engines import PATIENCE, Engine, engine
 from .plan import StudyPlan
 from .proposals import first_points, next_batch
-from .record import Ending, Job
+from .record import CaseJob, Ending
 from .result import StudyResult
 from .store import SILENT, STOP, Store
 from .study_file import load_plan
@@ -128,7 +128,7 @@ class Study:
             known = self.store.records()
             for done, job in enumerate(jobs if leads else [], start=1):
                 if job.key not in known:
-                    self.store.add_record(computed(self.plan.base, job))
+                    self.store.add_record(compute_job(self.plan.base, job))
                 progress("Timing cases", done / len(jobs))
 
     def result(self) -> StudyResult:
@@ -142,11 +142,11 @@ class Study:
 
     def _compute(self, compute: Engine, workers: int, progress: Progress, *, leads: bool) -> int:
         """Compute what nobody else does until the study is done; return how many cases."""
-        count, function = 0, partial(computed, self.plan.base)
+        count, function = 0, partial(compute_job, self.plan.base)
         with self.store.working(workers):
             try:
                 for record in compute(
-                    function, self._claimed(leads, self._told(progress)), crashed
+                    function, self._claimed(leads, self._told(progress)), crash_record
                 ):
                     self.store.add_record(record)
                     count += 1
@@ -157,7 +157,7 @@ class Study:
                 raise type(stop)(kept) from None
         return count
 
-    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[Job | None]:
+    def _claimed(self, leads: bool, told: Callable[[str], None]) -> Iterator[CaseJob | None]:
         """Yield jobs that nobody else computes; None while the last ones of a batch run."""
         if leads and self.store.end_round():
             self._begin_next()

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 
 from underfoot.case import Case, CaseError
 from underfoot.case import text as toml
-from underfoot.case.errors import placed, translated
+from underfoot.case.errors import place_error, translate_errors
 from underfoot.compute.positions import run_cost
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.catalogue import Catalogue, catalogue_folders
@@ -79,7 +79,7 @@ def load_plan(path: Path | str, *, catalogue: Catalogue | None = None) -> StudyP
         CaseError: Everything that is wrong with the file, each with its line.
     """
     path = Path(path)
-    return read_plan(toml.read(path), path.parent, str(path), catalogue=catalogue)
+    return read_plan(toml.read_text(path), path.parent, str(path), catalogue=catalogue)
 
 
 def read_plan(
@@ -268,7 +268,7 @@ class _Reader:
     """A study file on its way to a plan: every error is kept with its place."""
 
     def __init__(self, text: str, file: str | None) -> None:
-        self.plain, self.places = toml.parsed(text, file), toml.Places(file, text)
+        self.plain, self.places = toml.parse_toml(text, file), toml.Places(file, text)
         self.errors: list[InputError] = []
         for key in self.plain:
             self.check_known(key, "section", key, SECTIONS)
@@ -311,7 +311,7 @@ class _Reader:
         except CaseError as error:
             self.errors += error.errors
         except InputError as error:
-            self.errors.append(placed(error, lambda inner: self.places(f"{path}{inner}")))
+            self.errors.append(place_error(error, lambda inner: self.places(f"{path}{inner}")))
         return None
 
     def end(self) -> None:
@@ -440,7 +440,9 @@ class _Reader:
             method = Method.model_validate(table)
         except ValidationError as error:
             place = self.places
-            self.errors += translated(error, Method, table, lambda key: place(f"method.{key}"))
+            self.errors += translate_errors(
+                error, Method, table, lambda key: place(f"method.{key}")
+            )
             return Method()
         steps = all(isinstance(one, Choice) or one.steps for one in vary)
         if method.design is None:

@@ -385,7 +385,7 @@ class Surrogate:
 
 
 @threads_limited(1)
-def fitted(
+def fit_surrogate(
     name: str,
     unit: str,
     dimensions: Sequence[Dimension],
@@ -452,11 +452,11 @@ def _left_out(made: Model, runs: Runs) -> tuple[Array, Array, list[Model]]:
 
 def _features(dimensions: Sequence[Dimension], points: Array, finer: AnyArray) -> Array:
     """Return the features of places, with a column for the grid where any is on the finer one."""
-    features = featured(dimensions, points)
+    features = feature_columns(dimensions, points)
     return np.column_stack([features, FORM * finer]) if np.any(finer) else features
 
 
-def featured(dimensions: Sequence[Dimension], points: Array) -> Array:
+def feature_columns(dimensions: Sequence[Dimension], points: Array) -> Array:
     """Return what the process sees: a range as its share, a name as one column a value."""
     columns = []
     for dimension, share in zip(dimensions, np.asarray(points, dtype=float).T, strict=True):

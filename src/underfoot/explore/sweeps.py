@@ -108,7 +108,7 @@ def _ran(
         name: {key: _written(name, key, value) for key, value in table.items() if value is not None}
         for name, table in tables.items()
     }
-    text = toml.written({name: table for name, table in tree.items() if table})
+    text = toml.toml_text({name: table for name, table in tree.items() if table})
     with TemporaryDirectory(prefix="underfoot-study-") as temporary:
         place = Path(temporary if folder is None else folder)
         study = Study(read_plan(text, place, base=case), place)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, Range, RangeError, breaches
+from underfoot.core import Breach, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive, positive_array
 
@@ -25,8 +25,8 @@ TABLE = {
 fit of C and r (log-linear, in a public bearing code) agrees within 5 %."""
 
 RANGES = {
-    "gap over roughness H": Range(0.5, math.inf, "1", f"{SOURCE}; isotropic"),
-    "anisotropy gamma": Range(1 / 9, 9.0, "1", SOURCE),
+    "gap over roughness H": ValidityRange(0.5, math.inf, "1", f"{SOURCE}; isotropic"),
+    "anisotropy gamma": ValidityRange(1 / 9, 9.0, "1", SOURCE),
 }
 
 

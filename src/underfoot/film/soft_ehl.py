@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, breaches, checks, unknown_name
+from underfoot.core import Breach, InputError, ValidityRange, breaches, checks, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive, positive_array
 
@@ -14,9 +14,13 @@ SPEEDS = {"entrainment": 0.5, "sliding": 1.0}
 """Share of the sliding speed that the formula is given."""
 
 RANGES = {
-    "dimensionless speed U": Range(0.5e-8, 5.1e-8, "1", "Hamrock and Dowson 1978, from memory"),
-    "dimensionless load W": Range(0.2e-3, 2.2e-3, "1", "Hamrock and Dowson 1978, from memory"),
-    "ellipticity k": Range(1.0, 12.0, "1", "Hamrock and Dowson 1978, from memory"),
+    "dimensionless speed U": ValidityRange(
+        0.5e-8, 5.1e-8, "1", "Hamrock and Dowson 1978, from memory"
+    ),
+    "dimensionless load W": ValidityRange(
+        0.2e-3, 2.2e-3, "1", "Hamrock and Dowson 1978, from memory"
+    ),
+    "ellipticity k": ValidityRange(1.0, 12.0, "1", "Hamrock and Dowson 1978, from memory"),
 }
 """Films the formula was fitted to; it is a power law and often used far outside."""
 

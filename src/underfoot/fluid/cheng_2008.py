@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, RangeError, breaches
+from underfoot.core import Breach, InputError, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
 
 NAME = "cheng_2008"
@@ -14,8 +14,8 @@ SOURCE = (
     "Ind. Eng. Chem. Res. 47 (2008) 3285-3288, Eq. 6, 12, 13, 21-25"
 )
 RANGES = {
-    "fraction": Range(0.0, 1.0, "1", "Cheng 2008"),
-    "temperature": Range(273.15, 373.15, "K", "Cheng 2008"),
+    "fraction": ValidityRange(0.0, 1.0, "1", "Cheng 2008"),
+    "temperature": ValidityRange(273.15, 373.15, "K", "Cheng 2008"),
 }
 BASES = ("mass", "volume")
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue, breaches, unknown_name
+from underfoot.core import Breach, InputError, SourcedValue, ValidityRange, breaches, unknown_name
 from underfoot.core.arrays import scalar_or_array
 
 NAME = "strobel_2012"
@@ -23,9 +23,9 @@ NORMAL_FORCE = 20.9
 MEAN_ERROR = 1.05
 """N, mean absolute error of Eq. 26 over the tests (G.3.2)."""
 RANGES = {
-    "normal_force": Range(20.9, 20.9, "N", "G.3: one load"),
-    "speed": Range(0.01, 0.01, "m/s", "G.3: one speed"),
-    "viscosity": Range(0.52e-3, 74.6e-3, "Pa*s", "G.3: water to canola oil"),
+    "normal_force": ValidityRange(20.9, 20.9, "N", "G.3: one load"),
+    "speed": ValidityRange(0.01, 0.01, "m/s", "G.3: one speed"),
+    "viscosity": ValidityRange(0.52e-3, 74.6e-3, "Pa*s", "G.3: water to canola oil"),
 }
 
 

@@ -1,5 +1,7 @@
 """Friction of sole, floor and fluid together: local laws and Eq. (1) over the whole sole."""
 
+from underfoot.core.deprecation import package_names
+
 from .adhesion_blocking import AdhesionBlockingLaw as AdhesionBlockingLaw
 from .asperity_ehl import ONE_CURVE as ONE_CURVE
 from .asperity_ehl import OWN_BOUNDARY as OWN_BOUNDARY
@@ -32,7 +34,7 @@ from .pair_contact import PairDraws as PairDraws
 from .pair_contact import packaged_pair_draws as packaged_pair_draws
 from .pair_contact import read_pair_draws as read_pair_draws
 from .propagation import Propagated as Propagated
-from .propagation import propagated as propagated
+from .propagation import propagate_spread as propagate_spread
 from .rival_speed_effects import MeanFilmSharing as MeanFilmSharing
 from .rival_speed_effects import ViscoelasticArea as ViscoelasticArea
 from .rival_speed_effects import modulus_exponent as modulus_exponent
@@ -43,3 +45,5 @@ from .speed_effect import SpeedEffect as SpeedEffect
 from .speed_effect import SpeedEffectLaw as SpeedEffectLaw
 from .speed_effect import cof_with_speed as cof_with_speed
 from .speed_table import SpeedTableLaw as SpeedTableLaw
+
+__getattr__ = package_names(__name__, gone="0.5", propagated="propagate_spread")

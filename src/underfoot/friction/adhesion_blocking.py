@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from underfoot.core import Range, SourcedValue
+from underfoot.core import SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Message
 from underfoot.fluid import AdhesionBlocking
@@ -13,8 +13,10 @@ from .law import FILM_RANGE, PIN_PRESSURE, REPORT, UncertainInputs, coefficient
 NORMAL_FORCE = 20.9
 """N, the load of the tests behind Eq. 26 (G.3.1)."""
 RANGES = {
-    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.3.1: one load; lower assumed"),
-    "sliding speed": Range(0.0, 0.01, "m/s", f"{REPORT}, G.3.1: one speed"),
+    "contact pressure": ValidityRange(
+        0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.3.1: one load; lower assumed"
+    ),
+    "sliding speed": ValidityRange(0.0, 0.01, "m/s", f"{REPORT}, G.3.1: one speed"),
 }
 
 
@@ -72,5 +74,5 @@ class AdhesionBlockingLaw(UncertainInputs):
         return tuple(part * pressure for part in self.cof_parts)
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         return {**RANGES, **FILM_RANGE}

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erfc
 
-from underfoot.core import Range, SourcedValue
+from underfoot.core import SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.checks import choice, positive
 from underfoot.core.remark import Message
@@ -148,7 +148,7 @@ class CalibratedLevels:
     cof_boundary: SourcedValue | None
     cof_hysteresis: SourcedValue
     deviation: float
-    product: Range
+    product: ValidityRange
 
 
 def _level(value: float, deviation: float, unit: str, fluids: str) -> SourcedValue:
@@ -168,7 +168,7 @@ OWN_BOUNDARY = CalibratedLevels(
     cof_boundary=None,
     cof_hysteresis=_level(0.0952, 0.0110, "1", _FITTED),
     deviation=0.030,
-    product=Range(0.52e-3 * 0.05, 5.54e-3, "Pa*m", f"{_FITTED}, {_PAIR}"),
+    product=ValidityRange(0.52e-3 * 0.05, 5.54e-3, "Pa*m", f"{_FITTED}, {_PAIR}"),
 )
 """For fluids whose COF_BL was measured as a limit at low speed; deviation: the five fluids that a
 calibration on 50 % glycerol predicts blind."""
@@ -178,7 +178,7 @@ ONE_CURVE = CalibratedLevels(
     cof_boundary=_level(0.7311, 0.0161, "1", _ALL),
     cof_hysteresis=_level(0.1243, 0.0061, "1", _ALL),
     deviation=0.046,
-    product=Range(0.52e-3 * 0.05, 74.6e-3, "Pa*m", f"{_ALL}, {_PAIR}"),
+    product=ValidityRange(0.52e-3 * 0.05, 74.6e-3, "Pa*m", f"{_ALL}, {_PAIR}"),
 )
 """For fluids of which only the viscosity is known: one curve of viscosity x speed for all;
 deviation: each of the six fluids predicted by a calibration on the other five."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Message
 
@@ -106,5 +106,5 @@ class BoundaryLaw(UncertainInputs):
         return tuple(part * pressure for part in self.cof_parts)
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         return PIN_RANGES

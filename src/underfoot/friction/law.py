@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, SourcedValue, breaches
+from underfoot.core import Breach, InputError, SourcedValue, ValidityRange, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 from underfoot.core.presentation import AssumingModel, Presentable, Table
@@ -22,10 +22,14 @@ SMALLEST_FILM = 2e-7
 REPORT = "final progress report on shoe-floor friction"
 PIN_PRESSURE = 266.1e3
 """Pa: 20.9 N on a pin of 10 mm, the one load of the report's pin-on-disk studies (G.2.1, G.3.1)."""
-FILM_RANGE = {"film thickness": Range(SMALLEST_FILM, math.inf, "m", "bound of the viscous part")}
+FILM_RANGE = {
+    "film thickness": ValidityRange(SMALLEST_FILM, math.inf, "m", "bound of the viscous part")
+}
 PIN_RANGES = {
-    "contact pressure": Range(0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"),
-    "sliding speed": Range(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
+    "contact pressure": ValidityRange(
+        0.0, PIN_PRESSURE, "Pa", f"{REPORT}, G.2.1: one load; lower assumed"
+    ),
+    "sliding speed": ValidityRange(0.05, 1.0, "m/s", f"{REPORT}, G.2.1"),
     **FILM_RANGE,
 }
 """What the pin-on-disk tests of G.2.1 cover, and what bounds the viscous part."""
@@ -117,13 +121,13 @@ class UncertainInputs(Presentable):
     ) -> FrictionParts:
         """Return the shear stresses in Pa."""
         law: Any = self
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        pressure, velocity, film = check_arguments(contact_pressure, speed, film_thickness)
         adhesion, hysteresis, *fraction = self.contact_shear(pressure, velocity)
         viscous = viscous_shear(law.viscosity, velocity, film)
         return FrictionParts(adhesion, hysteresis, viscous, *fraction)
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         """What the law was measured on, and what bounds its viscous part."""
         return FILM_RANGE
 
@@ -141,7 +145,7 @@ class UncertainInputs(Presentable):
             film_thickness: m.
         """
         law: Any = self
-        pressure, velocity, film = checked(contact_pressure, speed, film_thickness)
+        pressure, velocity, film = check_arguments(contact_pressure, speed, film_thickness)
         total = float(pressure.sum())
         values: dict[str, ArrayLike] = {"sliding speed": velocity}
         if total > 0:
@@ -215,7 +219,7 @@ def drawn_value(value: float, centre: float | None) -> float:
     return max(float(value), SMALLEST * (centre or 0.0))
 
 
-def checked(
+def check_arguments(
     contact_pressure: ArrayLike, speed: ArrayLike, film_thickness: ArrayLike
 ) -> tuple[Array, Array, Array]:
     """Return the arguments of a law as arrays of one shape; the speed as its magnitude."""

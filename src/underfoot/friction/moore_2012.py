@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.remark import Message
 
@@ -150,7 +150,7 @@ class StribeckLaw(UncertainInputs):
         return (cof - hysteresis) * pressure, hysteresis * pressure
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         return PIN_RANGES
 
 

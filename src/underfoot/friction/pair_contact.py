@@ -41,7 +41,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erf, ndtri
 
-from underfoot.core import DataError, InputError, Range, SourcedValue
+from underfoot.core import DataError, InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 from underfoot.core.remark import Message, Remark
@@ -95,8 +95,8 @@ def relative_area(pressure: ArrayLike, full_contact: ArrayLike) -> Array:
 
 SOURCE = "law of the pair, calibrated on published measurements (underfoot studies run corpus)"
 RANGES = {
-    "sliding speed": Range(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
-    "viscosity": Range(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
+    "sliding speed": ValidityRange(0.01, 1.0, "m/s", "speeds of the measurements behind the law"),
+    "viscosity": ValidityRange(0.5e-3, 0.3, "Pa*s", "fluids of the measurements behind the law"),
 }
 Family = Literal["aqueous", "detergent", "oil", "dry"]
 HIGHEST_WET, HIGHEST_DRY = 1.39, 3.0
@@ -554,5 +554,5 @@ class PairContactLaw(UncertainInputs):
         return adhesion * most, hysteresis * most
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         return {"sliding speed": RANGES["sliding speed"], **FILM_RANGE, **RANGES}

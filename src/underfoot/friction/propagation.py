@@ -44,7 +44,7 @@ class Propagated:
     drawn: Mapping[str, Array]
 
 
-def propagated(
+def propagate_spread(
     function: Callable[[Mapping[str, float]], object],
     inputs: Mapping[str, SourcedValue],
     *,

@@ -12,7 +12,7 @@ from underfoot.core.arrays import Array, Mask
 from underfoot.core.remark import NOTHING, Message
 
 from .law import SMALLEST_FILM, FrictionLaw, FrictionParts
-from .propagation import Propagated, propagated
+from .propagation import Propagated, propagate_spread
 
 PARTS = ("adhesion", "hysteresis", "viscous")
 CLASSES = 64
@@ -223,7 +223,7 @@ def sampled_cof(
         return factor * sums(drawn(pressure, speed, gap), counts, wet_counts)
 
     options = {"samples": samples, "seed": seed, "shares": False}
-    spread = propagated(parts, inputs, confidence=confidence, joint=joint, **options)
+    spread = propagate_spread(parts, inputs, confidence=confidence, joint=joint, **options)
     drawn, suctions = spread.drawn, 1.0
     if SUCTION in drawn and pull is not None and pull.value:
         ratio = np.clip(drawn[SUCTION], 0.0, VACUUM) / pull.value
@@ -293,7 +293,7 @@ def sampled_points(
         return np.maximum(solid, 0.0) + shear.viscous / pressure
 
     joint = _joint(law, samples, seed)
-    return propagated(points, inputs, samples=samples, seed=seed, shares=False, joint=joint)
+    return propagate_spread(points, inputs, samples=samples, seed=seed, shares=False, joint=joint)
 
 
 def _inputs(

@@ -118,7 +118,7 @@ def shoe_class(name: str, where: str = "shoe.class") -> ShoeClass:
     return ShoeClass(name, entry["source"], readings, entry.get("fails", False))
 
 
-def certified(test: str, cof: float, kind: str, sd: float | None, where: str) -> Certified:
+def certificate_line(test: str, cof: float, kind: str, sd: float | None, where: str) -> Certified:
     """Return one line of a certificate.
 
     Raises:

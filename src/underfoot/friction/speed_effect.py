@@ -9,7 +9,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import AssumingModel
 from underfoot.core.remark import Message
@@ -89,7 +89,7 @@ class SpeedEffectLaw(UncertainInputs):
     model_deviation: float | None = None
     assumed: tuple[Message, ...] = ()
     effect_inputs: Mapping[str, SourcedValue] = field(default_factory=dict)
-    calibrated_product: Range | None = None
+    calibrated_product: ValidityRange | None = None
 
     def __post_init__(self) -> None:
         UncertainInputs.__post_init__(self)
@@ -148,7 +148,7 @@ class SpeedEffectLaw(UncertainInputs):
         return (boundary - hysteresis) * np.asarray(left) * pressure, hysteresis * pressure
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
+    def ranges(self) -> Mapping[str, ValidityRange]:
         product = self.calibrated_product
         return PIN_RANGES if product is None else {**PIN_RANGES, "viscosity x speed": product}
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from underfoot.core import InputError, Range, SourcedValue
+from underfoot.core import InputError, SourcedValue, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative
 from underfoot.core.presentation import Table
@@ -117,9 +117,9 @@ class SpeedTableLaw(UncertainInputs):
         return replace(law, cof=moved)
 
     @property
-    def ranges(self) -> Mapping[str, Range]:
-        speed = Range(float(self.speed[0]), float(self.speed[-1]), "m/s", self.source)
+    def ranges(self) -> Mapping[str, ValidityRange]:
+        speed = ValidityRange(float(self.speed[0]), float(self.speed[-1]), "m/s", self.source)
         ranges = {"sliding speed": speed}
         if self.pressure is not None:
-            ranges["contact pressure"] = Range(*self.pressure, "Pa", self.source)
+            ranges["contact pressure"] = ValidityRange(*self.pressure, "Pa", self.source)
         return ranges | FILM_RANGE

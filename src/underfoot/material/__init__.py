@@ -1,5 +1,7 @@
 """Rubber: hardness to modulus, relaxation spectra and how to get them from tests."""
 
+from underfoot.core.deprecation import package_names
+
 from .bs903_1950 import bs903_breaches as bs903_breaches
 from .bs903_1950 import youngs_modulus_bs903 as youngs_modulus_bs903
 from .curves import DynamicSweep as DynamicSweep
@@ -38,5 +40,7 @@ from .spectrum_fit import ReducedSpectrum as ReducedSpectrum
 from .spectrum_fit import SpectrumFit as SpectrumFit
 from .spectrum_fit import fit_dynamic as fit_dynamic
 from .spectrum_fit import fit_relaxation as fit_relaxation
-from .spectrum_fit import reduced as reduced
+from .spectrum_fit import reduce_spectrum as reduce_spectrum
 from .write_decks import write_deck as write_deck
+
+__getattr__ = package_names(__name__, gone="0.5", reduced="reduce_spectrum")

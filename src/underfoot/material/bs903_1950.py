@@ -4,14 +4,14 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, Range, breaches
+from underfoot.core import Breach, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
 
 from ._hardness import checked_hardness
 
 NAME = "bs903_1950"
 SOURCE = "BS 903:1950; S = 100 erf(3.186e-4 E^(1/2)), E in Pa, as quoted by Gent (1958) and later"
-RANGES = {"shore_a": Range(30.0, 95.0, "1", "assumed: standard hardness range of IRHD")}
+RANGES = {"shore_a": ValidityRange(30.0, 95.0, "1", "assumed: standard hardness range of IRHD")}
 
 
 def youngs_modulus_bs903(shore_a: ArrayLike) -> Any:

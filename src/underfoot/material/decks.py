@@ -46,7 +46,7 @@ def read_deck(path: Path | str, modulus_unit: str | None = None) -> Deck:
     """
     path = text.existing(path)
     where = str(path)
-    content = text.decoded(path.read_bytes(), where)
+    content = text.decode_text(path.read_bytes(), where)
     read = {"LS-DYNA": _dyna, "Abaqus": _abaqus, "FEBio": _febio}[SUFFIXES[path.suffix.casefold()]]
     rest, terms, tau, shear, said = read(content, where)
     if modulus_unit is None:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, Range, RangeError, breaches
+from underfoot.core import Breach, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
 
 from ._hardness import checked_hardness
@@ -16,7 +16,7 @@ SOURCE = (
     "Trans. Inst. Rubber Ind. 34 (1958) 46-57"
 )
 RANGES = {
-    "shore_a": Range(
+    "shore_a": ValidityRange(
         40.0,
         80.0,
         "1",

@@ -14,7 +14,7 @@ from .curves import DynamicSweep, RelaxationCurve
 from .decks import is_deck, read_deck
 from .elastomer import young_from_shear
 from .spectrum import RelaxationSpectrum
-from .tables import Column, Table, read_tables
+from .tables import FileColumn, FileTable, read_tables
 
 MODULI = ("modulus at once", "modulus at rest")
 _TERMS = ("term", "relaxation modulus", "storage modulus")
@@ -129,7 +129,7 @@ def read_relaxation(
     return _curves([table for table in tables if _is_relaxation(table)] or tables[:1])
 
 
-def _is_sweep(table: Table) -> bool:
+def _is_sweep(table: FileTable) -> bool:
     return table.named("angular frequency", "frequency") is not None and any(
         table.named(name) is not None
         for name in ("storage modulus", "loss modulus", "modulus magnitude", "complex viscosity",
@@ -137,18 +137,18 @@ def _is_sweep(table: Table) -> bool:
     )  # fmt: skip
 
 
-def _is_series(table: Table) -> bool:
+def _is_series(table: FileTable) -> bool:
     timed = table.named("relaxation time", "decay rate") is not None
     if table.named("fraction", "term") is not None:
         return timed or table.named("time") is not None
     return timed
 
 
-def _is_relaxation(table: Table) -> bool:
+def _is_relaxation(table: FileTable) -> bool:
     return table.named("time") is not None and table.named("relaxation modulus") is not None
 
 
-def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
+def _sweeps(tables: Sequence[FileTable]) -> list[DynamicSweep]:
     found = []
     for table in tables:
         w = table.angular_frequency()
@@ -168,7 +168,7 @@ def _sweeps(tables: Sequence[Table]) -> list[DynamicSweep]:
     return sorted(found, key=lambda sweep: sweep.temperature or 0.0)
 
 
-def _refuse_strains(table: Table, w: np.ndarray) -> None:
+def _refuse_strains(table: FileTable, w: np.ndarray) -> None:
     """Refuse a table that repeats its frequencies at other strains.
 
     A filled rubber is softer the further it is strained (Payne): no spectrum fits them together.
@@ -198,7 +198,7 @@ def _refuse_strains(table: Table, w: np.ndarray) -> None:
         )
 
 
-def _moduli(table: Table, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _moduli(table: FileTable, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return storage and loss modulus (Pa) from whatever pair of columns gives them."""
 
     def si(name: str) -> np.ndarray | None:
@@ -230,7 +230,7 @@ def _moduli(table: Table, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     raise AssertionError  # one of them would have been used
 
 
-def _curves(tables: Sequence[Table]) -> list[RelaxationCurve]:
+def _curves(tables: Sequence[FileTable]) -> list[RelaxationCurve]:
     curves = []
     for table in tables:
         time = table.si(table.needed("time"))
@@ -292,7 +292,7 @@ def read_prony(
 
 
 def _series(
-    table: Table, instantaneous: float | None, equilibrium: float | None
+    table: FileTable, instantaneous: float | None, equilibrium: float | None
 ) -> RelaxationSpectrum:
     """Return the series of a table, moduli as headed."""
     where, tau = table.where, _times(table)
@@ -328,13 +328,13 @@ def _series(
     return _prony(tau, values, fraction is not None, at_once, at_rest, where, where)
 
 
-def _constant(table: Table, column: Column | None) -> float | None:
+def _constant(table: FileTable, column: FileColumn | None) -> float | None:
     """Return the modulus (Pa) that a column holds, in every row or in the first alone."""
     if column is None:
         return None
     cells = [cell for cell in column.cells if cell.casefold() not in text.MISSING]
-    whole = Table(
-        (Column(column.name, column.quantity, column.unit, tuple(cells), column.form),),
+    whole = FileTable(
+        (FileColumn(column.name, column.quantity, column.unit, tuple(cells), column.form),),
         table.lines,
         table.where,
         stated=table.stated,
@@ -345,7 +345,7 @@ def _constant(table: Table, column: Column | None) -> float | None:
     return float(values[0])
 
 
-def _times(table: Table) -> np.ndarray:
+def _times(table: FileTable) -> np.ndarray:
     """Return relaxation times (s), infinite for the modulus at rest."""
     column = table.named("relaxation time", "decay rate") or table.named("time")
     if column is None:
@@ -414,7 +414,7 @@ def _prony(
 
 def _toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(text.decoded(text.existing(path).read_bytes(), str(path)))
+        return tomllib.loads(text.decode_text(text.existing(path).read_bytes(), str(path)))
     except tomllib.TOMLDecodeError as error:
         raise DataError(f"not valid TOML: {error}", where=str(path)) from error
 
@@ -465,7 +465,7 @@ def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
     return spectrum, kind == "shear"
 
 
-def _sets(table: Table, axis: np.ndarray) -> list[tuple[np.ndarray, float | None]]:
+def _sets(table: FileTable, axis: np.ndarray) -> list[tuple[np.ndarray, float | None]]:
     """Return the rows of each test of a table and its temperature (K), coldest first.
 
     ``axis`` is what runs within a test: frequency or time.

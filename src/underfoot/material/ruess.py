@@ -4,7 +4,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, Range, breaches
+from underfoot.core import Breach, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
 
 from ._hardness import checked_hardness
@@ -14,7 +14,9 @@ SOURCE = (
     "log10 E = 0.0235 S - 0.6403, as given by K. Larson, Can you estimate modulus from durometer "
     "hardness for silicones?, Dow (2016), ascribed there to Ruess"
 )
-RANGES = {"shore_a": Range(30.0, 60.0, "1", "best fit for silicones 30 to 60 (secondary source)")}
+RANGES = {
+    "shore_a": ValidityRange(30.0, 60.0, "1", "best fit for silicones 30 to 60 (secondary source)")
+}
 
 
 def youngs_modulus_ruess(shore_a: ArrayLike) -> Any:

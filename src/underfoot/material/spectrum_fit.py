@@ -344,7 +344,7 @@ class ReducedSpectrum:
     loss_error: float
 
 
-def reduced(
+def reduce_spectrum(
     spectrum: RelaxationSpectrum, frequency_range: tuple[float, float], *, terms_per_decade: int = 1
 ) -> ReducedSpectrum:
     """Return the spectrum with evenly spread terms that follow it over ``frequency_range`` only.

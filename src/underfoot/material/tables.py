@@ -104,7 +104,7 @@ _RHEOMETER = re.compile(r"(?i)^(point no\.?|meas\. ?pts\.?|interval data:?|messp
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class FileColumn:
     """A column: its heading without the unit, the quantity that it names, unit and numbers."""
 
     name: str
@@ -117,14 +117,14 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class FileTable:
     """A table of a file.
 
     ``lines`` are the line numbers of its rows, ``part`` counts tables of one file from 0,
     ``stated`` gives units by column name or quantity where the file has none, or other ones.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[FileColumn, ...]
     lines: tuple[int, ...]
     where: str
     part: int = 0
@@ -133,12 +133,12 @@ class Table:
     """Temperature that stands above the table, K."""
     rheometer: bool = False
 
-    def named(self, *quantities: str) -> Column | None:
+    def named(self, *quantities: str) -> FileColumn | None:
         """Return the first column of one of the quantities."""
         generator = (c for q in quantities for c in self.columns if c.quantity == q)
         return next(generator, None)
 
-    def needed(self, *quantities: str) -> Column:
+    def needed(self, *quantities: str) -> FileColumn:
         """Return the first column of one of the quantities; a DataError without one."""
         column = self.named(*quantities)
         if column is not None:
@@ -154,7 +154,7 @@ class Table:
             nearest=next(filter(None, near), None),
         )
 
-    def numbers(self, column: Column, infinite: bool = False) -> np.ndarray:
+    def numbers(self, column: FileColumn, infinite: bool = False) -> np.ndarray:
         """Return the numbers of a column as written; refuse them where one is missing."""
         try:
             values = np.array(column_numbers([_infinity(c) for c in column.cells], column.form))
@@ -179,12 +179,12 @@ class Table:
             )
         return values
 
-    def unit(self, column: Column, quantity: str | None = None) -> str:
+    def unit(self, column: FileColumn, quantity: str | None = None) -> str:
         """Return the unit of a column: stated, or of the file; "" without one."""
         stated = self.stated.get(column.name) or self.stated.get(quantity or column.quantity or "")
         return (stated or column.unit).strip().strip("[](){}").strip()
 
-    def si(self, column: Column, infinite: bool = False) -> np.ndarray:
+    def si(self, column: FileColumn, infinite: bool = False) -> np.ndarray:
         """Return the numbers of a column in the SI unit of its quantity."""
         quantity = column.quantity or ""
         values = self.numbers(column, infinite)
@@ -249,17 +249,17 @@ class Table:
         return True if any(map(_of_shear, self.columns)) else None
 
 
-def _has_kind(column: Column) -> bool:
+def _has_kind(column: FileColumn) -> bool:
     """Return whether a column holds moduli, which are of shear or of tension."""
     unit = UNITS.get(column.quantity or "")
     return unit in ("Pa", "Pa*s", "1/Pa") or column.quantity == "fraction"
 
 
-def _of_young(column: Column) -> bool:
+def _of_young(column: FileColumn) -> bool:
     return _has_kind(column) and _YOUNG.search(column.name) is not None
 
 
-def _of_shear(column: Column) -> bool:
+def _of_shear(column: FileColumn) -> bool:
     return _has_kind(column) and not _of_young(column) and _SHEAR.search(column.name) is not None
 
 
@@ -429,7 +429,7 @@ def _separator(lines: Sequence[str]) -> str | None:
     return next(iter(candidates), None)
 
 
-def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> list[Table]:
+def read_tables(path: Path | str, units: Mapping[str, str] | None = None) -> list[FileTable]:
     """Return the tables of a text file, in order.
 
     Encodings UTF-8, UTF-16 and Latin-1; separators comma, semicolon, tab or blanks, whatever
@@ -541,7 +541,7 @@ class _Draft:
         said = (named[1], self.units[k], self.inside.get(k, ""))
         return one_unit(said, same, f"{where}, column {text.excerpt(named[0])}")
 
-    def table(self, where: str, part: int, stated: Mapping[str, str]) -> Table:
+    def table(self, where: str, part: int, stated: Mapping[str, str]) -> FileTable:
         cells = list(zip(*(row for _, row in self.rows), strict=True))
         plain = [without_logarithm(head) for head in self.heads]
         named = [heading_of(head) for head, _ in plain]
@@ -556,7 +556,7 @@ class _Draft:
         numeric = [k for k, q in zip(kept, quantities, strict=True) if q is not None]
         forms = dict(zip(numeric, number_forms([cells[k] for k in numeric], where), strict=True))
         columns = tuple(
-            Column(
+            FileColumn(
                 names[n], quantities[n], self._unit(named[k], k, quantities[n], where), cells[k],
                 forms.get(k, NumberForm()), plain[k][1],
             )
@@ -571,7 +571,7 @@ class _Draft:
             columns = tuple(c for c in columns if _of_young(c) or not _of_shear(c))
         rheometer = any(_RHEOMETER.match(head.strip()) for head in self.heads)
         lines = tuple(number for number, _ in self.rows)
-        return Table(columns, lines, where, part, stated, self.kelvin, rheometer)
+        return FileTable(columns, lines, where, part, stated, self.kelvin, rheometer)
 
 
 def _begun(

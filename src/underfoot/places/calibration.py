@@ -16,7 +16,7 @@ from underfoot.case.friction import PairOption
 from underfoot.case.quantity import Quantity, optional
 from underfoot.case.section import CaseView
 from underfoot.case.tables import meant_file
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable, Table
 from underfoot.friction import (
@@ -28,7 +28,7 @@ from underfoot.friction import (
 )
 from underfoot.friction.pair_contact import Pair, UnexpectedReading
 
-from .joint import KEPT_AS, JointDraws, floor_name, interval
+from .joint import KEPT_AS, PlaceDraws, floor_name, interval
 from .machines import (
     ANY_FLOOR_RQ,
     Fluid,
@@ -67,7 +67,7 @@ class FloorReading:
 
 
 def learn_floor(
-    joint: JointDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
+    joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], reading: FloorReading
 ) -> tuple[UnexpectedReading, ...]:
     """Teach draws what a machine read on a floor; return it where it was not foretold."""
     foretold = interval(reading.machine.read(joint, floor, floor_rq, reading.fluid))
@@ -174,9 +174,9 @@ def floor_calibration(
     return FloorCalibration(readings, pair_draws, before, after, joint.fewest)
 
 
-def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> JointDraws:
+def floor_draws(pair: Pair, draws: PairDraws, seed: int) -> PlaceDraws:
     """Return joint draws that know of the floor of a pair what its draws do."""
-    joint, share = JointDraws(seed=seed, start=draws), floor_name(pair)
+    joint, share = PlaceDraws(seed=seed, start=draws), floor_name(pair)
     for name, known in joint.errors().items():
         if name == share:
             joint.begin(f"roughness of floor {FLOOR}", known)
@@ -216,7 +216,7 @@ def pair_law(case: Case) -> PairContactLaw:
     Raises:
         InputError: It is none of a pair.
     """
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     if not isinstance(law, PairContactLaw):
         raise InputError(f'the law is "{law.name}"', where="friction", allowed='model = "pair"')
     return law
@@ -239,7 +239,7 @@ def calibrated_floor(
     law, read = pair_law(case), FloorReading(device, liquid, value, kind)
     beside: tuple[FloorReading, ...] = ()
     if isinstance(case.friction, PairReadOption):
-        beside, law = case.friction.floor_readings(), case.friction.unread(resolved(case))
+        beside, law = case.friction.floor_readings(), case.friction.unread(resolve_context(case))
     if any(floor_reading.machine == device for floor_reading in beside):
         raise InputError(
             f"the case holds what {device.title} read of this floor",

@@ -27,12 +27,12 @@ from scipy.special import expit
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
 from underfoot.compute.continuation import Continuation
-from underfoot.compute.positions import place_numbers, places, treaded
-from underfoot.compute.prepare import prepared
-from underfoot.compute.resolve import resolved
+from underfoot.compute.positions import has_lugs, place_numbers, places
+from underfoot.compute.prepare import prepare_case
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.sole import file_periods, sole_map
 from underfoot.compute.solve import solved_at
-from underfoot.compute.stated_spreads import ODDS, added, odds_changes
+from underfoot.compute.stated_spreads import ODDS, odds_changes, sum_of_draws
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import (
@@ -59,7 +59,7 @@ from underfoot.friction.tread_error import tread_error
 from underfoot.slip import RcofPopulation, ReportG6, mean_of_draws, slip_chances
 
 from .calibration import learn_floor
-from .joint import JointDraws, Reading, interval
+from .joint import CofReading, PlaceDraws, interval
 from .machines import FLUIDS, Machine, machines
 from .place import Place, PlaceFloor, PlaceShoe, fluid_name, same_shoe
 
@@ -128,7 +128,7 @@ class Lever:
 
 
 @dataclass(frozen=True, slots=True)
-class Measurement:
+class PossibleMeasurement:
     """A measurement that could be made: chance that the choice changes, share of slips it saves."""
 
     name: str
@@ -137,7 +137,7 @@ class Measurement:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice(Presentable):
+class ShoeChoice(Presentable):
     """Which shoe suits a place, how sure that is, and what else would help."""
 
     kind: ClassVar[str] = "choice"
@@ -145,7 +145,7 @@ class Choice(Presentable):
     place: Place
     shoes: tuple[ShoeAnswer, ...]
     levers: tuple[Lever, ...]
-    measurements: tuple[Measurement, ...]
+    measurements: tuple[PossibleMeasurement, ...]
     sources: tuple[tuple[str, float], ...]
     cofs: tuple[tuple[str, str, str, float, float, float, float], ...]
     present: str
@@ -404,7 +404,7 @@ class _Solver:
     """Cells of a place: one march a sole, continued to every floor and fluid."""
 
     place: Place
-    joint: JointDraws
+    joint: PlaceDraws
     quick: bool
     read: Mapping[str, PlaceFloor]
     """Floors with the roughness that their readings leave, by name: what is solved."""
@@ -421,7 +421,9 @@ class _Solver:
             self.place.case(shoe, solved_floors[floor.name], fluid, worn) for floor, fluid in wanted
         ]
         # a thick film is where continuation begins from best
-        order = sorted(range(len(cases)), key=lambda i: -(resolved(cases[i]).viscosity_value or 0))
+        order = sorted(
+            range(len(cases)), key=lambda i: -(resolve_context(cases[i]).viscosity_value or 0)
+        )
         sole, first = (shoe.name, worn), cases[order[0]]
         if sole not in self.marches:
             begun = Continuation(first, quick=self.quick)
@@ -458,7 +460,7 @@ class _Solver:
         moved: Array,
         tread: Array,
     ) -> Cell:
-        context = resolved(case)
+        context = resolve_context(case)
         law = case.friction.build(context)
         assert isinstance(law, PairContactLaw)
         joint, viscosity = self.joint, law.viscosity
@@ -486,10 +488,10 @@ class _Solver:
             for name, (less, more) in march.spreads.items():
                 normal = joint.normal(f"{name} of the rough contact on {floor.name}")
                 odds = odds + odds_changes(less, more, normal)
-            share = expit(odds + added(stated, ODDS))
+            share = expit(odds + sum_of_draws(stated, ODDS))
         acof = factor * mu * (1 - share) * np.exp(errors["tread_error"])
         if film > 0:
-            acof = acof + viscous * np.exp(added(stated, "cof_viscous")) * share / film
+            acof = acof + viscous * np.exp(sum_of_draws(stated, "cof_viscous")) * share / film
         return Cell(np.clip(acof, 0.0, law.highest), solved, film)
 
 
@@ -499,11 +501,11 @@ def film_odds_over_positions(case: Case) -> Array:
     (places,), the first 0: places half a period of the tread apart, on the quick grid. Of a sole
     without tread or film 0 alone.
     """
-    if not treaded(case) or case.contaminant is None:
+    if not has_lugs(case) or case.contaminant is None:
         return np.zeros(1)
     tread = case.shoe.tread and case.shoe.tread.build()
     spacing = case.numerics.quick_grid_spacing
-    parts, odds = prepared(case, spacing), []
+    parts, odds = prepare_case(case, spacing), []
     for place in places(tread.periods if tread else file_periods(case), POSITIONS):
         load = place_numbers(*solved_at(parts, place, spacing))["fluid_load"]
         share = float(np.clip(load / case.motion.normal_force, 1e-6, 0.999))
@@ -521,7 +523,7 @@ def shoe_name(shoe: PlaceShoe) -> str:
     return repr((sorted(shoe.section.items()), shoe.known_class, shoe.readings))
 
 
-def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: JointDraws) -> Array:
+def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: PlaceDraws) -> Array:
     """Return the share (count,) of steps that slip, as ``run`` has it.
 
     Parameters:
@@ -534,7 +536,7 @@ def slip_share(acof: Array, rcof: float, sd: float, slope: float, joint: JointDr
 
 
 def tested_cof(
-    joint: JointDraws, case: Any, law: PairContactLaw, shoe: PlaceShoe, test: SlipTest
+    joint: PlaceDraws, case: Any, law: PairContactLaw, shoe: PlaceShoe, test: SlipTest
 ) -> Array:
     """Return draws (count,) of the COF that a test house reads of the new sole of a case."""
     pair = replace(law.pair, floor_rq=test.floor_rq, family=test.family, floor_slope=None)
@@ -546,9 +548,9 @@ def tested_cof(
 
 
 @threads_limited(1)
-def chosen(
+def choose_shoe(
     place: Place, *, seed: int = 0, quick: bool = True, progress: Progress = silent
-) -> Choice:
+) -> ShoeChoice:
     """Return which shoe suits a place.
 
     Parameters:
@@ -559,7 +561,7 @@ def chosen(
     Raises:
         InputError: A case that cannot be; readings that contradict each other.
     """
-    joint = JointDraws(seed=seed)
+    joint = PlaceDraws(seed=seed)
     new_cases = {shoe.name: place.case(shoe, place.floors[0], "water") for shoe in place.shoes}
     floor_rq = {
         floor.name: _law(place.case(place.shoes[0], floor, "water")).pair.floor_rq
@@ -659,7 +661,7 @@ def chosen(
         (f"{floor}, {fluid_name(fluid)}", value)
         for (floor, fluid), value in sorted(mean.items(), key=lambda item: -item[1])
     )
-    return Choice(
+    return ShoeChoice(
         place, answers, tuple(levers), measurements, sources, tuple(cofs), present.name,
         joint.fewest, _floors(place, joint, floor_rq, before), outside,
     )  # fmt: skip
@@ -709,14 +711,14 @@ def _is_oil(place: Place, shoe: PlaceShoe, fluid: str) -> bool:
 
 
 def _law(case: Any) -> PairContactLaw:
-    law = case.friction.build(resolved(case))
+    law = case.friction.build(resolve_context(case))
     assert isinstance(law, PairContactLaw)
     return law
 
 
 def _learn(
     place: Place,
-    joint: JointDraws,
+    joint: PlaceDraws,
     floor_rq: Mapping[str, tuple[float, float]],
     cases: Mapping[str, Any],
 ) -> tuple[tuple[str, UnexpectedReading], ...]:
@@ -745,14 +747,16 @@ def _learn(
             passed = np.zeros(joint.count)
             for reading in known.readings:
                 cof = tested_cof(joint, case, law, shoe, reading.test)
-                passed += joint.log_likelihood(cof, Reading(reading.cof, reading.kind, reading.sd))
+                passed += joint.log_likelihood(
+                    cof, CofReading(reading.cof, reading.kind, reading.sd)
+                )
             log = np.log(np.maximum(-np.expm1(passed), 1e-12)) if known.fails else passed
             joint.learn(log, f"shoe {shoe.name}, class {known.name}")
     return tuple(outside)
 
 
 def _read_floors(
-    place: Place, joint: JointDraws, floor_rq: Mapping[str, tuple[float, float]]
+    place: Place, joint: PlaceDraws, floor_rq: Mapping[str, tuple[float, float]]
 ) -> dict[str, PlaceFloor]:
     """Return the floors that were read, with the roughness that the readings leave."""
     found = {}
@@ -769,7 +773,7 @@ def _read_floors(
 
 
 def _slips(
-    place: Place, joint: JointDraws, cells: Mapping[tuple[str, str], Cell]
+    place: Place, joint: PlaceDraws, cells: Mapping[tuple[str, str], Cell]
 ) -> dict[tuple[str, str], Array]:
     """Return the share of all steps that slip on each floor under each fluid, (count,)."""
     shares = {}
@@ -828,7 +832,7 @@ def _replaced(
     states: Mapping[bool, Mapping[tuple[str, str], Cell]],
     worn: Array | None,
     place: Place,
-    joint: JointDraws,
+    joint: PlaceDraws,
 ) -> str:
     """Return when the shoe slips twice as often as new, ln of slips even in time between.
 
@@ -853,11 +857,11 @@ def _replaced(
 
 def _measurements(
     place: Place,
-    joint: JointDraws,
+    joint: PlaceDraws,
     floor_rq: Mapping[str, tuple[float, float]],
     cases: Mapping[str, Any],
     slips: Array,
-) -> tuple[Measurement, ...]:
+) -> tuple[PossibleMeasurement, ...]:
     """Return what each reading that was not made would change, the most first."""
     if len(slips) < 2:
         return ()
@@ -887,13 +891,13 @@ def _measurements(
             if inside[other] < inside[now] * (1 - 1e-9):
                 changes += float(here.sum())
                 saved += float((inside[now] - inside[other]) / slips[now].mean())
-        found.append(Measurement(name, changes, saved))
+        found.append(PossibleMeasurement(name, changes, saved))
     return tuple(sorted(found, key=lambda one: (-one.saves, one.name)))
 
 
 def _floors(
     place: Place,
-    joint: JointDraws,
+    joint: PlaceDraws,
     floor_rq: Mapping[str, tuple[float, float]],
     before: Mapping[str, tuple[float, float, float]],
 ) -> tuple[tuple[str, str, str], ...]:

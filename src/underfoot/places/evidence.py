@@ -21,7 +21,7 @@ from underfoot.friction import packaged_pair_draws
 from underfoot.friction.tread_error import READING
 
 from .calibration import FloorReading, class_bounds
-from .joint import JointDraws, interval
+from .joint import PlaceDraws, interval
 from .machines import FLUIDS, RZ_SPREAD, Learned, Machine, machine, machines
 
 DRAWS = 8000
@@ -68,10 +68,10 @@ class Evidence:
 
     def unlearned(self, machine: Machine) -> tuple[float, float]:
         """Return mean and variance of ln COF by a machine that has learned nothing."""
-        log = np.log(self.unlearned_cof(JointDraws(count=DRAWS), machine))
+        log = np.log(self.unlearned_cof(PlaceDraws(count=DRAWS), machine))
         return float(np.median(log)), float(np.var(log))
 
-    def unlearned_cof(self, joint: JointDraws, machine: Machine | None = None) -> Array:
+    def unlearned_cof(self, joint: PlaceDraws, machine: Machine | None = None) -> Array:
         """Return draws (count,) of the COF by a machine that has learned nothing."""
         taught = replace(machine or self.machine, learned=NOTHING)
         return taught.cof(joint, self.floor, self.rq, self.bounds[0].fluid)
@@ -150,7 +150,7 @@ def _of_file() -> Iterator[Evidence]:
                        entry["sentence"])  # fmt: skip
 
 
-def learned(device: Machine, left_out: str = "") -> Learned | None:
+def learn_machine(device: Machine, left_out: str = "") -> Learned | None:
     """Return what readings teach of a machine, those of one source left out.
 
         ln COF = ln COF of the law + f + u_source + v_floor + e
@@ -201,9 +201,9 @@ def learned(device: Machine, left_out: str = "") -> Learned | None:
 def floor_likeness(left_out: str = "") -> float:
     """Return how alike two machines find a floor beyond its roughness: a correlation of ln COF.
 
-    Its posterior mean over 0 to 1, by the restricted likelihood of all readings as in ``learned``,
-    with the machines' spreads as learned. Machines that read one floor share what is not known of
-    its roughness besides. A source is one laboratory whatever it reads with.
+    Its posterior mean over 0 to 1, by the restricted likelihood of all readings as in
+    ``learn_machine``, with the machines' spreads as learned. Machines that read one floor share
+    what is not known of its roughness besides. A source is one laboratory whatever it reads with.
 
     Parameters:
         left_out: A source whose readings do not count.
@@ -213,7 +213,7 @@ def floor_likeness(left_out: str = "") -> float:
         for each in evidence()
         if each.middle is not None and each.machine.learned and each.source != left_out
     ]
-    joint = JointDraws(count=DRAWS)
+    joint = PlaceDraws(count=DRAWS)
     law = np.log([each.unlearned_cof(joint) for each in read])
     off = np.log([float(each.machine.scale.cof(each.middle)) for each in read])
     off -= np.median(law, axis=1)
@@ -273,7 +273,7 @@ class ScoredReading:
 
 
 @dataclass(frozen=True, slots=True)
-class Score:
+class MachineScore:
     """How well readings are foreseen: median error in the unit, rank correlation, coverage."""
 
     count: int
@@ -284,7 +284,7 @@ class Score:
     inside: float
 
 
-def score(rows: Sequence[ScoredReading]) -> Score:
+def score(rows: Sequence[ScoredReading]) -> MachineScore:
     """Return the score of readings that are no bounds."""
     known = [row for row in rows if row.error is not None]
     errors = [abs(row.error or 0.0) for row in known]
@@ -297,7 +297,7 @@ def score(rows: Sequence[ScoredReading]) -> Score:
     rank: Any = (
         spearmanr([row.predicted[1] for row in known], read)[0] if len(known) > 2 else np.nan
     )
-    return Score(
+    return MachineScore(
         len(known),
         len({row.evidence.source for row in known}),
         float(np.median(errors)) if errors else np.nan,
@@ -393,8 +393,8 @@ def machine_scores(seed: int = 0) -> MachineScores:
 
 
 def _scored(each: Evidence, seed: int) -> ScoredReading:
-    device = replace(each.machine, learned=learned(each.machine, each.source))
-    joint = JointDraws(count=DRAWS, seed=seed)
+    device = replace(each.machine, learned=learn_machine(each.machine, each.source))
+    joint = PlaceDraws(count=DRAWS, seed=seed)
     read = device.read(joint, each.floor, each.rq, FLUIDS[device.fluids[0]])
     others = [
         other.middle

@@ -48,7 +48,7 @@ def floor_name(pair: Pair) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class CofReading:
     """COF that was read, or a bound of it; ``sd`` of repeats, where known."""
 
     cof: float
@@ -64,7 +64,7 @@ class Reading:
             raise InputError(f"{self.sd:g}", where="reading.sd", allowed="above 0, below 5")
 
 
-class JointDraws:
+class PlaceDraws:
     """Draws of everything, each (count,), by the name of what it belongs to.
 
     ``constants`` are those of the law; ``fewest`` is the least number of equal draws that a reading
@@ -172,7 +172,7 @@ class JointDraws:
         """Return standard normal draws (count,) of the error of a pair."""
         return self.beyond_roughness(floor, f"pair: {sole}, {floor}, {pair.family}", pair.family)
 
-    def log_likelihood(self, cof: Array, reading: Reading) -> Array:
+    def log_likelihood(self, cof: Array, reading: CofReading) -> Array:
         """Return ln p(reading | draw), (count,), of a predicted COF."""
         repeat = READING if reading.sd is None else reading.sd / reading.cof
         deviation = np.hypot(repeat, self.constants.sd_reading)

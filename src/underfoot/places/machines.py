@@ -38,7 +38,7 @@ from underfoot.material import youngs_modulus_gent
 from underfoot.questions.method import Basis
 from underfoot.rough_contact.pressure_gap_law import DECAY_OVER_RQ, INTERCEPT_OVER_MODULUS
 
-from .joint import JointDraws, Reading, interval
+from .joint import CofReading, PlaceDraws, interval
 
 ANY_FLOOR_RQ = (0.2e-6, 15e-6)
 """Rq (m), polished to safety floors, over which a floor is drawn that was read and not measured
@@ -71,7 +71,7 @@ FLUIDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class MachineScale:
     """How a machine prints friction: name of its number, its unit, and both ways.
 
     ``least``: below it a number is none of the unit but a COF, or an angle in radians.
@@ -104,9 +104,9 @@ class Scale:
 
 
 SCALES = {
-    "ptv": Scale("ptv", "PTV", least=2.0),
-    "angle": Scale("angle", "deg", least=1.6),
-    "cof": Scale("cof", "COF"),
+    "ptv": MachineScale("ptv", "PTV", least=2.0),
+    "angle": MachineScale("angle", "deg", least=1.6),
+    "cof": MachineScale("cof", "COF"),
 }
 
 
@@ -185,7 +185,7 @@ class Learned:
     source_sd: float
     floor_sd: float
 
-    def error(self, joint: JointDraws, machine: str, floor: str) -> Array:
+    def error(self, joint: PlaceDraws, machine: str, floor: str) -> Array:
         """Return draws (count,) of ln of COF over that of the law."""
         return (
             self.factor
@@ -206,7 +206,7 @@ class Machine:
 
     entry: Entry = field(compare=False, repr=False)
     name: str
-    scale: Scale
+    scale: MachineScale
     shore_a: float
     sole_rq: tuple[float, float]
     pressure: tuple[float, float]
@@ -278,7 +278,7 @@ class Machine:
         return float(reading)
 
     def cof(
-        self, joint: JointDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
+        self, joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
     ) -> Array:
         """Return draws (count,) of the COF that the machine reads on a floor of Rq (m).
 
@@ -327,7 +327,7 @@ class Machine:
         return np.maximum(cof, SMALLEST)
 
     def read(
-        self, joint: JointDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
+        self, joint: PlaceDraws, floor: str, floor_rq: tuple[float, float], fluid: Fluid
     ) -> Array:
         """Return draws (count,) of what the machine prints of a floor, in its unit."""
         cof = self.cof(joint, floor, floor_rq, fluid)
@@ -335,7 +335,7 @@ class Machine:
 
     def log_likelihood(
         self,
-        joint: JointDraws,
+        joint: PlaceDraws,
         floor: str,
         floor_rq: tuple[float, float],
         fluid: Fluid,
@@ -346,7 +346,7 @@ class Machine:
     ) -> Array:
         """Return ln p of a reading of a floor, (count,); ``sd`` in the machine's unit."""
         cof_sd = None if sd is None else sd * self.scale.slope(reading)
-        read = Reading(float(self.scale.cof(reading)), kind, cof_sd)
+        read = CofReading(float(self.scale.cof(reading)), kind, cof_sd)
         return joint.log_likelihood(self.cof(joint, floor, floor_rq, fluid), read)
 
 
@@ -543,12 +543,12 @@ def predicted_reading(
             raise RangeError(
                 f"{end:g} m", where="roughness of the floor (Rq)", allowed="1 nm to 1 mm"
             )
-    return prediction(device, JointDraws(seed=seed), "floor", rq, liquid, floor_rq is not None)
+    return prediction(device, PlaceDraws(seed=seed), "floor", rq, liquid, floor_rq is not None)
 
 
 def prediction(
     device: Machine,
-    joint: JointDraws,
+    joint: PlaceDraws,
     floor: str,
     floor_rq: tuple[float, float],
     fluid: Fluid,

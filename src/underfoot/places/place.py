@@ -16,7 +16,7 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
-from .joint import Reading
+from .joint import CofReading
 from .machines import machine
 
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
@@ -45,7 +45,7 @@ class ShoeReading:
     """COF of a sole in one of the tests of certificates."""
 
     test: str
-    reading: Reading
+    reading: CofReading
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +168,9 @@ def read_place(path: Path) -> Place:
         InputError: No such file; an unknown key; shares that do not add to 1; a floor, shoe or
             reading that cannot be.
     """
-    return place_of(toml.parsed(toml.read(path), str(path)), name=path.stem, folder=path.parent)
+    return place_of(
+        toml.parse_toml(toml.read_text(path), str(path)), name=path.stem, folder=path.parent
+    )
 
 
 def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None = None) -> Place:
@@ -400,7 +402,7 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
     value = device.checked(entry["value"], f"{where}.value")
     kind = str(entry.get("kind", "value"))
     spread = _number(entry, "sd", where, 0.0, (1e-6, device.most)) if "sd" in entry else None
-    Reading(float(device.scale.cof(value)), kind)  # refuses what is none
+    CofReading(float(device.scale.cof(value)), kind)  # refuses what is none
     return FloorReading(device, fluid, value, kind, spread)
 
 
@@ -443,7 +445,7 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             raise InputError("is missing", where=f"{at}.cof", allowed="the COF of the certificate")
         cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
         sd = _number(each, "sd", at, 0.0, (1e-6, 2.0)) if "sd" in each else None
-        readings.append(ShoeReading(test, Reading(cof, str(each.get("kind", "value")), sd)))
+        readings.append(ShoeReading(test, CofReading(cof, str(each.get("kind", "value")), sd)))
     known = shoe_class(str(entry["class"]), f"{where}.class") if "class" in entry else None
     present = entry.get("present", False)
     if not isinstance(present, bool):

@@ -5,7 +5,7 @@ from typing import Any
 from underfoot.case import Case
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable
-from underfoot.core.registry import offered, offers
+from underfoot.core.registry import find_offer, offers
 
 
 def ask(question: str, case: Case, **settings: Any) -> Presentable:
@@ -18,7 +18,7 @@ def ask(question: str, case: Case, **settings: Any) -> Presentable:
     Raises:
         InputError: Nobody offers it, its package is broken, or the answer can't be shown.
     """
-    function = offered("questions", question)
+    function = find_offer("questions", question)
     if function is None:
         raise unknown_name("question", question, offers("questions"), where="question")
     answer = function(case, **settings)

@@ -21,8 +21,8 @@ from underfoot.core.progress import part
 from underfoot.core.remark import subjects
 from underfoot.slip import slip_chances
 
-from .order import SEEN, Order, Verdict, order_of_draws, order_of_values
-from .separation import MOVES, Separation, of_conditions, of_reading
+from .order import SEEN, Order, OrderVerdict, order_of_draws, order_of_values
+from .separation import MOVES, SeparatingStep, of_conditions, of_reading
 
 if TYPE_CHECKING:
     from underfoot.core.catalogue import Catalogue
@@ -63,7 +63,7 @@ class ComparedQuantity:
     @property
     def different(self) -> tuple[str, ...]:
         """Letters of the results of which an order against the first is stated."""
-        told = (Verdict.HIGHER, Verdict.LOWER)
+        told = (OrderVerdict.HIGHER, OrderVerdict.LOWER)
         return tuple(letter for letter, order in self.orders.items() if order.verdict in told)
 
 
@@ -83,7 +83,7 @@ class Comparison(Presentable):
     differences: tuple[tuple[str, ...], ...]
     reasons: tuple[str, ...]
     order: Order | None = None
-    separations: tuple[Separation, ...] = ()
+    separations: tuple[SeparatingStep, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Comparison of {len(self.results)} results: {self.headline()[0]:.120}>"
@@ -119,14 +119,14 @@ class Comparison(Presentable):
             what = f"COF of {better} is {apart} above that of {other}"
             return (f"{what}. How sure that is can't be told: no spread is known of {names}.",)
         verdict = self.order.verdict
-        if verdict is Verdict.EQUAL:
+        if verdict is OrderVerdict.EQUAL:
             return (
                 f"{better} and {other} are equal for every purpose: COF {apart} apart "
                 f"({sure} that the first has more), too small to see. "
                 f"Readings of one tester repeat within {100 * SEEN:.0f} %.",
                 self._different(),
             )
-        if verdict is not Verdict.HIGHER:
+        if verdict is not OrderVerdict.HIGHER:
             order = f"Whether {better} or {other} has more friction is open: COF {apart} apart"
             return (
                 f"{order} ({sure} that the first has more).",
@@ -293,7 +293,7 @@ def compare(
     if ranking:
         top = [LETTERS.index(rank.letter) for rank in ranking[:2]]
         order = order_of(results[top[0]], results[top[1]])
-        if order is not None and order.verdict is Verdict.OPEN:
+        if order is not None and order.verdict is OrderVerdict.OPEN:
             separations = _separations(
                 [results[k] for k in top], [cases[k] for k in top], separate, progress
             )
@@ -310,7 +310,7 @@ def compare(
 
 def _separations(
     results: Sequence[Result], cases: Sequence[Case], separate: bool, progress: Progress
-) -> tuple[Separation, ...]:
+) -> tuple[SeparatingStep, ...]:
     """Return what would tell two results apart, the surest first."""
     separations = of_conditions(*cases, progress=progress) if separate else []
     drawn = _shared_draws(*results)
@@ -447,10 +447,10 @@ def _order_in(name: str, results: Sequence[Result], cases: Sequence[Case], at: i
 def _order_text(order: Order, letter: str) -> str:
     """Return what is said of an order, with its probability where one is stated."""
     chance = {
-        Verdict.HIGHER: order.higher,
-        Verdict.LOWER: 1 - order.higher,
-        Verdict.EQUAL: order.within,
-        Verdict.OPEN: None,
+        OrderVerdict.HIGHER: order.higher,
+        OrderVerdict.LOWER: 1 - order.higher,
+        OrderVerdict.EQUAL: order.within,
+        OrderVerdict.OPEN: None,
     }[order.verdict]
     word = "not decided" if chance is None else str(order.verdict)
     sure = "" if chance is None else f", {drawn_probability_text(chance)}"

@@ -23,7 +23,7 @@ from underfoot.rough_contact import (
 )
 from underfoot.rough_contact.cutoff import CutoffDependence, cutoff_dependence
 from underfoot.rough_contact.flow_factor import FlowFactors, flow_factors
-from underfoot.surface import HeightMap, Profile, levelled, read_scan
+from underfoot.surface import HeightMap, Profile, level_surface, read_scan
 from underfoot.surface.scan import height_cautions
 
 ROWS = (
@@ -187,7 +187,7 @@ def rough_contact(
     ``ContactTable.from_surfaces``.
     """
     modulus, described, assumed = rubber
-    contact, flow = solved(floor, modulus, speed, pressure, poisson_ratio, device)
+    contact, flow = solve_contact(floor, modulus, speed, pressure, poisson_ratio, device)
     dependence = None
     if scales:
         last, side = max(floor.resolution or 0.0, 4.0 * floor.spacing), min(floor.size)
@@ -248,7 +248,7 @@ def measured_table(
     )
 
 
-def solved(
+def solve_contact(
     floor: HeightMap,
     rubber: Any,
     speed: float,
@@ -307,8 +307,8 @@ def surface_from(
     measured = surface.read_surface(file)
     if isinstance(measured, Profile):
         return _from_profile(measured, points, seed, first, last)
-    measured = surface.squared(measured)
-    return measured if measured.periodic else mirrored(measured)
+    measured = surface.square_cells(measured)
+    return measured if measured.periodic else mirror_map(measured)
 
 
 def _from_profile(
@@ -318,7 +318,7 @@ def _from_profile(
 
     Two longest reliable waves make a side, eight grid points by default the shortest wave.
     """
-    flat = levelled(profile)
+    flat = level_surface(profile)
     spectrum = surface.isotropic_from_profile(surface.profile_spectrum(flat))
     low, high = spectrum.reliable
     if longest is not None:
@@ -335,9 +335,9 @@ def _from_profile(
     return replace(random, processing=(*random.processing, note))
 
 
-def mirrored(measured: HeightMap) -> HeightMap:
+def mirror_map(measured: HeightMap) -> HeightMap:
     """Return the levelled map with its mirror images beside it: periodic, nothing invented."""
-    flat = levelled(measured)
+    flat = level_surface(measured)
     row = np.concatenate([flat.heights, flat.heights[::-1]], axis=0)
     note = (
         "mirrored along both axes to close its edges: four times the area, and what differs "

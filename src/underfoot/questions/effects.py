@@ -11,7 +11,7 @@ import numpy as np
 
 from underfoot.compute.continuation import Continuation, Preview
 from underfoot.compute.numbers import slip_probability
-from underfoot.compute.positions import treaded
+from underfoot.compute.positions import has_lugs
 from underfoot.core import (
     ConvergenceError,
     InputError,
@@ -198,7 +198,7 @@ def change_effects(
     if not variants:
         return tuple(effects.values())
     mean, level = _levels(present)
-    march, start, lugs = None, None, treaded(case)
+    march, start, lugs = None, None, has_lugs(case)
     left_out = _Spread()
     if quick:
         march = _march(case, part(progress, 0.0, 0.3))

@@ -16,7 +16,7 @@ from underfoot.core.remark import Remark, subjects
 from underfoot.slip import MODELS
 
 from .ask import ask
-from .outcomes import Outcome, outcomes
+from .outcomes import CaseOutcome, outcomes
 from .sensitivity import Band, Sensitivity, sensitivity, variants
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Basis(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Requirement:
+class MethodRequirement:
     """One thing that the method prescribes, what was used, and how sure its source is."""
 
     name: str
@@ -63,7 +63,7 @@ class Requirement:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class MethodCondition:
     """One floor and fluid of the method with the COF predicted for it.
 
     ``cof`` is that of steady sliding, as the method's averaging window takes it, or of the instant
@@ -83,7 +83,7 @@ class Condition:
     limit: SourcedValue | None
     probability: float | None
     band: Band | None
-    outcome: Outcome
+    outcome: CaseOutcome
 
     @property
     def breaches(self) -> list[Remark]:
@@ -116,8 +116,8 @@ class MethodPrediction(Presentable):
     title: str
     source: str
     note: str
-    requirements: tuple[Requirement, ...]
-    conditions: tuple[Condition, ...]
+    requirements: tuple[MethodRequirement, ...]
+    conditions: tuple[MethodCondition, ...]
 
     def __repr__(self) -> str:
         return f"<MethodPrediction of {self.name!r} by {self.method}>"
@@ -343,7 +343,7 @@ def _conditions(entry: Entry) -> list[tuple[str, Leaf | None, Leaf | None]]:
 
 def _prepared(
     case: Case, entry: Entry, floor: Leaf | None, fluid: Leaf | None, keep: Sequence[str]
-) -> tuple[Case, list[Requirement]]:
+) -> tuple[Case, list[MethodRequirement]]:
     """Return the case under the method, and what the method asked for."""
     changes: dict[str, object] = {"motion": entry.name}
     if any(path.startswith("sensor.") for path in entry.values):
@@ -354,10 +354,12 @@ def _prepared(
         if leaf is None:
             open_leaf = entry.values.get(f"method.{section}")
             required = "as agreed" if open_leaf is None else str(open_leaf.given)
-            settings.append(Requirement(section, required, f"{present} (of the case)", Basis.OPEN))
+            settings.append(
+                MethodRequirement(section, required, f"{present} (of the case)", Basis.OPEN)
+            )
         elif section in keep:
             used = f"{present} (kept)"
-            settings.append(Requirement(section, str(leaf.given), used, Basis.DEPARTURE))
+            settings.append(MethodRequirement(section, str(leaf.given), used, Basis.DEPARTURE))
         else:
             changes[section] = str(leaf.given)
             settings.append(_required(section, str(leaf.given), "as required", leaf))
@@ -383,7 +385,7 @@ def _prepared(
         required = f"{leaf.given}" + (f" ({leaf.note})" if leaf.note else "")
         if name in keep:
             used = f"{display(getattr(changed.motion, name), unit)} (kept)"
-            settings.append(Requirement(label, required, used, Basis.DEPARTURE))
+            settings.append(MethodRequirement(label, required, used, Basis.DEPARTURE))
         else:
             settings.append(_required(label, required, "as required", leaf))
     return changed, settings
@@ -414,16 +416,16 @@ def _window(entry: Entry) -> str:
     return f"{begin} to {end} after {after}"
 
 
-def _required(name: str, required: str, used: str, leaf: Leaf) -> Requirement:
+def _required(name: str, required: str, used: str, leaf: Leaf) -> MethodRequirement:
     if leaf.assumed:
-        return Requirement(name, required, used, Basis.ASSUMED)
+        return MethodRequirement(name, required, used, Basis.ASSUMED)
     basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY
-    return Requirement(name, required, used, basis, leaf.source)
+    return MethodRequirement(name, required, used, basis, leaf.source)
 
 
 def _condition(
-    entry: Entry, name: str, case: Case, outcome: Outcome, effects: Sensitivity | None
-) -> Condition:
+    entry: Entry, name: str, case: Case, outcome: CaseOutcome, effects: Sensitivity | None
+) -> MethodCondition:
     limits, titled = f"limits.{name}", f"conditions.{name}.title"
     limit = entry.sourced(limits, "1") if limits in entry.values else None
     title = entry.text(titled) if titled in entry.values else name.replace("_", " ")
@@ -450,7 +452,7 @@ def _condition(
                 least = math.log(limit.value) - math.log(max(mean, 1e-9))
                 probability = probability_at_least(0.0, below if least < 0 else above, least)
     floor, fluid = (_present(case, part) for part in ("floor", "contaminant"))
-    return Condition(name, title, floor, fluid, cof, low, high, limit, probability, band,
+    return MethodCondition(name, title, floor, fluid, cof, low, high, limit, probability, band,
                      outcome)  # fmt: skip
 
 

@@ -21,7 +21,7 @@ SEEN = READING
 STRATA = 1000
 
 
-class Verdict(StrEnum):
+class OrderVerdict(StrEnum):
     """What is said of two values."""
 
     HIGHER = "higher"
@@ -41,13 +41,13 @@ class Order:
     within: float
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> OrderVerdict:
         """Equal where nobody could tell them apart; else the order, where it is sure enough."""
         if self.within >= DECIDED:
-            return Verdict.EQUAL
+            return OrderVerdict.EQUAL
         if self.higher >= DECIDED:
-            return Verdict.HIGHER
-        return Verdict.LOWER if 1 - self.higher >= DECIDED else Verdict.OPEN
+            return OrderVerdict.HIGHER
+        return OrderVerdict.LOWER if 1 - self.higher >= DECIDED else OrderVerdict.OPEN
 
     @property
     def told(self) -> float:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from underfoot.compute.numbers import undetermined
+from underfoot.compute.numbers import undetermined_numbers
 from underfoot.compute.run import run
 from underfoot.compute.summary import ranked_assumptions
 from underfoot.core import ConvergenceError, Progress, SourcedValue, Status, content_hash, silent
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class CaseOutcome:
     """Numbers of one computed case, as those of ``compute.result.Result``.
 
     ``maps`` holds the fields that were asked for, where it has them, with ``x`` and ``y``, SI.
@@ -66,7 +66,7 @@ class Outcome:
         }
 
     @classmethod
-    def of(cls, result: Result, maps: Sequence[str] = ()) -> Outcome:
+    def of(cls, result: Result, maps: Sequence[str] = ()) -> CaseOutcome:
         """Return the numbers of a result and its fields of the names ``maps``."""
         axes = ("x", "y") if maps else ()
         return cls(
@@ -89,7 +89,7 @@ class Outcome:
         return json.dumps(stored_form(plain))
 
     @classmethod
-    def from_text(cls, text: str) -> Outcome:
+    def from_text(cls, text: str) -> CaseOutcome:
         """Return the outcome written by ``as_text``."""
         plain = json.loads(text)
         plain["scalars"] = {
@@ -111,7 +111,7 @@ def outcomes(
     cached: bool = True,
     progress: Progress = silent,
     stage: str = "Computing variants",
-) -> list[Outcome]:
+) -> list[CaseOutcome]:
     """Return the outcome of every case, in order; equal cases are computed once.
 
     A case whose contact can't be solved even at its start is an outcome that did not converge.
@@ -132,12 +132,12 @@ def outcomes(
     """
     store = Cache("outcomes-1")
     keys = [content_hash(case.hash, quick, list(maps)) for case in cases]
-    known: dict[str, Outcome] = {}
+    known: dict[str, CaseOutcome] = {}
     waiting: dict[str, Case] = {}
     for key, case in zip(keys, cases, strict=True):
         stored = store.load(key) if cached and key not in known else None
         if stored is not None:
-            outcome = Outcome.from_text(str(stored.pop("outcome")))
+            outcome = CaseOutcome.from_text(str(stored.pop("outcome")))
             known[key] = replace(outcome, maps=stored)
         elif key not in known:
             waiting[key] = case
@@ -155,10 +155,10 @@ def outcomes(
     return [known[key] for key in keys]
 
 
-def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> Outcome:
+def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> CaseOutcome:
     try:
-        return Outcome.of(run(case, quick=quick), maps)
+        return CaseOutcome.of(run(case, quick=quick), maps)
     except ConvergenceError as error:  # one case without numbers, the others go on
         status = Status.NOT_CONVERGED
-        none = undetermined(case, status)
-        return Outcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)
+        none = undetermined_numbers(case, status)
+        return CaseOutcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)

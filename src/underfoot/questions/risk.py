@@ -29,7 +29,7 @@ from underfoot.slip import MODELS, RcofPopulation, needed_acof, slip_model, slip
 
 from .changes import Change, possible_changes
 from .effects import ChangeEffect, change_effects
-from .outcomes import Outcome
+from .outcomes import CaseOutcome
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -74,7 +74,7 @@ class RiskAssessment(Presentable):
     kind: ClassVar[str] = "risk"
 
     name: str
-    outcome: Outcome
+    outcome: CaseOutcome
     models: tuple[ModelRisk, ...]
     limit: FrictionLimit
     target: float
@@ -344,7 +344,7 @@ def risk_assessment(
             where="result",
             remedy="Run the case as it is, without objects",
         )
-    outcome, tried = Outcome.of(present), possible_changes(case) if changes is None else changes
+    outcome, tried = CaseOutcome.of(present), possible_changes(case) if changes is None else changes
     if not outcome.usable:
         nothing = FrictionLimit(*[math.nan] * 3)
         return RiskAssessment(case.name, outcome, (), nothing, target, None, ())

@@ -11,7 +11,7 @@ from underfoot.case import unit_at
 from underfoot.core import Progress, display, silent
 from underfoot.core.presentation import Presentable, Table, quantity_text
 
-from .outcomes import Outcome, outcomes
+from .outcomes import CaseOutcome, outcomes
 
 if TYPE_CHECKING:
     from underfoot.case import Case
@@ -93,7 +93,7 @@ OPEN_INPUTS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Effect:
+class InputEffect:
     """Outcomes with one input at either end of its spread, everything else unchanged."""
 
     path: str
@@ -101,10 +101,10 @@ class Effect:
     low_value: float
     high_value: float
     unit: str
-    low: Outcome
-    high: Outcome
+    low: CaseOutcome
+    high: CaseOutcome
 
-    def deviation(self, name: str, nominal: Outcome) -> float:
+    def deviation(self, name: str, nominal: CaseOutcome) -> float:
         """Return the standard deviation that this input gives to a number.
 
         Root mean square of both departures from the nominal, so that an optimum within the
@@ -121,7 +121,7 @@ class Effect:
     def results(self, name: str) -> tuple[str, str]:
         """Return a number at the low and at the high value as text."""
 
-        def text(end: Outcome) -> str:
+        def text(end: CaseOutcome) -> str:
             if not end.usable:
                 return "not computed"
             value, unit = end.scalars[name].value, end.scalars[name].unit
@@ -164,8 +164,8 @@ class Sensitivity(Presentable):
 
     kind: ClassVar[str] = "sensitivity"
 
-    nominal: Outcome
-    effects: tuple[Effect, ...]
+    nominal: CaseOutcome
+    effects: tuple[InputEffect, ...]
     quick: bool = True
 
     def __repr__(self) -> str:
@@ -289,10 +289,10 @@ class Sensitivity(Presentable):
         both = math.hypot(inputs, law)
         return Band(value, both, inputs, law, min(values), max(values), failed)
 
-    def ranked(self, name: str) -> list[Effect]:
+    def ranked(self, name: str) -> list[InputEffect]:
         """Return the effects on a number, largest first."""
 
-        def size(effect: Effect) -> float:
+        def size(effect: InputEffect) -> float:
             deviation = effect.deviation(name, self.nominal)
             return 0.0 if math.isnan(deviation) else -deviation
 
@@ -365,7 +365,7 @@ def sensitivity(
     stage = "Simulating variants"
     results = outcomes(cases, quick=quick, processes=processes, progress=progress, stage=stage)
     effects = [
-        Effect(each.path, each.reason, low, high, unit_at(each.path), *results[k : k + 2])
+        InputEffect(each.path, each.reason, low, high, unit_at(each.path), *results[k : k + 2])
         for k, (each, low, high, _, _) in zip(range(1, len(cases), 2), plan, strict=True)
     ]
     return Sensitivity(results[0], tuple(effects), quick)

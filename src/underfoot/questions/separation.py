@@ -31,7 +31,7 @@ MOVES = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Separation:
+class SeparatingStep:
     """A step that was computed, and the probability of the likelier order after it.
 
     Parameters:
@@ -61,12 +61,14 @@ class Separation:
         return f"{self.step} ({drawn_probability_text(self.told)})"
 
 
-def of_reading(first: Array, second: Array) -> Separation:
+def of_reading(first: Array, second: Array) -> SeparatingStep:
     """Return what a reading of both on one tester would tell."""
-    return Separation("reading", None, certainty_after_reading(first, second, REPEATS))
+    return SeparatingStep("reading", None, certainty_after_reading(first, second, REPEATS))
 
 
-def of_conditions(first: Case, second: Case, *, progress: Progress = silent) -> list[Separation]:
+def of_conditions(
+    first: Case, second: Case, *, progress: Progress = silent
+) -> list[SeparatingStep]:
     """Return the order of two cases under each fluid, angle and wear that both can share.
 
     Each sole is marched once on its coarse grid, and continued from there. What can't be continued
@@ -91,7 +93,7 @@ def of_conditions(first: Case, second: Case, *, progress: Progress = silent) -> 
                 break
         if len(draws) == 2 and draws[0] is not None and draws[1] is not None:
             order = order_of_draws(np.asarray(draws[0]), np.asarray(draws[1]))
-            found.append(Separation(kind, value, order.told, order))
+            found.append(SeparatingStep(kind, value, order.told, order))
     return found
 
 

@@ -23,7 +23,7 @@ from underfoot.core.presentation import (
     value_text,
 )
 from underfoot.core.progress import part
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 from underfoot.slip.dynamics import (
     GaitHistory,
     SlipMotion,
@@ -319,7 +319,7 @@ def slip_population(
 def own_histories(path: Path) -> list[GaitHistory]:
     """Return the steps of a table of load and shear, or those of a force-plate recording."""
     if path.suffix.lower() == ".csv" and path.is_file():
-        lines = decoded(path.read_bytes(), str(path)).splitlines()
+        lines = decode_text(path.read_bytes(), str(path)).splitlines()
         if any(line.startswith(COLUMNS[0]) for line in lines[:50]):
             return [load_history(path)]
     return recorded_histories(path)
@@ -393,7 +393,7 @@ def measured_rcof(path: Path) -> MeasuredRcof:
     from underfoot.trials.recording.measurement import MEAN_OF_STEPS
 
     try:
-        rows = list(csv.DictReader(decoded(path.read_bytes(), str(path)).splitlines()))
+        rows = list(csv.DictReader(decode_text(path.read_bytes(), str(path)).splitlines()))
     except FileNotFoundError:
         raise InputError("there is no such file", where=str(path)) from None
     rows = [

@@ -63,7 +63,7 @@ class Walked:
 
 
 @dataclass(frozen=True, slots=True)
-class Walker:
+class WalkedDistance:
     """What turns a volume lost into a distance.
 
     Parameters:

@@ -12,15 +12,15 @@ import numpy as np
 from underfoot.case.wear import USUAL_WEAR_RATE
 from underfoot.compute.sole import bottom_surface
 from underfoot.core import InputError, Progress, display, silent, to_si, unknown_name
-from underfoot.core.fields import Fields, labelled
+from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
 from underfoot.core.remark import Amount, Message, Remark
 from underfoot.core.units import tread_unit
 
-from .outcomes import Outcome, outcomes
+from .outcomes import CaseOutcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
-from .walked import SOURCES, Walked, Walker, WornPair
+from .walked import SOURCES, Walked, WalkedDistance, WornPair
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
@@ -113,10 +113,10 @@ class WearSeries(Presentable):
     crossings: dict[str, LimitCrossing]
     assumptions: tuple[Message, ...]
     quick: bool = True
-    untreaded: Outcome | None = None
+    untreaded: CaseOutcome | None = None
     soles: tuple[SoleSurface, ...] = ()
     maps: tuple[dict[str, np.ndarray], ...] = ()
-    walker: Walker | None = None
+    walker: WalkedDistance | None = None
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -327,7 +327,7 @@ class WearSeries(Presentable):
             values = np.stack([each[name] for each in self.maps[:count]]).astype(np.float32)
             variables[name] = (axes, values, {"units": "Pa", "long_name": MAPS[name]})
         lost = {"units": "m", "long_name": "thickness lost at the most worn place"}
-        return labelled(
+        return labelled_fields(
             variables,
             {
                 "state": ("state", self.measured("removed_depth"), lost),
@@ -469,7 +469,7 @@ def wear_series(
         assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced(case)),
         quick=quick,
         untreaded=results[-1] if bare else None,
-        walker=Walker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
+        walker=WalkedDistance(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
         soles=soles,
         maps=tuple(
             maps_on_sole(sole, outcome, angle) for sole, outcome in zip(soles, shown, strict=True)
@@ -477,7 +477,9 @@ def wear_series(
     )
 
 
-def maps_on_sole(sole: SoleSurface, outcome: Outcome, shoe_angle: float) -> dict[str, np.ndarray]:
+def maps_on_sole(
+    sole: SoleSurface, outcome: CaseOutcome, shoe_angle: float
+) -> dict[str, np.ndarray]:
     """Return the maps of an outcome on the cells of its sole in the sole's own frame, (nx, ny).
 
     Each cell has the value of the nearest one over the floor: nan outside the sole, beside the part

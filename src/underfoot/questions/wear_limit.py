@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from underfoot.shoe.worn import WearMeasures
 
-from .outcomes import Outcome
+from .outcomes import CaseOutcome
 
 Array = NDArray[np.float64]
 LEAST = 1e-3
@@ -38,8 +38,8 @@ class WearPoint:
     """
 
     measures: WearMeasures
-    outcome: Outcome
-    variants: tuple[tuple[str, Outcome, Outcome], ...] = ()
+    outcome: CaseOutcome
+    variants: tuple[tuple[str, CaseOutcome, CaseOutcome], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
 
-from .quantities import Quantity, inside, raw, spacing
+from .quantities import DrawnQuantity, inside, raw, spacing
 
 _COVERED = 0.5
 """Least share of a cell that must lie on the sole."""
@@ -36,7 +36,7 @@ def common_grid(datasets: Sequence[Fields]) -> CommonGrid:
     return CommonGrid(x, y, side, True)
 
 
-def on_grid(dataset: Fields, quantity: Quantity, grid: CommonGrid) -> NDArray[np.float64]:
+def on_grid(dataset: Fields, quantity: DrawnQuantity, grid: CommonGrid) -> NDArray[np.float64]:
     """Return a quantity in its shown unit on a common grid, (nx, ny), nan where there is no sole.
 
     Each new cell holds the mean over the parts of old cells within it, so that the integral of a
@@ -64,7 +64,7 @@ def sole_on_grid(dataset: Fields, grid: CommonGrid) -> NDArray[np.bool_]:
 
 
 def difference(
-    second: NDArray[np.float64], first: NDArray[np.float64], quantity: Quantity
+    second: NDArray[np.float64], first: NDArray[np.float64], quantity: DrawnQuantity
 ) -> NDArray[np.float64]:
     """Return second - first, or second / first for a quantity drawn on a logarithmic scale."""
     if not quantity.logarithmic:

@@ -16,8 +16,8 @@ import numpy as np
 from underfoot.case import unit_at
 from underfoot.core import Progress, UnderfootError, silent
 from underfoot.core.fields import Fields
-from underfoot.core.html import embedded, environment, new_figure, png
-from underfoot.core.page import Picture, Section, remark_sections, table_sections
+from underfoot.core.html import data_address, environment, new_figure, png
+from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Table, percent
 from underfoot.core.units import display_unit
 from underfoot.explore import Study, StudyResult
@@ -54,7 +54,7 @@ class ShownStudy(StudyResult):
     missing: str = ""
 
 
-def shown(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> ShownStudy:
+def shown_study(result: StudyResult, soles: Mapping[int, Fields] | None = None) -> ShownStudy:
     """Return a result with its surrogates and indices, and the soles of some designs."""
     plan = result.plan
     goals: list[AnyGoal] = [*plan.goals] or [Goal("cof", "1")]
@@ -101,7 +101,7 @@ def write_study_report(
 ) -> Written:
     """Write results.csv, results.parquet, surrogate.json and report.html into a study's folder."""
     study.store.write_views(result.cases())
-    ready = shown(result, _soles(study, result, progress))
+    ready = shown_study(result, _soles(study, result, progress))
     if ready.models:
         models = [model.to_dict() for model in ready.models]
         with study.store.view("surrogate.json") as part:
@@ -131,9 +131,9 @@ def _study_figures(result: StudyResult) -> FigureMakers:
 @sections.register(StudyResult)
 def _study_sections(
     result: StudyResult, pictures: dict[str, bytes]
-) -> tuple[Sequence[Section], str]:
+) -> tuple[Sequence[PageSection], str]:
     designs = result.shown or result.designs
-    parts = [Section("Designs", html=explorer(result, designs)), *table_sections(result)]
+    parts = [PageSection("Designs", html=explorer(result, designs)), *table_sections(result)]
     best = result.best(8)
     if len(best) > 1:
         rows = [
@@ -142,27 +142,31 @@ def _study_sections(
         ]
         intro = "Over shared draws: what both designs have in common cancels."
         parts.append(
-            Section(
+            PageSection(
                 "How sure the order by COF is", intro, table=Table("", ("", "Probability"), rows)
             )
         )
     if isinstance(result, ShownStudy):
         for k, index in enumerate(result.indices):
-            picture = Picture(index.heading(), embedded(pictures[f"effects_{k}"]), True)
-            parts.append(Section(index.heading(), " ".join(index.headline()), pictures=[picture]))
-            parts.append(Section(f"{index.output}: indices", table=index.table(), folded=True))
+            picture = Picture(index.heading(), data_address(pictures[f"effects_{k}"]), True)
+            parts.append(
+                PageSection(index.heading(), " ".join(index.headline()), pictures=[picture])
+            )
+            parts.append(PageSection(f"{index.output}: indices", table=index.table(), folded=True))
         if result.models:
-            picture = Picture("Slices through the surrogates", embedded(pictures["slices"]), True)
+            picture = Picture(
+                "Slices through the surrogates", data_address(pictures["slices"]), True
+            )
             words = [f"{model.name}: {model.reliability}" for model in result.models]
             intro = (
                 "Through the marked design; the band is one standard deviation of the surrogate."
             )
-            parts.append(Section("Slices", intro, pictures=[picture]))
-            parts.append(Section("Error of the surrogates", items=words))
+            parts.append(PageSection("Slices", intro, pictures=[picture]))
+            parts.append(PageSection("Error of the surrogates", items=words))
         elif result.missing:
-            parts.append(Section("Surrogates", result.missing))
+            parts.append(PageSection("Surrogates", result.missing))
     parts += remark_sections(result)
-    parts.append(Section("Study file (TOML)", text=result.plan.text, folded=True))
+    parts.append(PageSection("Study file (TOML)", text=result.plan.text, folded=True))
     kept = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text or p.intro]
     return kept, viewer_script(template("design_study.js").render())
 

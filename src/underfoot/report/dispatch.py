@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.html import embedded, png
-from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
+from underfoot.core.html import data_address, png
+from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Presentable
-from underfoot.core.registry import offered
+from underfoot.core.registry import find_offer
 
 from .writing import Writer, Written, data_writers, write_folder
 
@@ -43,7 +43,7 @@ def _registered(generic: Any, shown: object) -> Any:
     """Return the function registered for the type of ``shown`` after its module is imported."""
     package, _, rest = type(shown).__module__.partition(".")
     if package != "underfoot":
-        offered("reports", package)
+        find_offer("reports", package)
     else:
         for name in _HOMES.get(rest.partition(".")[0], ()):
             import_module(f".{name}", __package__)
@@ -96,15 +96,15 @@ def files(shown: Any) -> dict[str, Writer]:
 
 
 @singledispatch
-def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+def sections(shown: Any, pictures: dict[str, bytes]) -> tuple[Sequence[PageSection], str]:
     """Return the sections of an object's page and its script; ``pictures`` are those drawn."""
     chosen = _registered(sections, shown)
     if chosen is not None:
         return chosen(shown, pictures)
     drawn = [
-        Picture(name.replace("_", " "), embedded(data), True) for name, data in pictures.items()
+        Picture(name.replace("_", " "), data_address(data), True) for name, data in pictures.items()
     ]
-    figure = [Section("Figure", pictures=drawn)] if drawn else []
+    figure = [PageSection("Figure", pictures=drawn)] if drawn else []
     return [*figure, *table_sections(shown), *remark_sections(shown)], ""
 
 
@@ -133,10 +133,10 @@ def write_report(
     if not isinstance(shown, Presentable):
         raise InputError(f"a {type(shown).__name__} has no report", where="write_report")
     data = files(shown) | (further or {})
-    return written(shown, folder, data, partial(page_text, shown), overwrite=overwrite)
+    return write_shown(shown, folder, data, partial(page_text, shown), overwrite=overwrite)
 
 
-def written(
+def write_shown(
     shown: Presentable,
     folder: Path | str,
     data: dict[str, Writer],

@@ -18,7 +18,7 @@ from underfoot.rough_contact import ContactTable, SteadySliding
 from underfoot.rough_contact.pressure_gap_law import _PresentableLaw
 from underfoot.slip import SlipRisk, slip_model
 from underfoot.slip._checks import PresentableModel
-from underfoot.surface import Profile, Scan, levelled
+from underfoot.surface import Profile, Scan, level_surface
 
 from .dispatch import figures
 
@@ -136,7 +136,7 @@ def _slip_risk(risk: SlipRisk, figure: Figure) -> None:
 def _scan(scan: Scan, figure: Figure) -> None:
     """Heights, and the spectrum with the power law that continues it."""
     left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
-    heights = 1e6 * levelled(scan.surface).heights
+    heights = 1e6 * level_surface(scan.surface).heights
     if isinstance(scan.surface, Profile):
         left.plot(1e3 * scan.surface.positions, heights, lw=0.8)
         left.set(xlabel="Position, mm", ylabel="Height, µm")

@@ -20,7 +20,7 @@ import numpy as np
 
 from underfoot.core import Progress, UnderfootError
 from underfoot.core.arrays import AnyArray, Array
-from underfoot.core.page import Section, page, remark_sections
+from underfoot.core.page import PageSection, page, remark_sections
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Table, quantity_text
 from underfoot.core.progress import time_text
@@ -28,11 +28,11 @@ from underfoot.core.threads import threads_limited
 from underfoot.explore.check import size_text
 from underfoot.explore.cost import StudyCost, study_cost
 from underfoot.explore.goals import AnyGoal
-from underfoot.explore.jobs import Jobs
+from underfoot.explore.jobs import BatchJobs
 from underfoot.explore.record import Ending
 from underfoot.explore.records import ENDINGS
 from underfoot.explore.result import MOST_ROWS, Design, front_places
-from underfoot.explore.scan import Scan, scanned
+from underfoot.explore.scan import DesignScan, scan_cases
 from underfoot.explore.status import StudyStatus
 from underfoot.explore.study import Study
 
@@ -59,17 +59,17 @@ class LiveStudy(StudyStatus):
 
     kind: ClassVar[str] = "live_study"
 
-    jobs: Jobs
+    jobs: BatchJobs
     cost: StudyCost | None = None
 
     # a run: the cases of a design, which stand together among the jobs
 
     @cached_property
-    def scan(self) -> Scan:
+    def scan(self) -> DesignScan:
         """What is asked of all finished cases."""
         outputs = {goal.output for goal in self.plan.shown_goals}
         draws = any(goal.of_draws for goal in self.plan.shown_goals)
-        return scanned(self.records, outputs, draws=draws)
+        return scan_cases(self.records, outputs, draws=draws)
 
     @cached_property
     def _keys_of_runs(self) -> list[Sequence[str]]:
@@ -130,13 +130,13 @@ class LiveStudy(StudyStatus):
         ended = self.ended_runs
         if len(ended) <= MOST_SHOWN:
             return ended
-        chosen = {*thinned(self.front_runs, MOST_FRONT), *ended[-LATEST:]}
+        chosen = {*thin_evenly(self.front_runs, MOST_FRONT), *ended[-LATEST:]}
         for goal, sign in zip(self.plan.goals, self.plan.signs, strict=True):
             values = np.where(self._allowed_runs, sign * self._values_of_runs[goal], np.nan)
             order = np.argsort(values)[: np.count_nonzero(np.isfinite(values))]
             chosen |= {*order[:MOST_ROWS].tolist(), *order[-1:].tolist()}
         others = [k for k in ended if k not in chosen]
-        return sorted({*chosen, *thinned(others, MOST_SHOWN - len(chosen))})
+        return sorted({*chosen, *thin_evenly(others, MOST_SHOWN - len(chosen))})
 
     @cached_property
     def all_designs(self) -> list[Design]:
@@ -214,7 +214,7 @@ class LiveStudy(StudyStatus):
             return self.design_table(self.shown[:MOST_ROWS], "Designs")
         best = self.best(MOST_ROWS) if len(self.plan.goals) == 1 else self.front
         title = "Best designs, as run" if len(self.plan.goals) == 1 else "Front, as run"
-        return self.design_table(thinned(best, MOST_ROWS), title)
+        return self.design_table(thin_evenly(best, MOST_ROWS), title)
 
     def cost_table(self) -> Table:
         """Return what the study took so far, and what is left of it."""
@@ -251,7 +251,7 @@ class LiveStudy(StudyStatus):
         )
 
 
-def thinned(items: Sequence, count: int) -> list:
+def thin_evenly(items: Sequence, count: int) -> list:
     """Return ``count`` of some items, evenly from first to last; all where they are fewer."""
     places = np.linspace(0, len(items) - 1, min(max(count, 0), len(items))).round().astype(int)
     return [items[k] for k in places]
@@ -266,15 +266,17 @@ def live_study(study: Study) -> LiveStudy:
     return LiveStudy(plan, jobs, records, store.sessions(), time.time(), cost)
 
 
-def live_sections(live: LiveStudy) -> list[Section]:
+def live_sections(live: LiveStudy) -> list[PageSection]:
     """Return the designs, the best of them, and why some have no numbers."""
     html = explorer(live, live.shown) if live.shown else ""
     parts = [
-        Section("Designs", live.drawn_text() if html else "None ended yet.", html=html, first=True)
+        PageSection(
+            "Designs", live.drawn_text() if html else "None ended yet.", html=html, first=True
+        )
     ]
     table = live.table()
     if table.rows:
-        parts.append(Section(table.title, table=table))
+        parts.append(PageSection(table.title, table=table))
     return [*parts, *remark_sections(live)]
 
 
@@ -295,8 +297,8 @@ def live_page(study: Study) -> str:
         folder=str(folder.absolute()), working=live.working, method=live.plan.method
     )
     sections = live_sections(live)
-    so_far = Section("So far", html=head, table=live.cost_table(), first=True)
-    parts = [so_far, *sections, Section("Stop, widen", html=steps)]
+    so_far = PageSection("So far", html=head, table=live.cost_table(), first=True)
+    parts = [so_far, *sections, PageSection("Stop, widen", html=steps)]
     script = template("live_study.js").render() + template("design_study.js").render()
     return page(live, parts, script=script)
 

@@ -16,7 +16,7 @@ from underfoot.core.html import new_figure
 from underfoot.questions.comparison import LETTERS
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
-from .quantities import Quantity, Scale, drawn, inside, quantities, scale
+from .quantities import ColourScale, DrawnQuantity, drawn_values, inside, quantities, scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,16 +29,16 @@ _REACH = 0.995
 """Quantile of the differences at which their colour scale ends: single cells at edges beyond."""
 
 
-def colour_scale(datasets: Sequence[Fields], quantity: Quantity) -> Scale:
+def colour_scale(datasets: Sequence[Fields], quantity: DrawnQuantity) -> ColourScale:
     """Return one colour scale for several results, so that they can be compared by eye."""
-    return scale([drawn(dataset, quantity) for dataset in datasets], quantity)
+    return scale([drawn_values(dataset, quantity) for dataset in datasets], quantity)
 
 
 def draw_map(
     axes: Axes,
     dataset: Fields,
-    quantity: Quantity,
-    limits: Scale | None = None,
+    quantity: DrawnQuantity,
+    limits: ColourScale | None = None,
     *,
     bar: bool = True,
     sensors: bool = True,
@@ -50,7 +50,7 @@ def draw_map(
     """
     limits = limits or colour_scale([dataset], quantity)
     x, y = dataset["x"].values * 1e3, dataset["y"].values * 1e3
-    values = drawn(dataset, quantity)
+    values = drawn_values(dataset, quantity)
     draw_field(axes, x, y, values, quantity, limits, bar=bar)
     draw_shape(axes, dataset)
     if sensors and quantity.name == _SENSED:
@@ -64,8 +64,8 @@ def draw_field(
     x: NDArray[np.float64],
     y: NDArray[np.float64],
     values: NDArray[np.float64],
-    quantity: Quantity,
-    limits: Scale,
+    quantity: DrawnQuantity,
+    limits: ColourScale,
     *,
     bar: bool = True,
 ) -> None:
@@ -106,7 +106,7 @@ def draw_shape(axes: Axes, dataset: Fields) -> None:
         axes.plot(*rim, color="0.25", linewidth=1.2)
 
 
-def map_figure(dataset: Fields, quantity: Quantity) -> Figure:
+def map_figure(dataset: Fields, quantity: DrawnQuantity) -> Figure:
     """Return one map as a figure."""
     figure = _sole_figure(1, 1, dataset)
     axes = figure.add_subplot()
@@ -128,7 +128,7 @@ def overview_figure(dataset: Fields) -> Figure:
     return figure
 
 
-def comparison_figure(datasets: Sequence[Fields], quantity: Quantity) -> Figure:
+def comparison_figure(datasets: Sequence[Fields], quantity: DrawnQuantity) -> Figure:
     """Return the maps of several results in one scale, then each less the first.
 
     Where the grids differ, the differences are taken on cells of the coarser one, as means that
@@ -163,18 +163,22 @@ def comparison_figure(datasets: Sequence[Fields], quantity: Quantity) -> Figure:
     return figure
 
 
-def _difference_style(changes: Sequence[np.ndarray], quantity: Quantity) -> tuple[Quantity, Scale]:
+def _difference_style(
+    changes: Sequence[np.ndarray], quantity: DrawnQuantity
+) -> tuple[DrawnQuantity, ColourScale]:
     known = np.concatenate([change[np.isfinite(change)] for change in changes])
     if quantity.logarithmic:
         sizes = np.exp(np.abs(np.log(known))) if known.size else np.array([1.0])
         reach = max(float(np.quantile(sizes, _REACH)), 1.05)
-        style = Quantity("ratio", "", 1.0, "ratio", "RdBu_r", logarithmic=True)
-        return style, Scale(1.0 / reach, reach, reach)
+        style = DrawnQuantity("ratio", "", 1.0, "ratio", "RdBu_r", logarithmic=True)
+        return style, ColourScale(1.0 / reach, reach, reach)
     sizes = np.abs(known) if known.size else np.zeros(1)
     largest = float(sizes.max())
     moved = sizes[sizes > 1e-3 * largest]
     reach = (float(np.quantile(moved, _REACH)) if moved.size else 0.0) or 1.0
-    return Quantity("difference", "", 1.0, quantity.unit, "RdBu_r"), Scale(-reach, reach, reach)
+    return DrawnQuantity("difference", "", 1.0, quantity.unit, "RdBu_r"), ColourScale(
+        -reach, reach, reach
+    )
 
 
 def grid_note(datasets: Sequence[Fields]) -> str:

@@ -15,8 +15,8 @@ import numpy as np
 
 from underfoot.case import text as toml
 from underfoot.core.files import checksum
-from underfoot.core.html import embedded, new_figure
-from underfoot.core.page import Picture, Section, remark_sections, table_sections
+from underfoot.core.html import data_address, new_figure
+from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.units import tread_unit, unit_system
 from underfoot.shoe import SoleSurface
@@ -33,7 +33,7 @@ from underfoot.shoe.tread_measures import (
 from .dispatch import FigureMakers, figures, files, sections
 from .drawn_sole import DrawnSole
 from .maps import frame_sole
-from .quantities import Quantity
+from .quantities import DrawnQuantity
 from .surface_mesh import surface_mesh
 from .viewer import listed_quantity, pane, scene, scene_section, viewer_script
 from .writing import Writer, data_writers
@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 
 _PATCH, _CLOSED = "#e3c16f", "#9a86b8"
 _MOST_CELLS = 120_000  # of the sole in three dimensions
-_DEPTH = Quantity("channel_depth", "Depth of the channels", 1e-3, "mm", "YlGnBu_r")
-_HEIGHT = Quantity("height", "Height above the sole plane", 1e-3, "mm", "cividis")
+_DEPTH = DrawnQuantity("channel_depth", "Depth of the channels", 1e-3, "mm", "YlGnBu_r")
+_HEIGHT = DrawnQuantity("height", "Height above the sole plane", 1e-3, "mm", "cividis")
 PLAN = (1e-4, "cm^2")
 """Unit of a plan form's area."""
 _UNITS = {"area": "_m2", "length": "_m", "width": "_m", "depth": "_m", "circle": "_m"}
@@ -170,7 +170,7 @@ def _area(area: float, metric: tuple[float, str]) -> str:
     return f"{area / factor:.4g} {name.replace('^2', '²')}"
 
 
-def inspected(file: Path, settings: FileSettings) -> OutsoleInspection:
+def inspect_outsole(file: Path, settings: FileSettings) -> OutsoleInspection:
     """Return an outsole file as it is read with ``settings``, with the measures of its tread."""
     from underfoot.shoe.files import outsole_from_file
 
@@ -187,11 +187,11 @@ def _figures(inspection: OutsoleInspection) -> FigureMakers:
 @sections.register(OutsoleInspection)
 def _sections(
     inspection: OutsoleInspection, pictures: dict[str, bytes]
-) -> tuple[Sequence[Section], str]:
-    drawn = [Picture(name, embedded(data), True) for name, data in pictures.items()]
+) -> tuple[Sequence[PageSection], str]:
+    drawn = [Picture(name, data_address(data), True) for name, data in pictures.items()]
     return [
-        Section("The sole in three dimensions", html=scene_section(outsole_scene(inspection))),
-        Section("Tread, seen from below", pictures=drawn),
+        PageSection("The sole in three dimensions", html=scene_section(outsole_scene(inspection))),
+        PageSection("Tread, seen from below", pictures=drawn),
         *table_sections(inspection),
         *remark_sections(inspection),
     ], viewer_script()
@@ -370,4 +370,4 @@ def case_text(inspection: OutsoleInspection, out: Path) -> str:
 
 def case_shoe(inspection: OutsoleInspection, out: Path) -> dict[str, Any]:
     """Return the shoe of ``case_text`` as plain data: what a case takes from a file."""
-    return dict(toml.parsed(case_text(inspection, out))["shoe"])
+    return dict(toml.parse_toml(case_text(inspection, out))["shoe"])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from underfoot.core.html import new_figure
-from underfoot.places.choice import Choice
+from underfoot.places.choice import ShoeChoice
 
 from .dispatch import FigureMakers, figures
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figures.register(Choice)
-def _(shown: Choice) -> FigureMakers:
+@figures.register(ShoeChoice)
+def _(shown: ShoeChoice) -> FigureMakers:
     return {"slips": lambda: slips_figure(shown)}
 
 
-def slips_figure(choice: Choice) -> Figure:
+def slips_figure(choice: ShoeChoice) -> Figure:
     """Return slips of every shoe with their interval, and the chance that it is best."""
     shoes = sorted(choice.shoes, key=lambda each: each.best)
     figure = new_figure(7.0, 1.2 + 0.45 * len(shoes))

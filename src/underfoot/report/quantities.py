@@ -38,7 +38,7 @@ _PEAK_RATIO = 1.5
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class DrawnQuantity:
     """One field on the sole and how it is drawn: ``shown = SI value / factor`` in ``unit``.
 
     ``meaning`` explains a field to whom its title says little. ``stress``: none drawn is zero.
@@ -55,7 +55,7 @@ class Quantity:
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class ColourScale:
     """A colour scale in shown units; ``peak`` is the highest value, above ``high`` if cut."""
 
     low: float
@@ -68,7 +68,7 @@ class Scale:
         return self.peak > 1.001 * self.high
 
 
-def quantities(datasets: Sequence[Fields]) -> tuple[Quantity, ...]:
+def quantities(datasets: Sequence[Fields]) -> tuple[DrawnQuantity, ...]:
     """Return what all of the data sets hold on (x, y), the usual four first, heights last.
 
     Titles come from ``long_name``, units from ``units``: a field of a later version is drawn
@@ -80,15 +80,15 @@ def quantities(datasets: Sequence[Fields]) -> tuple[Quantity, ...]:
     return tuple(_quantity(name, datasets) for name in common)
 
 
-def drawn(dataset: Fields, quantity: Quantity) -> NDArray[np.float64]:
+def drawn_values(dataset: Fields, quantity: DrawnQuantity) -> NDArray[np.float64]:
     """Return a quantity in its shown unit, (nx, ny), nan outside the sole or where there is none.
 
     A stress below 1e-3 of its peak counts as none.
     """
-    return shown(np.where(inside(dataset), raw(dataset, quantity.name), np.nan), quantity)
+    return shown_values(np.where(inside(dataset), raw(dataset, quantity.name), np.nan), quantity)
 
 
-def shown(field: NDArray[np.float64], quantity: Quantity) -> NDArray[np.float64]:
+def shown_values(field: NDArray[np.float64], quantity: DrawnQuantity) -> NDArray[np.float64]:
     """Return values (SI) in the shown unit, nan where a stress is below 1e-3 of its peak."""
     values = np.where(np.isfinite(field), field, np.nan) / quantity.factor
     if quantity.stress and np.nanmin(values, initial=0.0) >= 0.0:
@@ -101,7 +101,7 @@ def raw(dataset: Fields, name: str) -> NDArray[np.float64]:
     return np.array(dataset[name].transpose("x", "y").values, dtype=float)
 
 
-def carried_load(dataset: Fields, quantity: Quantity) -> float | None:
+def carried_load(dataset: Fields, quantity: DrawnQuantity) -> float | None:
     """Return the load in N of a pressure that carries one, sum p dA; None for other fields."""
     if quantity.name not in _LOADS:
         return None
@@ -126,23 +126,23 @@ def spacing(dataset: Fields) -> float:
     return float(np.median(np.diff(dataset["x"].values)))
 
 
-def scale(fields: Sequence[NDArray[np.float64]], quantity: Quantity) -> Scale:
+def scale(fields: Sequence[NDArray[np.float64]], quantity: DrawnQuantity) -> ColourScale:
     """Return one colour scale for the drawn values of several results."""
     values = np.concatenate([field[np.isfinite(field)] for field in fields])
     if values.size == 0:
-        return Scale(0.0, 1.0, 0.0)
+        return ColourScale(0.0, 1.0, 0.0)
     peak = float(values.max())
     if quantity.logarithmic:
         positive = values[values > 0.0]
         low = float(positive.min()) if positive.size else 1.0
-        return Scale(low, max(peak, 1.01 * low), peak)
+        return ColourScale(low, max(peak, 1.01 * low), peak)
     low = min(float(values.min()), 0.0)
     if low < 0.0:
         reach = max(-low, peak)
-        return Scale(-reach, reach, peak)
+        return ColourScale(-reach, reach, peak)
     usual = float(np.quantile(values, 0.995))
     high = usual if peak > _PEAK_RATIO * usual > 0.0 else peak
-    return Scale(0.0, max(high, 1e-12), peak)
+    return ColourScale(0.0, max(high, 1e-12), peak)
 
 
 def _names(dataset: Fields) -> list[str]:
@@ -153,7 +153,7 @@ def _names(dataset: Fields) -> list[str]:
     ]
 
 
-def _quantity(name: str, datasets: Sequence[Fields]) -> Quantity:
+def _quantity(name: str, datasets: Sequence[Fields]) -> DrawnQuantity:
     attributes = datasets[0][name].attrs
     largest = 0.0
     lowest = 0.0
@@ -169,7 +169,7 @@ def _quantity(name: str, datasets: Sequence[Fields]) -> Quantity:
     colours = "RdBu_r" if lowest < 0.0 else _COLOURS.get(name, "viridis")
     stress = attributes.get("units") == "Pa"
     meaning, logarithmic = _LOADS.get(name, ""), name in _LOGARITHMIC
-    return Quantity(name, title, factor, _typeset(unit), colours, logarithmic, meaning, stress)
+    return DrawnQuantity(name, title, factor, _typeset(unit), colours, logarithmic, meaning, stress)
 
 
 def _title(text: str) -> str:

@@ -14,16 +14,16 @@ from underfoot.case import Case
 from underfoot.compute.result import Result
 from underfoot.compute.sole import drawn_file, drawn_map, sole_shape
 from underfoot.core import UnderfootError, content_hash
-from underfoot.core.fields import Fields, labelled
-from underfoot.core.html import embedded, new_figure
-from underfoot.core.page import Picture, Section, page, remark_sections, table_sections
+from underfoot.core.fields import Fields, labelled_fields
+from underfoot.core.html import data_address, new_figure
+from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Table
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
 from underfoot.shoe import SoleMap
 
 from .chart import line_chart
-from .dispatch import FigureMakers, figures, files, plot, sections, write_report, written
+from .dispatch import FigureMakers, figures, files, plot, sections, write_report, write_shown
 from .maps import comparison_figure, draw_map, grid_note, map_figure, overview_figure
 from .quantities import quantities
 from .surface_mesh import SurfaceMesh, surface_mesh
@@ -59,35 +59,35 @@ def _result_files(result: Result) -> dict[str, Writer]:
 @sections.register(Result)
 def _result_sections(
     result: Result, pictures: dict[str, bytes], advice: RiskAssessment | None = None
-) -> tuple[Sequence[Section], str]:
+) -> tuple[Sequence[PageSection], str]:
     warning = "" if result.usable else "The computation did not converge: for diagnosis only."
     if "cof_tread_position" in result.scalars:
         warning = "The tread lies as the case describes it; the numbers are means over positions."
-    parts = [Section("Under the sole", warning, html=_viewer([result]), stage=True)]
+    parts = [PageSection("Under the sole", warning, html=_viewer([result]), stage=True)]
     if advice is not None:
         caption = "This result, moved by what each change does on the coarse grid."
-        parts.append(Section(advice.table().title, caption, table=advice.table()))
+        parts.append(PageSection(advice.table().title, caption, table=advice.table()))
     parts += table_sections(result)
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
-        Picture(f"Map of {titles[name].lower()} on the sole", embedded(data))
+        Picture(f"Map of {titles[name].lower()} on the sole", data_address(data))
         for name, data in pictures.items()
         if name in titles
     ]
     if maps:
-        parts.append(Section("Maps", SEEN, pictures=maps))
+        parts.append(PageSection("Maps", SEEN, pictures=maps))
     if "time" in result.data.sizes:
-        parts.append(Section("Over time", html=history_chart(result)))
+        parts.append(PageSection("Over time", html=history_chart(result)))
     provenance = result.provenance
     models = Table("", ("", ""), list(provenance.closures.items()))
     versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
     made = f"Case {provenance.case_hash[:16]}, computed {provenance.created} with {versions}."
     parts += [
         *remark_sections(result),
-        Section("Models", made, table=models),
-        Section("Sources", items=provenance.citations),
-        Section("Corrections to printed values", items=provenance.errata),
-        Section("Complete case (TOML)", text=result.case_text),
+        PageSection("Models", made, table=models),
+        PageSection("Sources", items=provenance.citations),
+        PageSection("Corrections to printed values", items=provenance.errata),
+        PageSection("Complete case (TOML)", text=result.case_text),
     ]
     filled = [p for p in parts if p.html or p.pictures or p.table or p.items or p.text]
     return filled, viewer_script()
@@ -114,7 +114,7 @@ def _write_result(
 
     data = files(result) | ({} if advice is None else data_writers(advice))
     drawn = None if maps else {}
-    return written(result, folder, data, text, makers=drawn, overwrite=overwrite)
+    return write_shown(result, folder, data, text, makers=drawn, overwrite=overwrite)
 
 
 @figures.register(Comparison)
@@ -128,7 +128,7 @@ def _comparison_figures(comparison: Comparison) -> FigureMakers:
 @sections.register(Comparison)
 def _comparison_sections(
     comparison: Comparison, pictures: dict[str, bytes]
-) -> tuple[Sequence[Section], str]:
+) -> tuple[Sequence[PageSection], str]:
     results = comparison.results
     ranking = table_sections(comparison)
     parts = []
@@ -137,12 +137,14 @@ def _comparison_sections(
         note, titles = grid_note(datasets), {q.name: q.title for q in quantities(datasets)}
         scale = f"One colour scale for all; red is more than A, blue less. {note} {SEEN}"
         parts = [
-            Section("Under the soles", html=_viewer(results), stage=True),
+            PageSection("Under the soles", html=_viewer(results), stage=True),
             replace(ranking[0], first=True),
             *ranking[1:],
-            Section("Maps and differences", scale),
+            PageSection("Maps and differences", scale),
             *(
-                Section(titles[name], pictures=[Picture(titles[name], embedded(data), True)])
+                PageSection(
+                    titles[name], pictures=[Picture(titles[name], data_address(data), True)]
+                )
                 for name, data in pictures.items()
             ),
         ]
@@ -151,7 +153,7 @@ def _comparison_sections(
         f"{result.provenance.created}"
         for letter, result in zip(comparison.letters, results, strict=True)
     ]
-    parts.append(Section("Results compared", items=sources))
+    parts.append(PageSection("Results compared", items=sources))
     return parts, viewer_script() if comparison.usable else ""
 
 
@@ -201,7 +203,7 @@ def sole_fields(case: Case, spacing: float | None = None) -> Fields:
 def map_fields(sole: SoleMap) -> Fields:
     """Return the height of a sole above the floor with its rim and its land."""
     labels = {"units": "m", "long_name": "height of the undeformed sole"}
-    return labelled(
+    return labelled_fields(
         {
             "clearance": (("x", "y"), sole.clearance, labels),
             "inside": (("x", "y"), sole.inside),

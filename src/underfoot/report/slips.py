@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core.html import embedded, environment, new_figure
-from underfoot.core.page import Picture, Section, remark_sections, table_sections
+from underfoot.core.html import data_address, environment, new_figure
+from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.questions.slips import SlipPopulation, shown_motion
 from underfoot.slip.dynamics import array_pressures
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
@@ -33,7 +33,9 @@ def _figures(shown: SlipPopulation) -> FigureMakers:
 
 
 @sections.register(SlipPopulation)
-def _sections(shown: SlipPopulation, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+def _sections(
+    shown: SlipPopulation, pictures: dict[str, bytes]
+) -> tuple[Sequence[PageSection], str]:
     data = json.dumps(animation_data(shown.study), separators=(",", ":")).replace("<", "\\u003c")
     walker = shown_motion(shown.study).walker
     player = (
@@ -42,13 +44,13 @@ def _sections(shown: SlipPopulation, pictures: dict[str, bytes]) -> tuple[Sequen
         .render(data=data, wet=shown.wet, walker=walker)
     )
     drawn = [
-        Picture("Heel path, pressures, speed and forces of one slip", embedded(p), True)
+        Picture("Heel path, pressures, speed and forces of one slip", data_address(p), True)
         for p in pictures.values()
     ]
     parts = [
-        Section(f"The slip of {walker.name}, ten times slower", html=player),
+        PageSection(f"The slip of {walker.name}, ten times slower", html=player),
         *table_sections(shown),
-        Section("Speed, forces and pressures over time", pictures=drawn),
+        PageSection("Speed, forces and pressures over time", pictures=drawn),
         *remark_sections(shown),
     ]
     return parts, ""

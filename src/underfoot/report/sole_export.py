@@ -20,9 +20,9 @@ from underfoot.core.presentation import quantity_text
 from .designed_sole import DesignedSole
 from .drawn_sole import DrawnSole, drawn_sole
 from .light_mesh import light_mesh, spacing_for
-from .quantities import AREAS, Quantity, quantities, raw, scale, shown
+from .quantities import AREAS, DrawnQuantity, quantities, raw, scale, shown_values
 from .results import designed_surface
-from .sole_mesh import SoleMesh, sole_mesh
+from .sole_mesh import UndersideMesh, sole_mesh
 from .surface_mesh import DRAWN, TOLERANCE, SurfaceMesh, surface_mesh
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class _Scene:
     pressed: bool
     values: dict[str, NDArray[np.float64]]
     units: dict[str, str]
-    quantity: Quantity
+    quantity: DrawnQuantity
     case: Case | None
     remark: str
 
@@ -75,14 +75,14 @@ class _Scene:
         return f"{self.quantity.title}, {self.quantity.unit}"
 
     @cached_property
-    def mesh(self) -> SoleMesh:
+    def mesh(self) -> UndersideMesh:
         """A face for every cell."""
         return sole_mesh(self.sole, pressed=self.pressed)
 
     @cached_property
     def picture(self) -> NDArray[np.uint8]:
         """Colour (RGBA) of every cell, as the page shows the quantity."""
-        return _colours(shown(self.values[self.quantity.name], self.quantity), self.quantity)
+        return _colours(shown_values(self.values[self.quantity.name], self.quantity), self.quantity)
 
     @property
     def colours(self) -> NDArray[np.uint8]:
@@ -164,7 +164,7 @@ def export_result(
 
 
 def _scene(
-    result: Result, quantities: tuple[Quantity, ...], chosen: Quantity, pressed: bool
+    result: Result, quantities: tuple[DrawnQuantity, ...], chosen: DrawnQuantity, pressed: bool
 ) -> _Scene:
     dataset = result.data
     sole, values, remark, case = _fields(result, [each.name for each in quantities])
@@ -225,7 +225,7 @@ def _fields(
     return designed.drawn, {name: designed.field(name) for name in names}, "", case
 
 
-def _colours(values: NDArray[np.float64], quantity: Quantity) -> NDArray[np.uint8]:
+def _colours(values: NDArray[np.float64], quantity: DrawnQuantity) -> NDArray[np.uint8]:
     """Return the colour (RGBA) of every value, as the page shows the quantity."""
     import matplotlib
 

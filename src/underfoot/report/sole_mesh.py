@@ -18,7 +18,7 @@ _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 @dataclass(frozen=True, slots=True)
-class SoleMesh:
+class UndersideMesh:
     """Quadrilaterals of the underside of a sole, in m, x forward, y to the left, z up.
 
     ``points`` (n, 3) and ``quads`` (m, 4); ``cell`` (m,) is the cell of the grid (row * ny +
@@ -35,7 +35,7 @@ class SoleMesh:
         return self.quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
 
 
-def sole_mesh(sole: DrawnSole, *, pressed: bool = False) -> SoleMesh:
+def sole_mesh(sole: DrawnSole, *, pressed: bool = False) -> UndersideMesh:
     """Return the underside of a sole with walls and sides, outward normals.
 
     Corners of a cell are at the mean height of the cells around it that are on its level (both
@@ -91,7 +91,7 @@ def sole_mesh(sole: DrawnSole, *, pressed: bool = False) -> SoleMesh:
         patches.append(upright)
         cells.append(np.full(int(wall.sum()), -1))
     points = np.concatenate(patches).reshape(-1, 3)
-    return SoleMesh(points, np.arange(len(points)).reshape(-1, 4), np.concatenate(cells))
+    return UndersideMesh(points, np.arange(len(points)).reshape(-1, 4), np.concatenate(cells))
 
 
 def _corner_heights(sole: DrawnSole, height: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -46,7 +46,7 @@ def write_solver_input(result: Result, path: Path | str) -> Exported:
         MissingExtraError: No netgen (extra ``cad``).
     """
     from underfoot.case import Case
-    from underfoot.compute.resolve import resolved
+    from underfoot.compute.resolve import resolve_context
     from underfoot.compute.sole import sole_map
     from underfoot.sole_contact.finite_element import Layers, sole_prisms
 
@@ -57,7 +57,7 @@ def write_solver_input(result: Result, path: Path | str) -> Exported:
             remedy="Run the case again with --out; its folder must hold result.nc",
         )
     case = Case.from_text(result.case_text)
-    sole, context = sole_map(case, spacing(result.data)), resolved(case)
+    sole, context = sole_map(case, spacing(result.data)), resolve_context(case)
     load = sum(raw(result.data, name) * raw(result.data, area) for name, area in AREAS.items())
     load = np.asarray(load) * sole.spacing**2
     if load.shape != sole.clearance.shape:

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from underfoot.core.html import embedded, environment
+from underfoot.core.html import data_address, environment
 
-from .study_figures import drawn
+from .study_figures import draw_figure
 
 if TYPE_CHECKING:
-    from underfoot.studies.runner import StudyResult
+    from underfoot.studies.runner import PublishedStudyResult
 
 COLOURS = {
     "agrees": "good",
@@ -30,7 +30,7 @@ BROAD = 2.6
 """Width over height from which a figure stands alone."""
 
 
-def write_study(result: StudyResult, folder: Path) -> list[str]:
+def write_study(result: PublishedStudyResult, folder: Path) -> list[str]:
     """Write study.json, tables, statements and figures (PNG and their data) into a folder.
 
     Returns the figures' names.
@@ -44,13 +44,16 @@ def write_study(result: StudyResult, folder: Path) -> list[str]:
     _write_csv(folder / "errata.csv", ("where", "printed", "used", "why"), result.study.errata)
     columns = ("panel", "series", "x", "y", "low", "high")
     for name, figure in result.computed.figures.items():
-        drawn(figure).savefig(folder / f"{name}.png", dpi=130)
+        draw_figure(figure).savefig(folder / f"{name}.png", dpi=130)
         _write_csv(folder / f"{name}.csv", columns, figure.rows())
     return sorted(result.computed.figures)
 
 
 def studies_page(
-    results: Sequence[StudyResult], images: Mapping[tuple[str, str], bytes], *, quick: bool = False
+    results: Sequence[PublishedStudyResult],
+    images: Mapping[tuple[str, str], bytes],
+    *,
+    quick: bool = False,
 ) -> str:
     """Return the page as HTML text that needs no network; ``images`` are PNG by (study, name)."""
     from underfoot.studies.summary import figure_rows, headline
@@ -71,7 +74,7 @@ def studies_page(
             ],
             "remarks": result.remarks(),
             "images": [
-                (name, embedded(data), remarks.get((study, name), ""), _broad(data))
+                (name, data_address(data), remarks.get((study, name), ""), _broad(data))
                 for (study, name), data in images.items()
                 if study == result.study.name
             ],

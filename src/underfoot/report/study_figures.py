@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PART_COLOURS = {"adhesion": "#c8553d", "hysteresis": "#2e86ab", "viscous": "#3c9d6d"}
 
 
-def drawn(figure: FigureData) -> Figure:
+def draw_figure(figure: FigureData) -> Figure:
     """Return the picture of a figure's data."""
     rows = math.ceil(len(figure.panels) / figure.columns)
     picture = new_figure(figure.size[0] * figure.columns, figure.size[1] * rows + 0.5)
@@ -172,4 +172,6 @@ def stribeck_figure(curves: Sequence[StribeckCurve], title: str = "") -> Figure:
         ]
         name = f"{curve.label}, in its parts"
         panels.append(Panel(parts, "sliding speed (m/s)", "COF", name, **axes))
-    return drawn(FigureData(panels, title, columns=2 if len(curves) < 3 else 3, size=(4.8, 3.4)))
+    return draw_figure(
+        FigureData(panels, title, columns=2 if len(curves) < 3 else 3, size=(4.8, 3.4))
+    )

@@ -22,7 +22,7 @@ from underfoot.core.presentation import quantity_text
 from underfoot.questions.comparison import LETTERS
 
 from .drawn_sole import DrawnSole, drawn_sole
-from .quantities import Quantity, carried_load, drawn, quantities, scale
+from .quantities import DrawnQuantity, carried_load, drawn_values, quantities, scale
 from .surface_mesh import SurfaceMesh, surface_mesh
 
 SCRIPTS = ("viewer_data.js", "viewer_draw.js", "viewer_page.js")
@@ -78,7 +78,7 @@ def viewer_scene(
     """
     datasets = [result.data for result in results]
     shown = quantities(datasets)
-    fields = {q.name: [drawn(dataset, q) for dataset in datasets] for q in shown}
+    fields = {q.name: [drawn_values(dataset, q) for dataset in datasets] for q in shown}
     alone = len(results) == 1
     histories = {q.name: [_history(dataset, q, alone) for dataset in datasets] for q in shown}
     panes = []
@@ -122,7 +122,9 @@ def scene(
 
 
 def listed_quantity(
-    quantity: Quantity, fields: Sequence[NDArray[np.float64]], loads: Sequence[float | None] = ()
+    quantity: DrawnQuantity,
+    fields: Sequence[NDArray[np.float64]],
+    loads: Sequence[float | None] = (),
 ) -> dict[str, Any]:
     """Return a quantity for the viewer with the colour scale of all its ``fields``.
 
@@ -171,22 +173,26 @@ def pane(
         "spacing": sole.spacing,
         "plane": sole.plane,
         "computed": computed,
-        "height": packed(sole.height),
-        "pressed": None if sole.pressed is None else packed(sole.pressed),
-        "land": packed(sole.land.astype(float)),
+        "height": pack_array(sole.height),
+        "pressed": None if sole.pressed is None else pack_array(sole.pressed),
+        "land": pack_array(sole.land.astype(float)),
         "surface": _packed_surface(surface or surface_mesh(x, y, sole.height, sole.land)),
         "states": [
-            {"height": packed(z), "land": packed(land.astype(float)), "surface": _packed_surface(s)}
+            {
+                "height": pack_array(z),
+                "land": pack_array(land.astype(float)),
+                "surface": _packed_surface(s),
+            }
             for z, land, s in states
         ],
-        "fields": {name: packed(values) for name, values in fields.items()},
+        "fields": {name: pack_array(values) for name, values in fields.items()},
         "histories": histories,
     }
 
 
 def history(labels: Sequence[str], frames: NDArray[np.float64]) -> dict[str, Any]:
     """Return the frames (n, nx, ny) of a field and what each instant is called."""
-    return {"labels": list(labels), "frames": [packed(frame) for frame in frames]}
+    return {"labels": list(labels), "frames": [pack_array(frame) for frame in frames]}
 
 
 def _lugs(dataset: Fields) -> list[list[float]]:
@@ -198,7 +204,7 @@ def _lugs(dataset: Fields) -> list[list[float]]:
 
 
 def _history(
-    dataset: Fields, quantity: Quantity, alone: bool
+    dataset: Fields, quantity: DrawnQuantity, alone: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """Return (times in s, frames) of ``<name>_history`` on (time, x, y), thinned if long.
 
@@ -216,13 +222,15 @@ def _history(
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     time = np.asarray(dataset[axis].values if axis in dataset else range(count))
     frames = [
-        drawn(dataset.assign({quantity.name: (("x", "y"), values[number], field.attrs)}), quantity)
+        drawn_values(
+            dataset.assign({quantity.name: (("x", "y"), values[number], field.attrs)}), quantity
+        )
         for number in chosen
     ]
     return time[chosen].astype(float), np.stack(frames)
 
 
-def packed(values: NDArray[np.float64]) -> dict[str, Any]:
+def pack_array(values: NDArray[np.float64]) -> dict[str, Any]:
     """Return an array as text: float16 of values / scale, byte planes, deflate, base64."""
     finite = np.isfinite(values)
     largest = float(np.max(np.abs(values), where=finite, initial=0.0)) or 1.0

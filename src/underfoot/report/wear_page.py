@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core.html import embedded
-from underfoot.core.page import Picture, Section, remark_sections, table_sections
+from underfoot.core.html import data_address
+from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.questions.wear import WearSeries
 
 from .dispatch import files, sections
 from .drawn_sole import DrawnSole
-from .quantities import Quantity
+from .quantities import DrawnQuantity
 from .surface_mesh import surface_mesh
 from .viewer import history, listed_quantity, pane, scene, scene_section, viewer_script
 from .writing import Writer, data_writers
@@ -23,26 +23,28 @@ CELL = 1e-3
 """m: side of the cells of the picture, or what the sole's own come nearest to it."""
 LEAST = 1e-6
 """m lost below which land is drawn as not worn."""
-LOST = Quantity("lost", "Thickness lost", 1e-3, "mm", "viridis")
-LEFT = Quantity("left", "Tread left", 1e-3, "mm", "cividis")
+LOST = DrawnQuantity("lost", "Thickness lost", 1e-3, "mm", "viridis")
+LEFT = DrawnQuantity("left", "Tread left", 1e-3, "mm", "cividis")
 PRESSURES = (
-    Quantity("contact_pressure", "Contact pressure", 1e3, "kPa", stress=True),
-    Quantity("fluid_pressure", "Fluid pressure", 1e3, "kPa", stress=True),
+    DrawnQuantity("contact_pressure", "Contact pressure", 1e3, "kPa", stress=True),
+    DrawnQuantity("fluid_pressure", "Fluid pressure", 1e3, "kPa", stress=True),
 )
 NONE = 0.1
 """kPa below which no pressure is drawn."""
 
 
 @sections.register(WearSeries)
-def _wear_sections(series: WearSeries, pictures: dict[str, bytes]) -> tuple[Sequence[Section], str]:
+def _wear_sections(
+    series: WearSeries, pictures: dict[str, bytes]
+) -> tuple[Sequence[PageSection], str]:
     drawn = [
-        Section("Over the wear", pictures=[Picture(name, embedded(data), True)])
+        PageSection("Over the wear", pictures=[Picture(name, data_address(data), True)])
         for name, data in pictures.items()
     ]
     parts = [*drawn, *table_sections(series), *remark_sections(series)]
     if not series.soles:
         return parts, ""
-    sole = Section("The sole as it wears", html=scene_section(wear_scene(series)), stage=True)
+    sole = PageSection("The sole as it wears", html=scene_section(wear_scene(series)), stage=True)
     return [sole, *parts], viewer_script()
 
 

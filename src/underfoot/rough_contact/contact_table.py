@@ -224,11 +224,13 @@ class ContactTable(Presentable):
         return f"ContactTable({self.description[:60]!r}, {p}, {v}, {count} surfaces)"
 
     @property
-    def ranges(self) -> dict[str, core.Range]:
+    def ranges(self) -> dict[str, core.ValidityRange]:
         """Return the validity box: the pressures and speeds of the grid."""
         return {
-            "pressure": core.Range(float(self.pressure[0]), float(self.pressure[-1]), "Pa", "grid"),
-            "speed": core.Range(float(self.speed[0]), float(self.speed[-1]), "m/s", "grid"),
+            "pressure": core.ValidityRange(
+                float(self.pressure[0]), float(self.pressure[-1]), "Pa", "grid"
+            ),
+            "speed": core.ValidityRange(float(self.speed[0]), float(self.speed[-1]), "m/s", "grid"),
         }
 
     def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[core.Breach]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from underfoot.core import InputError, Range, RangeError, breaches
+from underfoot.core import InputError, RangeError, ValidityRange, breaches
 from underfoot.surface import SpectralMoments, asperities
 
 from .pressure_gap_law import TabulatedLaw
@@ -18,7 +18,7 @@ SOURCE = (
     "the spectrum as surface.asperities gives them"
 )
 TESTED = {
-    "real_contact_fraction": Range(
+    "real_contact_fraction": ValidityRange(
         0.0, 0.05, "1", "area and gap 5 to 15 % low against half-space solutions up to here"
     )
 }
@@ -108,7 +108,7 @@ def greenwood_williamson_law(
         gap=gap,
         node_pressure=pressure,
         node_flow_factor=flow,
-        ranges={"pressure": Range(0.0, highest, "Pa", "up to 5 % of real contact")},
+        ranges={"pressure": ValidityRange(0.0, highest, "Pa", "up to 5 % of real contact")},
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erf, exp1
 
-from underfoot.core import InputError, Range, breaches
+from underfoot.core import InputError, ValidityRange, breaches
 
 from .sliding_input import Modulus, modulus_function
 from .theory import TheoryContact, checked_spectrum
@@ -17,7 +17,7 @@ FRICTION_SOURCE = (
     f"{AREA_SOURCE}; S(q): Scaraggi and Persson (2015) J. Phys.: Condens. Matter 27:105102"
 )
 TESTED = {
-    "real_contact_fraction": Range(
+    "real_contact_fraction": ValidityRange(
         0.15, 1.0, "1", "within 25 % of half-space solutions; area 25 to 30 % low below"
     )
 }

@@ -7,7 +7,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, breaches
+from underfoot.core import Breach, InputError, ValidityRange, breaches
 from underfoot.core.arrays import Array
 from underfoot.core.checks import poisson_ratio, positive
 from underfoot.core.presentation import Presentable, SourcedModel, Table
@@ -146,7 +146,7 @@ class ExponentialLaw(_PresentableLaw):
 
     def breaches(self, *, pressure: ArrayLike, speed: ArrayLike) -> list[Breach]:
         """Return the breach of the range above, if any (the law does not know the speed)."""
-        ranges = {"pressure": Range(0.0, self.reference_pressure, "Pa", self.source)}
+        ranges = {"pressure": ValidityRange(0.0, self.reference_pressure, "Pa", self.source)}
         return breaches(self.name, ranges, {"pressure": pressure})
 
 
@@ -170,7 +170,7 @@ class TabulatedLaw(_PresentableLaw):
     node_pressure: np.ndarray
     node_flow_factor: np.ndarray
     speed: float | None = None
-    ranges: dict[str, Range] = field(default_factory=dict)
+    ranges: dict[str, ValidityRange] = field(default_factory=dict)
     _log: np.ndarray = field(init=False, repr=False)  # coefficients of the cubics
     _flow: np.ndarray = field(init=False, repr=False)
     _last_slopes: np.ndarray = field(init=False, repr=False)  # of both, exact where they are 0
@@ -342,7 +342,7 @@ def persson_law(
         node_pressure=pressure,
         node_flow_factor=flow,
         ranges={
-            "pressure": Range(
+            "pressure": ValidityRange(
                 _LIGHTEST * full, _HEAVIEST * full, "Pa", "1e-4 to 0.5 of E* times the rms slope"
             )
         },

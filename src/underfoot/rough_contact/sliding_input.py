@@ -8,7 +8,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, breaches, display
+from underfoot.core import Breach, InputError, ValidityRange, breaches, display
 from underfoot.core.arrays import AnyArray
 from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
@@ -27,8 +27,8 @@ class HasComplexModulus(Protocol):
 Modulus = float | HasComplexModulus | Callable[[AnyArray], Any]
 
 _RANGES = {
-    "rms slope": Range(0.0, 0.5, "1", "small-slope theory, limit assumed"),
-    "share of the mean square slope in waves shorter than 4 grid spacings": Range(
+    "rms slope": ValidityRange(0.0, 0.5, "1", "small-slope theory, limit assumed"),
+    "share of the mean square slope in waves shorter than 4 grid spacings": ValidityRange(
         0.0, 0.1, "1", "resolution, limit assumed"
     ),
 }
@@ -224,7 +224,9 @@ def resolution_breaches(rms_slope: float, short_share: float, nodes: int) -> lis
     the contact (``nodes`` in contact) is too small for it.
     """
     values = dict(zip(_RANGES, (rms_slope, short_share), strict=True))
-    enough = Range(FEWEST_NODES, math.inf, "1", "resolution of the contact itself, limit assumed")
+    enough = ValidityRange(
+        FEWEST_NODES, math.inf, "1", "resolution of the contact itself, limit assumed"
+    )
     return [
         *breaches("steady_sliding", _RANGES, values),
         *breaches("steady_sliding", {"nodes in contact": enough}, {"nodes in contact": nodes}),

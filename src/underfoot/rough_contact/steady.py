@@ -20,7 +20,7 @@ from underfoot.core.threads import converter, namespace, on_host, threads_limite
 from ._kernels import periodic
 from ._kernels.complementarity import ContactState
 from ._kernels.nested import solve_nested
-from ._kernels.operators import Body
+from ._kernels.operators import ElasticBody
 from .sliding_input import (
     Modulus,
     SlowTransform,
@@ -217,7 +217,7 @@ def contacts_of(
     frequencies = [2.0 * math.pi / length * abs(speed) * wave for _, speed in loads]
     youngs = [modulus_function(modulus, w) for w in frequencies]
     moduli = [young(w) for young, w in zip(youngs, frequencies, strict=True)]
-    body = Body(
+    body = ElasticBody(
         lambda qx: np.stack(
             [
                 periodic.sliding_moduli(table, length, speed > 0.0, qx)

@@ -25,7 +25,7 @@ BESIDE_A_WALL = 1e-3
 """Reach of a channel's wall, m: the deepest within it is the channel's floor."""
 
 
-def centred(count: int, spacing: float) -> Array:
+def centred_places(count: int, spacing: float) -> Array:
     """Return ``count`` places ``spacing`` apart, symmetric about 0."""
     return (np.arange(count, dtype=np.float64) - (count - 1) / 2) * spacing
 

@@ -6,13 +6,20 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from underfoot.core import Breach, ConvergenceError, InputError, Range, breaches
+from underfoot.core import Breach, ConvergenceError, InputError, ValidityRange, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
 
 from ._kernels.regions import distance_to, nearest_true
 from .cut_cells import Cells, cut_cells
-from .geometry import BESIDE_A_WALL, CELLS_REFUSED, CELLS_WANTED, SoleMap, SoleSurface, centred
+from .geometry import (
+    BESIDE_A_WALL,
+    CELLS_REFUSED,
+    CELLS_WANTED,
+    SoleMap,
+    SoleSurface,
+    centred_places,
+)
 from .shape import Heel, SoleShape
 from .slits import Slits, slits_of, without_slits
 from .tread import Sipes
@@ -57,7 +64,7 @@ def heel_map(
     count_x = math.ceil((ends[1] - rear) / spacing - 1e-9) + 2 * margin
     count_y = math.ceil(heel.width / spacing - 1e-9) + 2 * margin
     x_floor = _centres(count_x, margin, spacing, columns)
-    y = centred(count_y, spacing)
+    y = centred_places(count_y, spacing)
     target, y_map = (np.asarray(each) for each in np.meshgrid(x_floor + rear, y, indexing="ij"))
     if sine == 0.0:
         x = target
@@ -150,7 +157,7 @@ def _check_grid(
 
 
 def _few_cells(quantity: str, cells: float) -> list[Breach]:
-    tested = Range(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
+    tested = ValidityRange(CELLS_WANTED, math.inf, "1", "grid refinement of the tread")
     return breaches("grid", {quantity: tested}, {quantity: cells})
 
 
@@ -286,7 +293,7 @@ def heel_surface(heel: SoleShape, *, spacing: float) -> SoleSurface:
     count_x = math.ceil(heel.length / spacing - 1e-9)
     count_y = math.ceil(heel.width / spacing - 1e-9)
     x = (np.arange(count_x, dtype=np.float64) + 0.5) * spacing
-    y = centred(count_y, spacing)
+    y = centred_places(count_y, spacing)
     grid_x, grid_y = np.meshgrid(x, y, indexing="ij")
     inside = heel.inward_distance(grid_x, grid_y) > 0
     height, land, tread_depth = cut_heel(heel, grid_x, grid_y, spacing)
@@ -343,7 +350,7 @@ def surface_map(
     low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
     count_y = math.ceil((high - low) / spacing - 1e-9) + 2 * margin
     x = _centres(count_x, margin, spacing, columns)
-    y = (low + high) / 2 + centred(count_y, spacing)
+    y = (low + high) / 2 + centred_places(count_y, spacing)
     clearance, origin = tilted_rows(
         (surface.x, surface.y), base, inside, (x + rear, y), cosine, sine
     )

@@ -14,7 +14,7 @@ from underfoot.core.checks import between, not_negative, positive
 from .tread import ArcChannel, Tread
 
 
-class Profile(Protocol):
+class HeelProfile(Protocol):
     """Shape of the sole along x before tilting."""
 
     def height(self, x: Array) -> Array:
@@ -113,7 +113,7 @@ class WearOnSole(Protocol):
         ...
 
 
-def fitted(wear: SoleWear | WearOnSole, shape: "SoleShape") -> SoleWear:
+def fit_wear(wear: SoleWear | WearOnSole, shape: "SoleShape") -> SoleWear:
     """Return the wear as it is on a sole.
 
     Raises:
@@ -129,7 +129,7 @@ class SoleShape(ABC):
     length: float
     width: float
     outsole_thickness: float
-    profile: Profile
+    profile: HeelProfile
     edge_radius: float
     crown_radius: float | None
     tread: Tread | None
@@ -175,7 +175,7 @@ class SoleShape(ABC):
     def worn(self, wear: SoleWear | WearOnSole | None) -> Self:
         """Return the sole with other wear."""
         new = replace(cast("Any", self), wear=None)
-        return new if wear is None else replace(new, wear=fitted(wear, new))
+        return new if wear is None else replace(new, wear=fit_wear(wear, new))
 
     def centre_line(self) -> tuple[Array, Array]:
         """Return x and the unworn height (m) along y = 0."""
@@ -219,7 +219,7 @@ class Heel(SoleShape):
     rear_radius: float
     outsole_thickness: float
     front_radius: float = 0.0
-    profile: Profile = field(default_factory=Flat)
+    profile: HeelProfile = field(default_factory=Flat)
     edge_radius: float = 0.0
     crown_radius: float | None = None
     tread: Tread | None = None

@@ -71,7 +71,7 @@ class Sipes:
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into a slit: positive in it, negative beside it."""
         first = self.spacing / 2 if self.offset is None else self.offset
-        across, _ = tread_pattern.rotated(x, y, self.angle)
+        across, _ = tread_pattern.rotate_coordinates(x, y, self.angle)
         place = np.mod(across - first + self.spacing / 2, self.spacing) - self.spacing / 2
         return self.width / 2 - np.abs(place)
 
@@ -99,7 +99,9 @@ class Groove:
 
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the groove: positive in it, negative beside it."""
-        across, along = tread_pattern.rotated(x - self.place[0], y - self.place[1], self.angle)
+        across, along = tread_pattern.rotate_coordinates(
+            x - self.place[0], y - self.place[1], self.angle
+        )
         aside, ahead = np.abs(across) - self.width / 2, np.abs(along) - self.length / 2
         beyond = np.hypot(np.maximum(aside, 0.0), np.maximum(ahead, 0.0))
         return -beyond - np.minimum(np.maximum(aside, ahead), 0.0)
@@ -253,7 +255,9 @@ class Tread:
             return np.array([[pitch / math.cos(self.angle), 0.0], [0.0, 2 * self.arm_length]])
         if self.letters is not None:
             frame = np.diag(self.letters.pitch)
-            return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
+            return np.column_stack(
+                tread_pattern.rotate_coordinates(frame[:, 0], frame[:, 1], -self.angle)
+            )
         along = [(self.lug_length or self.lug_width) + self.channel_width, 0.0]
         across = [0.0, self.wave_length or pitch]
         if self.pattern in LATTICES:
@@ -265,7 +269,9 @@ class Tread:
             "graded_circles": [[0.0, pitch * math.sqrt(3.0)]],
         }
         frame = np.array(rows.get(self.pattern, [along, across]))
-        return np.column_stack(tread_pattern.rotated(frame[:, 0], frame[:, 1], -self.angle))
+        return np.column_stack(
+            tread_pattern.rotate_coordinates(frame[:, 0], frame[:, 1], -self.angle)
+        )
 
     @property
     def wall_line(self) -> tuple[Array, Array] | None:
@@ -290,7 +296,7 @@ class Tread:
         if not self.yaw:
             return x, y
         ahead, aside = self.pivot
-        along, across = tread_pattern.rotated(x - ahead, y - aside, self.yaw)
+        along, across = tread_pattern.rotate_coordinates(x - ahead, y - aside, self.yaw)
         return along + ahead, across + aside
 
     def slit_distance(self, x: Array, y: Array) -> Array:
@@ -315,7 +321,7 @@ class Tread:
         if self.pattern == "chevrons" and line is not None:
             stretch = 1 / math.cos(self.angle)
             return tread_pattern.folded_bar_distance(x, y, line, lug * stretch, channel * stretch)
-        x, y = tread_pattern.rotated(x, y, self.angle)
+        x, y = tread_pattern.rotate_coordinates(x, y, self.angle)
         if line is not None:
             return tread_pattern.folded_bar_distance(x, y, line, lug, channel)
         if self.letters is not None:

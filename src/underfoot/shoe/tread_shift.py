@@ -11,7 +11,7 @@ from underfoot.core.arrays import Array, Mask
 
 from ._kernels.covering_discs import local_width
 from ._kernels.regions import between_land, distance_to, nearest_true, rim
-from ._kernels.tread_pattern import rotated
+from ._kernels.tread_pattern import rotate_coordinates
 from .geometry import SoleSurface
 from .tread_measures import floor_depth, reached_by_floor
 
@@ -149,7 +149,7 @@ def moved_tread(
     base, inside = carried_base(surface), surface.inside
     over = np.where(inside, np.maximum(surface.height - base, 0.0), 0.0)
     x, y = np.meshgrid(surface.x - pivot[0], surface.y - pivot[1], indexing="ij")
-    back = np.array(rotated(x, y, yaw)) - (x, y)
+    back = np.array(rotate_coordinates(x, y, yaw)) - (x, y)
     ways = np.asarray(shift)[:, None, None] - back
     cells = _sources(inside, ways / surface.spacing, periods / surface.spacing)
     land = inside & surface.land[cells]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from underfoot.core import Breach, InputError, Range, RangeError, breaches
+from underfoot.core import Breach, InputError, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import Presentable, Table
 
@@ -26,7 +26,7 @@ def available(acof: ArrayLike) -> Array:
     return _within(acof, LARGEST_ACOF, "acof")
 
 
-def required(rcof: ArrayLike, where: str = "rcof") -> Array:
+def check_required_friction(rcof: ArrayLike, where: str = "rcof") -> Array:
     """Return required friction as an array; refuse what no walking needs."""
     return _within(rcof, 1.0, where)
 
@@ -81,17 +81,21 @@ class LogisticModel(PresentableModel):
 
     @property
     @abstractmethod
-    def tested(self) -> Range:
+    def tested(self) -> ValidityRange:
         """ACOF - RCOF of the study."""
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
         """Return the probability of a slip for persons of known RCOF (arrays broadcast)."""
-        return scalar_or_array(logistic(self._log_odds(available(acof), required(rcof))))
+        return scalar_or_array(
+            logistic(self._log_odds(available(acof), check_required_friction(rcof)))
+        )
 
     def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
         """Return the mean probability over RCOF ~ normal(mean, sd) (arrays broadcast)."""
         a, mean, sd = np.broadcast_arrays(
-            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
+            available(acof),
+            check_required_friction(rcof_mean, "rcof_mean"),
+            deviation(rcof_sd, "rcof_sd"),
         )
         spread = -self.log_odds_slope * sd
         return scalar_or_array(normal_mean_of_logistic(self._log_odds(a, mean), spread))
@@ -105,7 +109,7 @@ class LogisticModel(PresentableModel):
         """
         slope = self.log_odds_slope * np.exp(self.log_slope_sd * normal("slope of the slip model"))
         even = self.fifty_percent_at + self.fifty_percent_sd * normal("even odds of the slip model")
-        odds = slope * (available(acof) - required(rcof_mean, "rcof_mean") - even)
+        odds = slope * (available(acof) - check_required_friction(rcof_mean, "rcof_mean") - even)
         return normal_mean_of_logistic(odds, -slope * deviation(rcof_sd, "rcof_sd"))
 
     def breaches(self, acof: ArrayLike, rcof: ArrayLike) -> list[Breach]:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from underfoot.core import InputError, Range
+from underfoot.core import InputError, ValidityRange
 from underfoot.core.remark import Message
 
 from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
@@ -65,14 +65,14 @@ class Beschorner2016(LogisticModel):
         return -self.slope
 
     @property
-    def tested(self) -> Range:
+    def tested(self) -> ValidityRange:
         """ACOF - RCOF at which the predicted risk is that of the study's subjects, 3 to 95 %.
 
         A risk P belongs to ACOF - RCOF = x50 - ln(P / (1 - P)) / slope: the highest risk to the
         lowest difference.
         """
         lowest, highest = (math.log(risk / (1 - risk)) / self.slope for risk in RISKS)
-        return Range(
+        return ValidityRange(
             self.fifty_percent_at - highest,
             self.fifty_percent_at - lowest,
             "1",

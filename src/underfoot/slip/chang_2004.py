@@ -12,7 +12,7 @@ from underfoot.core import Breach
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.remark import Message
 
-from ._checks import PresentableModel, available, deviation, required
+from ._checks import PresentableModel, available, check_required_friction, deviation
 
 SOURCE = (
     "Chang, A statistical model to estimate the probability of slip and fall incidents, "
@@ -36,11 +36,13 @@ class Chang2004(PresentableModel):
     )
 
     def __call__(self, acof: ArrayLike, rcof: ArrayLike) -> Any:
-        return scalar_or_array(np.heaviside(required(rcof) - available(acof), 0.5))
+        return scalar_or_array(np.heaviside(check_required_friction(rcof) - available(acof), 0.5))
 
     def population(self, acof: ArrayLike, rcof_mean: ArrayLike, rcof_sd: ArrayLike) -> Any:
         a, mean, sd = np.broadcast_arrays(
-            available(acof), required(rcof_mean, "rcof_mean"), deviation(rcof_sd, "rcof_sd")
+            available(acof),
+            check_required_friction(rcof_mean, "rcof_mean"),
+            deviation(rcof_sd, "rcof_sd"),
         )
         with np.errstate(over="ignore"):  # of a spread next to nothing: 0 or 1
             certain = ndtr((mean - a) / np.where(sd > 0, sd, 1.0))

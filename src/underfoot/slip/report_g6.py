@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from underfoot.core import InputError, Range
+from underfoot.core import InputError, ValidityRange
 from underfoot.core.remark import Message
 
 from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
@@ -11,7 +11,7 @@ from ._checks import FIFTY_PERCENT_SD, LOG_SLOPE_SD, LogisticModel
 SOURCE = "final progress report on shoe-floor friction, G.6.2 and G.6.3"
 SLOPE = -49.2
 FIFTY_PERCENT_AT = -0.06
-TESTED = Range(-0.111, 0.044, "1", f"{SOURCE}: predicted risks of 92.5 % and 0.6 %")
+TESTED = ValidityRange(-0.111, 0.044, "1", f"{SOURCE}: predicted risks of 92.5 % and 0.6 %")
 """ACOF - RCOF of the pairs of subject and outsole in the study, from their printed extreme risks
 (computed with the published slope and 50 % point)."""
 
@@ -58,5 +58,5 @@ class ReportG6(LogisticModel):
         return self.slope
 
     @property
-    def tested(self) -> Range:
+    def tested(self) -> ValidityRange:
         return TESTED

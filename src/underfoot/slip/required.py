@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.core import RangeError
 from underfoot.core.arrays import Array
 
-from ._checks import deviation, required
+from ._checks import check_required_friction, deviation
 
 _SOURCE = (
     "derived from final progress report on shoe-floor friction, G.6: median ACOF - RCOF of "
@@ -43,7 +43,7 @@ class RcofPopulation:
     sd_deviation: float = 0.0
 
     def __post_init__(self) -> None:
-        required(self.mean, "rcof_mean")
+        check_required_friction(self.mean, "rcof_mean")
         deviation(self.sd, "rcof_sd")
         if self.sd > LARGEST_SD:
             raise RangeError(

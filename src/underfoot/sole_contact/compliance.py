@@ -34,7 +34,7 @@ from ._kernels.elastic import (
     influence_from_symbol,
     wavenumbers,
 )
-from .long_waves import Body, BodyCorrection, LongWaves, body_correction
+from .long_waves import BodyCorrection, LongWaves, SoleBody, body_correction
 
 Symbol = Callable[[Array], Array]
 Box = tuple[slice, slice]
@@ -307,7 +307,7 @@ def layered_compliance(
     soft = None
     if midsole_modulus is not None and midsole_thickness is not None:
         soft = midsole_modulus, midsole_poisson_ratio, midsole_thickness
-    real = Body(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
+    real = SoleBody(sole, body, shoe_angle or 0.0, modulus, poisson_ratio, soft)
     correction = body_correction(real, layers.under_waves, known)
     if depth == 0.0:
         return layers.corrected(correction, sole)

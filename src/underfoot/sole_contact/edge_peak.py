@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from underfoot.core import InputError, Range
+from underfoot.core import InputError, ValidityRange
 from underfoot.core.arrays import Array
 from underfoot.shoe.geometry import SoleMap
 
@@ -13,7 +13,9 @@ AVERAGING_AREA = 10e-6
 """m^2; about the face of half a lug, and of a small pressure sensor (assumed)."""
 
 
-MOST_OVERLOADED = Range(0.0, 0.01, "1", "rubber under its own modulus is strained by about 1")
+MOST_OVERLOADED = ValidityRange(
+    0.0, 0.01, "1", "rubber under its own modulus is strained by about 1"
+)
 """Share of the load that may lie on cells pressed harder than Young's modulus: sharp edges alone
 (assumed)."""
 

@@ -79,7 +79,7 @@ class LongWaves:
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class SoleBody:
     """What carries the lugs: rubber of one thickness field, a midsole, a rigid foot.
 
     ``thickness`` (nx, ny) in m along the shoe's normal, ``shoe_angle`` of its plane in rad;
@@ -138,7 +138,7 @@ class BodyCorrection:
 
 
 def body_correction(
-    body: Body, layers: Callable[[sp.csr_matrix], Array], known: BodyCorrection | None = None
+    body: SoleBody, layers: Callable[[sp.csr_matrix], Array], known: BodyCorrection | None = None
 ) -> BodyCorrection | None:
     """Return the correction of ``layers``: B to B^T C B (m/Pa); None where nothing is near.
 
@@ -228,7 +228,7 @@ def net_over(sole: SoleMap, splines: Splines) -> Net:
     return Net(x, np.minimum(low, middle - least), np.maximum(high, middle + least), ny)
 
 
-def _bricks(body: Body, near: NDArray[np.bool_]) -> tuple[Bricks, Splines]:
+def _bricks(body: SoleBody, near: NDArray[np.bool_]) -> tuple[Bricks, Splines]:
     """Return the bricks over the squares of a net, and the waves over them."""
     sole = body.sole
     margin = MARGIN * (float(body.thickness.max()) + (body.midsole[2] if body.midsole else 0.0))

@@ -130,7 +130,7 @@ def floor_sensor_reading(
     if compliance > 0:
         # the shoe goes forward: a sensor meets its front first
         rate = cubes * conductance_over_cube(inlet_diameter, viscosity) / compliance
-        read = lagged(read[::-1], rate[::-1], sampling_step / speed)[::-1]
+        read = lag_pressure(read[::-1], rate[::-1], sampling_step / speed)[::-1]
     read = read.reshape(count, offsets, scans)
     scan_loads = read.sum(axis=0) * scan_spacing * sampling_step
     loads = scan_loads.sum(axis=1)
@@ -222,7 +222,7 @@ def conductance_over_cube(inlet_diameter: float, viscosity: float) -> float:
     return 2 * math.pi / (12 * viscosity * math.log(max(2 * REACH / inlet_diameter, 1.5)))
 
 
-def lagged(pressure: Array, rate: Array, interval: float) -> Array:
+def lag_pressure(pressure: Array, rate: Array, interval: float) -> Array:
     """Return p (n, ...) of dp/dt = rate (pressure - p), from 0, ``interval`` s between samples.
 
     Exact where the rate (1/s) is constant and the pressure linear between samples.

@@ -9,7 +9,7 @@ from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from .reading import GAP_CAP, conductance_over_cube, lagged, over_places, pocket_pressure
+from .reading import GAP_CAP, conductance_over_cube, lag_pressure, over_places, pocket_pressure
 
 SOURCE = "pockets at uniform pressure in the computed film, at fixed places in the floor"
 
@@ -153,7 +153,7 @@ def array_reading(
     read, cubes = read
     if compliance > 0:
         rate = cubes * conductance_over_cube(array.inlet_diameter, viscosity) / compliance
-        read = lagged(read, rate, float(samples[1] - samples[0]))
+        read = lag_pressure(read, rate, float(samples[1] - samples[0]))
     by_place = read.reshape(count, array.rows, offsets, array.columns)
     central = np.ascontiguousarray(by_place[:, :, offsets // 2, :])
     above = (by_place > threshold).any(axis=(1, 3)).sum(axis=0) * (samples[1] - samples[0])

@@ -19,16 +19,16 @@ from underfoot.friction import viscous_decay
 from underfoot.questions.outcomes import outcomes
 from underfoot.questions.sensitivity import OPEN_INPUTS
 from underfoot.questions.slips import BANDS
-from underfoot.slip.dynamics import ReducedSole, SlipStudy, judged
+from underfoot.slip.dynamics import ReducedSole, SlipStudy, judge_slip
 
 from . import identifiability
 from .figure import OURS, PRINTED, Figure, Layer, Panel, level, line
-from .g4 import LOAD, PEAK, Condition, printed
+from .g4 import LOAD, PEAK, ShoeInFluid, printed_value
 from .g5 import slip_case
 from .g6 import precision_of_published
-from .identifiability import Fixed, Profile, chi_square, model_error, profile
-from .runner import Computed, Options, Table, part
-from .verdict import Quantity
+from .identifiability import Fixed, MisfitProfile, chi_square, model_error, profile
+from .runner import Computed, Options, StudyTable, part
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("calibration.toml")
 
@@ -80,7 +80,7 @@ NOT_IDENTIFIABLE = (
 class Calibrated:
     """A parameter's profile beside what the program uses by default, and from where to where."""
 
-    profile: Profile
+    profile: MisfitProfile
     data: str
     default: float
     low: float
@@ -111,14 +111,17 @@ def compute(options: Options) -> Computed:
     )
     bare = slips(slip_case("untreaded", quick=quick), progress=part(progress, 0.5, 0.75))
     tread = slips(slip_case("treaded", quick=quick), progress=part(progress, 0.75, 1.0))
-    case = Condition("work", "untreaded", "glycerol").case
+    case = ShoeInFluid("work", "untreaded", "glycerol").case
     angle = math.degrees(float(case.value("shoe.heel.profile.angle")))
     rough = float(case.value("interface.roughness_beyond_cutoff"))
     assert tread.by_friction is not None  # the law of the pair has a spread
     at_contact = np.quantile(tread.by_friction.cof, [0.5, 0.025, 0.975]).tolist()
     # N and Pa of both untreaded shoes in glycerol
     data = np.array(
-        [[printed("fluid_load", k, "N"), printed("peak_pressure", k, "Pa")] for k in KINDS]
+        [
+            [printed_value("fluid_load", k, "N"), printed_value("peak_pressure", k, "Pa")]
+            for k in KINDS
+        ]
     )
     misfit = chi_square(np.stack([loads[0], peaks[0]], axis=-1), data[0], READING * data[0])
     by_angle = profile("facet angle", "deg", facets, misfit, data=2)
@@ -140,11 +143,11 @@ def compute(options: Options) -> Computed:
     _, error = model_error([loads[1, i, j], peaks[1, i, j]], data[1])
     return Computed(
         {
-            "athletic.load": Quantity.of(loads[1, i, j], "N"),
-            "athletic.peak": Quantity.of(peaks[1, i, j], "Pa"),
-            "clean.speed": Quantity.none("the data fix no moving mass", "m/s")
+            "athletic.load": ComputedQuantity.of(loads[1, i, j], "N"),
+            "athletic.peak": ComputedQuantity.of(peaks[1, i, j], "Pa"),
+            "clean.speed": ComputedQuantity.none("the data fix no moving mass", "m/s")
             if mass is None
-            else Quantity.of(bare.peak_speed_at(effective_mass=mass) or math.nan, "m/s"),
+            else ComputedQuantity.of(bare.peak_speed_at(effective_mass=mass) or math.nan, "m/s"),
         },
         _tables(facets, roughness, loads, peaks, calibrated),
         {"profiles": profile_figure(calibrated)},
@@ -182,7 +185,7 @@ def slip_tester_grid(
     Untreaded work and athletic shoe in 90 % glycerol, coarse grid.
     """
     cases = [
-        Condition(kind, "untreaded", "glycerol").case.replace(
+        ShoeInFluid(kind, "untreaded", "glycerol").case.replace(
             {"shoe.heel.facet_angle": f"{facet} deg", "interface.roughness_beyond_cutoff": rough}
         )
         for kind in KINDS
@@ -200,7 +203,7 @@ def slip_tester_grid(
     return loads, peaks
 
 
-def mass_profile(study: SlipStudy) -> Profile:
+def mass_profile(study: SlipStudy) -> MisfitProfile:
     """Return the profile of the share of the body that moves with the heel, from G.5's mean."""
     mean = _published("peak_slipping_speed_over_sensors_untreaded")
     speeds = np.array([study.peak_speed_at(effective_mass=share) or math.nan for share in MASSES])
@@ -208,7 +211,7 @@ def mass_profile(study: SlipStudy) -> Profile:
     return profile("share of the body moving with the heel", "1", MASSES, misfit, data=1)
 
 
-def contact_profile(study: SlipStudy) -> Profile:
+def contact_profile(study: SlipStudy) -> MisfitProfile:
     """Return the profile of the contact's COF under lugs in 90 % glycerol, from the treaded slips.
 
     The film is that of the case; the contact has one COF at every speed.
@@ -230,7 +233,9 @@ def _published(name: str) -> tuple[float, float]:
 def treaded_speed(study: SlipStudy, sole: ReducedSole, cof: float) -> float:
     """Return the mean peak slipping speed (m/s) if the contact had one COF."""
     changed = replace(sole, cofs=np.full(sole.cofs.size, cof))
-    peaks = [judged(changed.motion(subject.walker)).peak_speed.value for subject in study.subjects]
+    peaks = [
+        judge_slip(changed.motion(subject.walker)).peak_speed.value for subject in study.subjects
+    ]
     return float(np.mean([0.0 if v is None else v for v in peaks]))
 
 
@@ -254,7 +259,7 @@ def _tables(
     loads: Array,
     peaks: Array,
     calibrated: Sequence[Calibrated],
-) -> tuple[Table, ...]:
+) -> tuple[StudyTable, ...]:
     why = "{0.fixed}; least chi-square {0.misfit:.2g} of {0.data} data; grid {1:g} to {2:g}"
     parameters = [
         {
@@ -272,13 +277,13 @@ def _tables(
         (what, where, "not identifiable", "-", "-", why) for what, where, why in NOT_IDENTIFIABLE
     ]
     return (
-        Table(
+        StudyTable(
             "parameters",
             "Parameters fitted to the report's data, beside the program's defaults",
             columns,
             [*(tuple(row.values()) for row in parameters), *none],
         ),
-        Table.of(
+        StudyTable.of(
             "heel_and_roughness",
             "Sensor readings by facet angle and roughness (printed: work 201 N, 234 kPa; athletic "
             "83 N, 214 kPa), coarse grid",
@@ -295,7 +300,7 @@ def _tables(
                 for j, rough in enumerate(roughness)
             ],
         ),
-        Table(
+        StudyTable(
             "profiles",
             "Least chi-square against each parameter",
             ("parameter", "value", "chi-square"),

@@ -34,17 +34,17 @@ from .pair_law import (
     LaboratoryScore,
     PairPosterior,
     corpus_score,
-    fitted,
+    fit_law,
     laboratory_left_out,
     law_named,
     middle,
     r2,
-    scored,
+    score_predictions,
 )
-from .runner import Computed, Options, Table, cached_arrays, part
-from .slips import POINTS, predicted, published
-from .sources import Condition, Reading, corpus
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable, cached_arrays, part
+from .slips import POINTS, predict_shares, published_shares
+from .sources import PublishedCondition, PublishedReading, corpus
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("corpus.toml")
 
@@ -79,7 +79,7 @@ def draws_hash() -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Split:
+class LaboratorySplit:
     """A law and the laboratory that is left out of its fit."""
 
     law: str
@@ -87,7 +87,7 @@ class Split:
     steps: int
 
 
-def draws_of(split: Split) -> Mapping[str, Any]:
+def draws_of(split: LaboratorySplit) -> Mapping[str, Any]:
     """Return draws of ln COF of the laboratory left out, their mean, and the rest of each source
     given one of its readings."""
     law = (
@@ -101,7 +101,7 @@ def draws_of(split: Split) -> Mapping[str, Any]:
     return {"draws": left.draws, "expected": left.expected, "after": left.after}
 
 
-def readings() -> list[Condition]:
+def readings() -> list[PublishedCondition]:
     """Return every condition with a reading of the verified sources."""
     return [c for source in corpus() if source.verified for c in source.conditions]
 
@@ -113,7 +113,9 @@ def compute(options: Options) -> Computed:
     steps = QUICK_STEPS if options.quick else STEPS
     every = (*(law.name for law in LAWS[:-1]), *FEATURE_RIVALS, PRIORS, LAW)
     names = QUICK_LAWS if options.quick else every
-    splits = [Split(name, laboratory, steps) for name in names for laboratory in laboratories]
+    splits = [
+        LaboratorySplit(name, laboratory, steps) for name in names for laboratory in laboratories
+    ]
     code = [(STATEMENTS.parent / name).read_text(encoding="utf-8") for name in CODE]
     code += [inspect.getsource(pair_contact), [repr(pair) for pair in tread_pairs()]]
     content = content_hash([repr(c) for c in conditions], *code)
@@ -125,7 +127,7 @@ def compute(options: Options) -> Computed:
         fits("leaving one laboratory out", number / len(splits))
         own = tuple(c for c in conditions if c.laboratory == split.laboratory)
         results[split.law, split.laboratory] = LaboratoryScore(
-            split.laboratory, own, score=scored(arrays["draws"], own), **arrays
+            split.laboratory, own, score=score_predictions(arrays["draws"], own), **arrays
         )
 
     def score(name: str, left: Sequence[str]) -> CorpusScore:
@@ -133,7 +135,7 @@ def compute(options: Options) -> Computed:
 
     others = [one for one in laboratories if one != REPORT]
     scores = {name: (score(name, others), score(name, laboratories)) for name in names}
-    posterior = fitted(law_named(LAW), conditions, steps=steps, seed=options.seed)
+    posterior = fit_law(law_named(LAW), conditions, steps=steps, seed=options.seed)
     own = [results[LAW, one] for one in laboratories]
     (best, whole_best) = scores[LAW]
     rivals = [pair[0] for name, pair in scores.items() if name not in OWN_FORMS]
@@ -153,19 +155,21 @@ def compute(options: Options) -> Computed:
             **known,
             **shares_of_slips,
             **{
-                f"others.{name}": Quantity.of(getattr(best, name))
+                f"others.{name}": ComputedQuantity.of(getattr(best, name))
                 for name in ("r2", "inside_50", "inside_95")
             },
-            "pair.width": Quantity.of(width),
-            "pair.inside_known": Quantity.of(inside_known),
-            "others.above_rivals": Quantity.of(best.r2 - strongest.r2),
-            "others.gain": Quantity.of(best.log_density - max(one.log_density for one in rivals)),
-            "priors.r2": Quantity.of(highest_prior),
-            "pair.r2": Quantity.of(whole_best.r2),
-            "pair.rank_correlation": Quantity.of(whole_best.rank_correlation),
-            "evidence.readings": Quantity.of(len(conditions)),
-            "evidence.laboratories": Quantity.of(len(laboratories)),
-            "evidence.dry": Quantity.of(
+            "pair.width": ComputedQuantity.of(width),
+            "pair.inside_known": ComputedQuantity.of(inside_known),
+            "others.above_rivals": ComputedQuantity.of(best.r2 - strongest.r2),
+            "others.gain": ComputedQuantity.of(
+                best.log_density - max(one.log_density for one in rivals)
+            ),
+            "priors.r2": ComputedQuantity.of(highest_prior),
+            "pair.r2": ComputedQuantity.of(whole_best.r2),
+            "pair.rank_correlation": ComputedQuantity.of(whole_best.rank_correlation),
+            "evidence.readings": ComputedQuantity.of(len(conditions)),
+            "evidence.laboratories": ComputedQuantity.of(len(laboratories)),
+            "evidence.dry": ComputedQuantity.of(
                 sum(not c.members and c.fluid == "dry" for c in conditions)
             ),
         },
@@ -215,7 +219,7 @@ def whole_cof(case: Case) -> Mapping[str, Any]:
 
 def _compared(
     options: Options,
-) -> tuple[list[tuple[Contrast, Side, Side]], list[tuple[Condition, Stand, Side]]]:
+) -> tuple[list[tuple[Contrast, Side, Side]], list[tuple[PublishedCondition, Stand, Side]]]:
     sources = [s for s in corpus() if not options.quick or s.name in QUICK_SOURCES]
     sides = [contrast for source in sources if source.verified for contrast in contrasts(source)]
     shoes = [
@@ -254,7 +258,9 @@ def _compared(
     )
 
 
-def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str, Quantity]]:
+def _effects(
+    sides: list[tuple[Contrast, Side, Side]],
+) -> tuple[StudyTable, dict[str, ComputedQuantity]]:
     rows: list[dict[str, Any]] = []
     for contrast, over, under in sides:
         reason = over.reason or under.reason
@@ -278,7 +284,7 @@ def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str,
                 "verdict": "not computed" if reason else verdict(ratio, chance),
             }
         )
-    table = Table.of(
+    table = StudyTable.of(
         "effects",
         "Published effects: COF of one whole case over that of the other, with joint draws",
         rows,
@@ -291,12 +297,16 @@ def _effects(sides: list[tuple[Contrast, Side, Side]]) -> tuple[Table, dict[str,
             right.setdefault((contrast.source, contrast.effect), []).append(sign)
     absent = [row for row in known if row["verdict"] == "absent" and NEVER_ABSENT & {row["about"]}]
     return table, {
-        "effects.right_sign": Quantity.of(float(np.mean([np.mean(v) for v in right.values()]))),
-        "effects.absent": Quantity.of(len(absent)),
+        "effects.right_sign": ComputedQuantity.of(
+            float(np.mean([np.mean(v) for v in right.values()]))
+        ),
+        "effects.absent": ComputedQuantity.of(len(absent)),
     }
 
 
-def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str, Quantity]]:
+def _whole(
+    shoes: list[tuple[PublishedCondition, Stand, Side]],
+) -> tuple[StudyTable, dict[str, ComputedQuantity]]:
     rows: list[dict[str, Any]] = []
     for condition, _, side in shoes:
         low, inner_low, inner_high, high = np.quantile(side.draws, (0.025, 0.25, 0.75, 0.975))
@@ -315,28 +325,28 @@ def _whole(shoes: list[tuple[Condition, Stand, Side]]) -> tuple[Table, dict[str,
         )
     title = "Whole shoes: readings against the whole case that stands for them"
     known = [row for row in rows if row["inside 95 %"]]
-    return Table.of("whole", title, rows), {
-        f"whole.inside_{level}": Quantity.of(
+    return StudyTable.of("whole", title, rows), {
+        f"whole.inside_{level}": ComputedQuantity.of(
             float(np.mean([row[f"inside {level} %"] == "yes" for row in known]))
         )
         for level in (50, 95)
     }
 
 
-def _slips(options: Options) -> tuple[Table, dict[str, Quantity]]:
+def _slips(options: Options) -> tuple[StudyTable, dict[str, ComputedQuantity]]:
     """Return shares of slips of four sources against the slip model."""
     case = Case.from_mapping(HUMAN_SLIPS)
     ((_, arrays),) = cached_arrays(
         CASES, whole_cof, [case], [_key(case)], processes=options.processes
     )
-    rows = predicted(published(arrays["draws"][::4]))
+    rows = predict_shares(published_shares(arrays["draws"][::4]))
     title = "Shares of steps that slipped: report's curve, and what the other sources say"
     worst: dict[str, float] = {}
     for row in rows:
         off = abs(float(row["report's curve off by, points"]))
         worst[str(row["source"])] = max(off, worst.get(str(row["source"]), 0.0))
-    return Table.of("slips", title, rows), {
-        "slips.within": Quantity.of(sum(off <= POINTS for off in worst.values())),
+    return StudyTable.of("slips", title, rows), {
+        "slips.within": ComputedQuantity.of(sum(off <= POINTS for off in worst.values())),
     }
 
 
@@ -345,8 +355,8 @@ def _key(case: Case) -> str:
 
 
 def _basis(
-    sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[Condition, Stand, Side]]
-) -> Table:
+    sides: list[tuple[Contrast, Side, Side]], shoes: list[tuple[PublishedCondition, Stand, Side]]
+) -> StudyTable:
     stands = [(c.source, c.id, stand.taken, side.reason) for c, stand, side in shoes]
     stands += [
         (
@@ -363,24 +373,24 @@ def _basis(
     ]
     title = "What the sources leave open and was taken, and why an effect is not computed"
     columns = ("source", "effect or condition", "taken", "not computed because")
-    return Table("basis", title, columns, list(dict.fromkeys(rows)))
+    return StudyTable("basis", title, columns, list(dict.fromkeys(rows)))
 
 
-def _measured(reading: Reading) -> str:
+def _measured(reading: PublishedReading) -> str:
     if not reading.is_censored:
         return f"{reading.low:.3g}"
     words = {"lower": f"at least {reading.low:.3g}", "upper": f"at most {reading.high:.3g}"}
     return words.get(reading.kind, f"{reading.low:.3g} to {reading.high:.3g}")
 
 
-def _inside(reading: Reading, low: float, high: float, side: Side) -> str:
+def _inside(reading: PublishedReading, low: float, high: float, side: Side) -> str:
     if side.reason:
         return ""
     return "yes" if reading.low <= high and reading.high >= low else "no"
 
 
-def _scores(scores: Mapping[str, tuple[CorpusScore, CorpusScore]]) -> Table:
-    return Table.of(
+def _scores(scores: Mapping[str, tuple[CorpusScore, CorpusScore]]) -> StudyTable:
+    return StudyTable.of(
         "scores",
         "Each laboratory predicted from all others, each counts once (log density: sum)",
         [
@@ -420,7 +430,9 @@ def _where_known(left_out: list[LaboratoryScore]) -> tuple[float, float]:
     return float(np.exp(width)), float(inside)
 
 
-def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> tuple[Table, float]:
+def _sources(
+    left_out: list[LaboratoryScore], priors: list[LaboratoryScore]
+) -> tuple[StudyTable, float]:
     """Return the table of sources and the highest R2 that the priors alone have on one."""
     rows: list[dict[str, Any]] = []
     for score, prior in zip(left_out, priors, strict=True):
@@ -445,12 +457,12 @@ def _sources(left_out: list[LaboratoryScore], priors: list[LaboratoryScore]) -> 
                 }
             )
     title = "The law of the pair, source by source: measured over predicted, readings inside"
-    return Table.of("sources", title, rows), float(
+    return StudyTable.of("sources", title, rows), float(
         np.nanmax([row["R2 of the priors alone"] for row in rows])
     )
 
 
-def _after(left_out: list[LaboratoryScore]) -> tuple[Table, dict[str, Quantity]]:
+def _after(left_out: list[LaboratoryScore]) -> tuple[StudyTable, dict[str, ComputedQuantity]]:
     """Return what one reading of a source says of the rest of it; each source counts once."""
     found: dict[str, list[tuple[float, ...]]] = {}
     for score in left_out:
@@ -478,13 +490,15 @@ def _after(left_out: list[LaboratoryScore]) -> tuple[Table, dict[str, Quantity]]
     y, _, _, median, low, high = np.array(every).T
     weights = np.array(weight)
     inside = float(np.average((low <= y) & (y <= high), weights=weights))
-    return Table.of("after", "The rest of a source, once one of its readings is known", rows), {
-        "after.r2": Quantity.of(r2(y, median, weights)),
-        "after.inside_95": Quantity.of(inside),
+    return StudyTable.of(
+        "after", "The rest of a source, once one of its readings is known", rows
+    ), {
+        "after.r2": ComputedQuantity.of(r2(y, median, weights)),
+        "after.inside_95": ComputedQuantity.of(inside),
     }
 
 
-def _constants(posterior: PairPosterior) -> Table:
+def _constants(posterior: PairPosterior) -> StudyTable:
     names = ("tester", "pair", "reading", "dry part of a tester")
     every = [
         *zip(posterior.law.parameters, posterior.theta.T, strict=True),
@@ -497,7 +511,7 @@ def _constants(posterior: PairPosterior) -> Table:
             name, (low, median, high) = name[3:], np.exp((low, median, high))
         rows.append({"constant": name, "median": median, "low 95 %": low, "high 95 %": high})
     title = "Constants of the law of the pair from all sources: calibrated, measurements of no pair"
-    return Table.of("constants", title, rows)
+    return StudyTable.of("constants", title, rows)
 
 
 def _figure(left_out: list[LaboratoryScore]) -> Figure:

@@ -14,12 +14,12 @@ from typing import Any
 from underfoot.case import Case
 from underfoot.case.sole import Lugs
 from underfoot.case.surfaces import FLOOR_RQ, SOLE_RQ
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.film import Strike, touch_time
 from underfoot.rough_contact import ExponentialLaw
 
-from .sources import RQ_PER_RA, Condition, Effect, Source, Span
+from .sources import RQ_PER_RA, PublishedCondition, PublishedEffect, Source, Span
 
 WHOLE_SHOE = ("whole shoe", "walking")
 FLAT = ("block", "pin", "slipmeter", "pull slipmeter", "drop pad")
@@ -153,16 +153,18 @@ def contrasts(source: Source) -> list[Contrast]:
     return [contrast for effect in source.effects for contrast in _of(effect, source)]
 
 
-def whole_shoe_stands(source: Source) -> list[tuple[Condition, Stand]]:
+def whole_shoe_stands(source: Source) -> list[tuple[PublishedCondition, Stand]]:
     """Return each condition of whole shoes with the cases that stand for it."""
     return [
-        (c, stand(described(c))) for c in source.conditions if c.labels.get("device") in WHOLE_SHOE
+        (c, stand(condition_table(c)))
+        for c in source.conditions
+        if c.labels.get("device") in WHOLE_SHOE
     ]
 
 
-def described(condition: Condition) -> dict[str, Any]:
+def condition_table(condition: PublishedCondition) -> dict[str, Any]:
     """Return a condition as one table, as effects write theirs."""
-    members = [described(member) for member in condition.members]
+    members = [condition_table(member) for member in condition.members]
     table = {**condition.labels, **condition.numbers}
     return {**table, "members": members} if members else table
 
@@ -185,7 +187,7 @@ def stand(table: Mapping[str, Any]) -> Stand:
 
 def _contact_time(case: Case) -> float:
     """Return the share of a drop pad's pull during which half its load rests on the floor."""
-    tread, context = case.shoe.tread, resolved(case)
+    tread, context = case.shoe.tread, resolve_context(case)
     if not isinstance(tread, Lugs) or context.viscosity_value is None:
         return 1.0
     asperities = ExponentialLaw(context.youngs_modulus, context.poisson_ratio, context.rq_value)
@@ -193,7 +195,7 @@ def _contact_time(case: Case) -> float:
     return max(1 - touch_time(strike, asperities.pressure) / STRIKE, 0.0)
 
 
-def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
+def _of(effect: PublishedEffect, source: Source) -> Iterator[Contrast]:
     content = effect.content
     base = content.get("conditions", {})
     low = high = step = math.nan
@@ -234,7 +236,7 @@ def _of(effect: Effect, source: Source) -> Iterator[Contrast]:
 def _side(content: Mapping[str, Any], name: str, source: Source) -> Mapping[str, Any]:
     if f"{name}_conditions" in content:
         return content[f"{name}_conditions"]
-    return described(next(c for c in source.conditions if c.id == content[name]))
+    return condition_table(next(c for c in source.conditions if c.id == content[name]))
 
 
 def _fluid(over: Mapping[str, Any], under: Mapping[str, Any]) -> str:

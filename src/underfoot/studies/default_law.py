@@ -23,7 +23,7 @@ from underfoot.core.catalogue import Catalogue
 from underfoot.friction import Pair, PairContactLaw, PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import Family
 
-from .pair_law import PairLaw, fitted, law_named
+from .pair_law import PairLaw, fit_law, law_named
 from .sources import corpus
 
 LABORATORY = ("moore_2012", "strobel_2012", "report_g6")
@@ -66,11 +66,11 @@ def draws_without_report(seed: int = 0) -> PairDraws:
     ]
     law = law_without_report()
     store = Cache("default_law-1")
-    key = content_hash(fitted, [repr(c) for c in others], list(law.prior), STEPS, seed)
+    key = content_hash(fit_law, [repr(c) for c in others], list(law.prior), STEPS, seed)
     stored = store.load(key)
     if stored is None:
         count = packaged_pair_draws().count
-        draws = fitted(law, others, steps=STEPS, seed=seed).draws(count, seed)
+        draws = fit_law(law, others, steps=STEPS, seed=seed).draws(count, seed)
         stored = {name: np.asarray(values) for name, values in draws.columns().items()}
         store.store(key, stored)
     constants = {name: stored[name] for name in stored if not name.startswith("sd_")}

@@ -32,8 +32,8 @@ from .figure import (
     line,
     points,
 )
-from .runner import Computed, Options, Table, cached_arrays
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable, cached_arrays
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g1.toml")
 
@@ -133,7 +133,7 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class MatrixCell:
     """One cell of the matrix; lengths in m, speed in m/s."""
 
     series: str
@@ -144,7 +144,7 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
-class Row(Case):
+class MatrixRow(MatrixCell):
     """One cell of the matrix with its averages over whole floor wavelengths (Eq. 8 to 12).
 
     ``area_per_force`` in m^2/N, ``mean_pressure`` in Pa, ``seconds`` of process time; NaN where
@@ -181,7 +181,7 @@ def compute(options: Options) -> Computed:
     if settings.solver == "condensed" and settings.elements == FINE:
         meshes.insert(0, replace(settings, elements=COARSE))
     before = kept_cases(settings, cases)
-    levels: list[tuple[float, list[Row]]] = []
+    levels: list[tuple[float, list[MatrixRow]]] = []
     histories: dict[tuple[str, float], History] = {}
     for number, mesh in enumerate(meshes):
         rows = []
@@ -196,7 +196,7 @@ def compute(options: Options) -> Computed:
         rows.sort(key=lambda row: place[astuple(row)[:5]])
         levels.append((BLOCK_LENGTH / mesh.elements[0], rows))
     rows = levels[-1][1]
-    quantities: dict[str, Quantity] = {}
+    quantities: dict[str, ComputedQuantity] = {}
     for name in SERIES:
         quantities |= series_quantities(name, levels)
     return Computed(
@@ -207,9 +207,9 @@ def compute(options: Options) -> Computed:
     )
 
 
-def cases_table(rows: Sequence[Row]) -> Table:
+def cases_table(rows: Sequence[MatrixRow]) -> StudyTable:
     """Return every case in the units of the report; what was said of a run is in the notes."""
-    return Table.of(
+    return StudyTable.of(
         "cases",
         "Averages over whole floor wavelengths",
         [
@@ -232,14 +232,14 @@ def cases_table(rows: Sequence[Row]) -> Table:
     )
 
 
-def matrix(settings: Settings) -> Iterator[Case]:
+def matrix(settings: Settings) -> Iterator[MatrixCell]:
     """Yield every case; those that share a block follow one another."""
     every = product(SHOE_RZ, settings.series, MATERIALS, FLOOR_RZ, settings.speeds)
     for shoe, series, material, floor, speed in every:
-        yield Case(series, material, shoe, floor, speed)
+        yield MatrixCell(series, material, shoe, floor, speed)
 
 
-def material_of(case: Case, bulk: str = "corrected") -> explicit.MicroMaterial:
+def material_of(case: MatrixCell, bulk: str = "corrected") -> explicit.MicroMaterial:
     """Return the rubber of a case; density assumed."""
     if case.series == "report":
         young = materials.report_elastomer(case.material).modulus
@@ -255,7 +255,7 @@ def material_of(case: Case, bulk: str = "corrected") -> explicit.MicroMaterial:
 
 
 def parts_of(
-    case: Case, settings: Settings
+    case: MatrixCell, settings: Settings
 ) -> tuple[
     explicit.MicroBlock, explicit.MicroSurface, explicit.MicroMaterial, explicit.MicroLoading
 ]:
@@ -275,14 +275,14 @@ def parts_of(
 
 
 def outcomes(
-    cases: Sequence[Case], settings: Settings, processes: int | None = 1
-) -> Iterator[tuple[Row, History]]:
+    cases: Sequence[MatrixCell], settings: Settings, processes: int | None = 1
+) -> Iterator[tuple[MatrixRow, History]]:
     """Yield row and history of every case; explicit ones in the order in which they end."""
     if settings.solver == "explicit":
         items = [(case, settings) for case in cases]
         keys = [_key(case, settings) for case in cases]
         for _, arrays in cached_arrays(ROOM, explicit_outcome, items, keys, processes=processes):
-            yield Row(**json.loads(str(arrays.pop("row")))), arrays
+            yield MatrixRow(**json.loads(str(arrays.pop("row")))), arrays
         return
     block: condensed.CondensedBlock | None = None
     last: tuple[float, float] | None = None
@@ -299,7 +299,7 @@ def outcomes(
         yield row_of(case, result), {name: getattr(result, name) for name in HISTORY}
 
 
-def explicit_outcome(item: tuple[Case, Settings]) -> dict[str, np.ndarray]:
+def explicit_outcome(item: tuple[MatrixCell, Settings]) -> dict[str, np.ndarray]:
     """Return one case by explicit finite elements, mass scaled within its error bounds."""
     scaled = explicit.ExplicitSettings(mass_scaling="auto")
     result = explicit.explicit_sliding(*parts_of(*item), scaled)
@@ -307,20 +307,22 @@ def explicit_outcome(item: tuple[Case, Settings]) -> dict[str, np.ndarray]:
     return {"row": row, **{name: getattr(result, name) for name in HISTORY}}
 
 
-def row_of(case: Case, result: explicit.MicroResult) -> Row:
+def row_of(case: MatrixCell, result: explicit.MicroResult) -> MatrixRow:
     """Return the averages of a case as one row."""
     averages = result.averages if result.status.usable else None
-    names = [field.name for field in fields(Row)][5:12]
+    names = [field.name for field in fields(MatrixRow)][5:12]
     values = [math.nan if averages is None else float(getattr(averages, n)) for n in names]
     status = result.status
     if averages is None and status.usable:
         status = Status.NOT_CONVERGED
     note = "; ".join((*result.notes, *(str(breach) for breach in result.breaches)))
     seconds = result.process_seconds
-    return Row(*asdict(case).values(), *values, status=str(status), note=note, seconds=seconds)
+    return MatrixRow(
+        *asdict(case).values(), *values, status=str(status), note=note, seconds=seconds
+    )
 
 
-def kept_cases(settings: Settings, cases: Sequence[Case]) -> int:
+def kept_cases(settings: Settings, cases: Sequence[MatrixCell]) -> int:
     """Return how many of the explicit cases an earlier run has left."""
     if settings.solver != "explicit":
         return 0
@@ -328,7 +330,7 @@ def kept_cases(settings: Settings, cases: Sequence[Case]) -> int:
     return sum((folder / f"{_key(case, settings)}.npz").is_file() for case in cases)
 
 
-def _key(case: Case, settings: Settings) -> str:
+def _key(case: MatrixCell, settings: Settings) -> str:
     # What other cases are run changes nothing in this one.
     alone = replace(settings, series=(case.series,), speeds=(0.0, case.speed))
     return content_hash(case, alone, _source())
@@ -347,7 +349,7 @@ def changes(
     """Return the relative change of ``quantity`` from the lowest to the highest of ``along``.
 
     One value for each combination of the other conditions; ``speed`` keeps one speed only.
-    ``rows`` are a sequence of ``Row`` or a frame of them.
+    ``rows`` are a sequence of ``MatrixRow`` or a frame of them.
     """
     frame: Any = pandas.DataFrame(rows)
     others = [name for name in ("material", "shoe_rz", "floor_rz", "speed") if name != along]
@@ -357,7 +359,7 @@ def changes(
         return tuple(float(same.iloc[-1] / same.iloc[0] - 1.0) for _, same in groups)
 
 
-def series_changes(rows: Sequence[Row]) -> dict[str, tuple[float, ...]]:
+def series_changes(rows: Sequence[MatrixRow]) -> dict[str, tuple[float, ...]]:
     """Return every change of G.1.2 for the rows of one series, by name."""
     frame: Any = pandas.DataFrame(rows)
     slow = frame.speed.min()
@@ -386,31 +388,33 @@ def series_changes(rows: Sequence[Row]) -> dict[str, tuple[float, ...]]:
 
 
 def series_quantities(
-    series: str, levels: Sequence[tuple[float, Sequence[Row]]]
-) -> dict[str, Quantity]:
+    series: str, levels: Sequence[tuple[float, Sequence[MatrixRow]]]
+) -> dict[str, ComputedQuantity]:
     """Return the quantities of one series from its rows on meshes from coarse to fine."""
     meshes = [(spacing, [row for row in rows if row.series == series]) for spacing, rows in levels]
     if not meshes[-1][1]:
         names = [*series_changes(levels[-1][1]), "hysteresis.largest"]
-        return {f"{series}.{name}": Quantity.none("this series was not run") for name in names}
+        return {
+            f"{series}.{name}": ComputedQuantity.none("this series was not run") for name in names
+        }
     largest = [
         (spacing, float(np.max(np.abs([row.cof_hysteresis for row in rows]))))
         for spacing, rows in meshes
     ]
-    found = {f"{series}.hysteresis.largest": Quantity.of(largest[-1][1], levels=largest)}
+    found = {f"{series}.hysteresis.largest": ComputedQuantity.of(largest[-1][1], levels=largest)}
     each = [(spacing, series_changes(rows)) for spacing, rows in meshes]
     lossless = largest[-1][1] < LEAST_COF
     for name, values in each[-1][1].items():
         if lossless and "hysteresis" in name:
             text = f"no hysteresis to compare: |COF| at most {largest[-1][1]:.0e}"
-            found[f"{series}.{name}"] = Quantity.none(text)
+            found[f"{series}.{name}"] = ComputedQuantity.none(text)
         else:
             steps = [(spacing, changed[name]) for spacing, changed in each]
-            found[f"{series}.{name}"] = Quantity.of(values, levels=steps)
+            found[f"{series}.{name}"] = ComputedQuantity.of(values, levels=steps)
     return found
 
 
-def _notes(rows: Sequence[Row], settings: Settings, before: int) -> list[str]:
+def _notes(rows: Sequence[MatrixRow], settings: Settings, before: int) -> list[str]:
     pressures = np.array([row.mean_pressure for row in rows]) * 1e-3
     notes = []
     if np.isfinite(pressures).any():
@@ -434,7 +438,7 @@ def _notes(rows: Sequence[Row], settings: Settings, before: int) -> list[str]:
 
 
 def figures(
-    rows: Sequence[Row], histories: dict[tuple[str, float], History], wavelength: float
+    rows: Sequence[MatrixRow], histories: dict[tuple[str, float], History], wavelength: float
 ) -> dict[str, Figure]:
     """Return Fig. 3, 5 to 8, 10 and 11."""
     frame = pandas.DataFrame(rows)

@@ -17,7 +17,7 @@ from underfoot.friction import (
     BoundaryFriction,
     Pair,
     Propagated,
-    propagated,
+    propagate_spread,
     stribeck_cof,
     viscous_decay,
 )
@@ -48,10 +48,10 @@ from .mechanisms import (
     MechanismComparison,
     calibrated_mechanism,
     compare_mechanisms,
-    predicted,
+    predict_cof,
 )
-from .runner import Computed, Options, Table
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g2.toml")
 
@@ -108,18 +108,18 @@ def compute(options: Options) -> Computed:
         **_means(comparison),
         **_decay(comparison.fluids),
         **{
-            f"lambda.{name}.{end}": Quantity.of(values[i])
+            f"lambda.{name}.{end}": ComputedQuantity.of(values[i])
             for name, values in lambdas.items()
             for i, end in ((0, "slowest"), (-1, "fastest"))
         },
         **{
-            f"error.{on}.{inputs}": Quantity.of(getattr(comparison.chosen, on)[k].error)
+            f"error.{on}.{inputs}": ComputedQuantity.of(getattr(comparison.chosen, on)[k].error)
             for on in ("fluids", "roughness")
             for k, inputs in enumerate(INPUTS)
         },
-        "error.one_from_five": Quantity.of(comparison.chosen.one_from_five),
-        "coverage": Quantity.of(_coverage(comparison.points, spread)),
-        "master.r_squared": Quantity.of(fit["r_squared"]),
+        "error.one_from_five": ComputedQuantity.of(comparison.chosen.one_from_five),
+        "coverage": ComputedQuantity.of(_coverage(comparison.points, spread)),
+        "master.r_squared": ComputedQuantity.of(fit["r_squared"]),
     }
     return Computed(
         quantities,
@@ -177,17 +177,17 @@ def _rough_name(cof_points: CofPoints) -> str:
     return f"{share}_{1e6 * cof_points.rq:.1f}"
 
 
-def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Quantity]:
+def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, ComputedQuantity]:
     """Return mean COF over the speeds, the order of the fluids and the decay speed of water."""
     quantities = {
-        f"{'mean' if name in LABELS else 'rough'}.default.{name}": Quantity.of(
+        f"{'mean' if name in LABELS else 'rough'}.default.{name}": ComputedQuantity.of(
             prediction.median, draws=prediction.mean
         )
         for name, prediction in default.items()
     }
     printed = sorted(LABELS, key=lambda name: -default[name].points.cof.mean())
     order = [default[name] for name in printed]
-    quantities["order.default"] = Quantity.of(
+    quantities["order.default"] = ComputedQuantity.of(
         [prediction.median for prediction in order],
         names=[LABELS[name] for name in printed],
         chance=chance_of_order([prediction.mean for prediction in order]),
@@ -204,18 +204,18 @@ def _default_quantities(default: Mapping[str, DefaultPrediction]) -> dict[str, Q
         np.max([prediction.mean for prediction in thick], axis=0),
         max(prediction.median for prediction in thick),
     )
-    quantities["thin_and_thick.default"] = Quantity.of(
+    quantities["thin_and_thick.default"] = ComputedQuantity.of(
         [least[1], most[1]],
         names=("thin fluids", "thick fluids"),
         chance=chance_of_order([least[0], most[0]]),
     )
     water = default["water_g2"]
     taus = water.kappa / water.points.viscosity
-    quantities["tau.default"] = Quantity.of(float(np.median(taus)), "m/s", draws=taus)
+    quantities["tau.default"] = ComputedQuantity.of(float(np.median(taus)), "m/s", draws=taus)
     return quantities
 
 
-def _default_table(default: Mapping[str, DefaultPrediction]) -> Table:
+def _default_table(default: Mapping[str, DefaultPrediction]) -> StudyTable:
     rows = []
     for name, prediction in default.items():
         low, high = np.quantile(prediction.mean, [0.025, 0.975])
@@ -233,7 +233,7 @@ def _default_table(default: Mapping[str, DefaultPrediction]) -> Table:
             }
         )
     title = "Mean COF over the speeds by the law of the pair, fitted without the report's readings"
-    return Table.of("default_law", title, rows)
+    return StudyTable.of("default_law", title, rows)
 
 
 def _default_conclusions(default: Mapping[str, DefaultPrediction]) -> tuple[str, ...]:
@@ -253,27 +253,29 @@ def _default_conclusions(default: Mapping[str, DefaultPrediction]) -> tuple[str,
     )
 
 
-def _means(comparison: MechanismComparison) -> dict[str, Quantity]:
+def _means(comparison: MechanismComparison) -> dict[str, ComputedQuantity]:
     """Return mean COF over the speeds, predicted with COF_BL and from the viscosity alone."""
     found = {}
     for k, inputs in enumerate(INPUTS):
         for prediction in comparison.chosen.fluids[k].predictions:
-            found[f"mean.{inputs}.{prediction.points.fluid}"] = Quantity.of(prediction.cof.mean())
+            found[f"mean.{inputs}.{prediction.points.fluid}"] = ComputedQuantity.of(
+                prediction.cof.mean()
+            )
         for prediction in comparison.chosen.roughness[k].predictions:
             one = prediction.points
             share = one.fluid.removeprefix("glycerol_").removesuffix("pct")
             name = f"rough.{inputs}.{share}_{1e6 * one.rq:.1f}"
-            found[name] = Quantity.of(prediction.cof.mean())
+            found[name] = ComputedQuantity.of(prediction.cof.mean())
     return found
 
 
-def _decay(fluids: Mapping[str, BoundaryFriction]) -> dict[str, Quantity]:
+def _decay(fluids: Mapping[str, BoundaryFriction]) -> dict[str, ComputedQuantity]:
     """Return tau (m/s) of each fitted fluid from viscosity x tau of the others."""
     fitted = [fluid for fluid in fluids.values() if fluid.tau_hydro is not None]
     found = {}
     for friction in fitted:
         rest = viscous_decay([other for other in fitted if other is not friction])
-        found[f"tau.{friction.fluid}"] = Quantity.of(
+        found[f"tau.{friction.fluid}"] = ComputedQuantity.of(
             (rest.value or 0.0) / friction.viscosity,
             "m/s",
             deviation=(rest.uncertainty or 0.0) / friction.viscosity,
@@ -308,11 +310,13 @@ def intervals(
             own = values.get(name)
             point = replace(point, cof_boundary=own)
             found.append(
-                predicted(test.mechanism, fit, point, comparison.pin, own_boundary=own is not None)
+                predict_cof(
+                    test.mechanism, fit, point, comparison.pin, own_boundary=own is not None
+                )
             )
         return np.array(found)
 
-    return propagated(
+    return propagate_spread(
         all_fluids, inputs, model_deviation=test.deviation, samples=samples, seed=seed, shares=False
     )
 
@@ -338,7 +342,7 @@ def master_curve(
     fit = calibrated_mechanism(chosen, tuple(chosen_points), pin)
     product = np.geomspace(0.52e-3 * 0.03, 74.6e-3 * 1.2, 200)
     one = CofPoints("", 1.0, product, product, "fit", pin.sole_rq, None)
-    curve = predicted(chosen, fit.values, one, pin, own_boundary=False)
+    curve = predict_cof(chosen, fit.values, one, pin, own_boundary=False)
     place = np.concatenate([p.viscosity * p.speed for p in chosen_points])
     cof = np.concatenate([p.cof for p in chosen_points])
     order = np.argsort(place)
@@ -370,7 +374,7 @@ def lambda_ratios(comparison: MechanismComparison, count: int = 30) -> dict[str,
     }
 
 
-def _mechanism_table(comparison: MechanismComparison) -> Table:
+def _mechanism_table(comparison: MechanismComparison) -> StudyTable:
     rows = []
     for name, test in comparison.tests.items():
         given = test.calibration.parameters.get("parameter")
@@ -388,7 +392,7 @@ def _mechanism_table(comparison: MechanismComparison) -> Table:
                 "1 from 5": test.one_from_five,
             }
         )
-    return Table.of(
+    return StudyTable.of(
         "mechanisms",
         "Mean absolute error of COF. On 50 % glycerol: of the fit itself; 5 fluids and Table 3: "
         "predicted with COF_BL as input or from viscosity alone; 1 from 5: each fluid by viscosity "
@@ -397,7 +401,7 @@ def _mechanism_table(comparison: MechanismComparison) -> Table:
     )
 
 
-def _fluid_table(comparison: MechanismComparison) -> Table:
+def _fluid_table(comparison: MechanismComparison) -> StudyTable:
     rows = [
         {
             "mechanism": name,
@@ -408,10 +412,10 @@ def _fluid_table(comparison: MechanismComparison) -> Table:
         for name, test in comparison.tests.items()
         for k, inputs in enumerate(("COF_BL", "viscosity"))
     ]
-    return Table.of("fluids", "Mean absolute error of COF over the 11 speeds, by fluid", rows)
+    return StudyTable.of("fluids", "Mean absolute error of COF over the 11 speeds, by fluid", rows)
 
 
-def _curve_table(comparison: MechanismComparison, spread: Propagated) -> Table:
+def _curve_table(comparison: MechanismComparison, spread: Propagated) -> StudyTable:
     rows = [
         {
             "fluid": LABELS[name],
@@ -427,7 +431,7 @@ def _curve_table(comparison: MechanismComparison, spread: Propagated) -> Table:
         for k in range(cof_points.speed.size)
     ]
     title = "COF of each fluid: published (fit of Eq. 17 or mean) and predicted, 95 %"
-    return Table.of("curves", title, rows)
+    return StudyTable.of("curves", title, rows)
 
 
 def _conclusions(comparison: MechanismComparison, fit: Mapping[str, float]) -> tuple[str, ...]:

@@ -27,8 +27,8 @@ from .default_law import (
     with_reading_error,
 )
 from .figure import GREY, OURS, PRINTED, Figure, Layer, Panel, grouped_bars, points
-from .runner import Computed, Options, Table
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g3.toml")
 
@@ -59,7 +59,7 @@ CONTACT_PRESSURE, LOAD, SPEED = 266.1e3, 20.9, 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Split:
+class PrintedSplit:
     """Friction of one pair by the default law as the report splits it, N.
 
     ``adhesion`` (dry less oiled), ``hysteresis`` (under the oil) and ``lubricated`` by fluid (less
@@ -90,11 +90,11 @@ def compute(options: Options) -> Computed:
         {
             **default_quantities(splits),
             **{
-                f"eq26.{sole.replace(' ', '_')}.{name}": Quantity.of(end(left[sole]), "N")
+                f"eq26.{sole.replace(' ', '_')}.{name}": ComputedQuantity.of(end(left[sole]), "N")
                 for sole in SOLES
                 for name, end in (("lowest", np.min), ("highest", np.max))
             },
-            "contact_area": Quantity.of(
+            "contact_area": ComputedQuantity.of(
                 float(strength) * np.array(by_sole), "N", names=tuple(SOLES)
             ),
             **table_5_orders(),
@@ -103,7 +103,7 @@ def compute(options: Options) -> Computed:
             _split_table(splits),
             _analysis_table(splits),
             _lubricated_table(splits),
-            Table.of(
+            StudyTable.of(
                 "eq26",
                 "Adhesion left under each fluid by Eq. 26, N at 20.9 N, at the dry adhesion that "
                 "fits best",
@@ -112,7 +112,7 @@ def compute(options: Options) -> Computed:
                     for i, fluid in enumerate(FLUIDS)
                 ],
             ),
-            Table.of(
+            StudyTable.of(
                 "contact_area",
                 "Share of real contact at 266.1 kPa (Persson 2001), which times one shear strength "
                 "would be the dry adhesion",
@@ -160,7 +160,7 @@ def compute(options: Options) -> Computed:
     )
 
 
-def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: int) -> Split:
+def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: int) -> PrintedSplit:
     """Return the friction of a pair without fluid, under the oil and under each fluid."""
     shore, (sole_ra, floor_ra) = _pair_numbers(catalogue, sole, floor)
     rq = [(RQ_PER_RA * ra,) * 2 for ra in (sole_ra, floor_ra)]
@@ -185,7 +185,7 @@ def split(catalogue: Catalogue, draws: PairDraws, sole: str, floor: str, seed: i
 
     dry, oiled = friction("dry"), friction(OIL)
     wet = {name: friction(fluid) for name, fluid in FLUIDS.items()}
-    return Split(
+    return PrintedSplit(
         np.maximum(dry[0] - oiled[0], 0.0),
         oiled[0],
         {name: np.maximum(one[0] - oiled[0], 0.0) for name, one in wet.items()},
@@ -202,7 +202,9 @@ def _pair_numbers(catalogue: Catalogue, sole: str, floor: str) -> tuple[float, t
     return float(own.leaf("shore_a").given), (ra[0], ra[1])
 
 
-def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Quantity]:
+def default_quantities(
+    splits: Mapping[tuple[str, str], PrintedSplit],
+) -> dict[str, ComputedQuantity]:
     """Return orders and ranges of the default law by name."""
 
     def over_floors(sole: str, take: str) -> tuple[float, Array]:
@@ -210,7 +212,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         medians = [_middle(one, take) for one in own]
         return float(np.mean(medians)), np.mean([getattr(one, take) for one in own], axis=0)
 
-    quantities: dict[str, Quantity] = {}
+    quantities: dict[str, ComputedQuantity] = {}
     for take, printed in (
         ("adhesion", ("hard rubber", "soft rubber", "polyurethane")),
         ("hysteresis", ("polyurethane", "soft rubber", "hard rubber")),
@@ -218,7 +220,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
     ):
         values = {sole: over_floors(sole, take) for sole in SOLES}
         ends = [values[sole] for sole in printed]
-        quantities[f"default.{take}"] = Quantity.of(
+        quantities[f"default.{take}"] = ComputedQuantity.of(
             [one[0] for one in ends],
             "N",
             names=printed,
@@ -230,7 +232,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         "polyurethane": ("vinyl", "marble"),
     }.items():
         pair = [splits[sole, floor] for floor in (first, second)]
-        quantities[f"default.floor.{sole.replace(' ', '_')}"] = Quantity.of(
+        quantities[f"default.floor.{sole.replace(' ', '_')}"] = ComputedQuantity.of(
             [one.medians[0] for one in pair],
             "N",
             names=(first, second),
@@ -239,7 +241,7 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
     for take in ("hysteresis", "loss"):
         quantities[f"default.{take}_pairs"] = _ends_of_the_pairs(splits, take)
         by_floor = [splits["polyurethane", floor] for floor in ("marble", "vinyl")]
-        quantities[f"default.{take}_floor"] = Quantity.of(
+        quantities[f"default.{take}_floor"] = ComputedQuantity.of(
             [_middle(one, take) for one in by_floor],
             "N",
             names=("marble", "vinyl"),
@@ -259,12 +261,12 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
         name = sole.replace(" ", "_")
         for end, take in (("lowest", np.min), ("highest", np.max)):
             drawn = take(by_fluid, axis=0)
-            quantities[f"default.{name}.{end}"] = Quantity.of(
+            quantities[f"default.{name}.{end}"] = ComputedQuantity.of(
                 float(take(medians_of)), "N", draws=drawn
             )
         spreads[sole] = (float(np.ptp(medians_of)), np.ptp(by_fluid, axis=0))
     order = ("hard rubber", "soft rubber", "polyurethane")
-    quantities["default.fluid_spread"] = Quantity.of(
+    quantities["default.fluid_spread"] = ComputedQuantity.of(
         [spreads[sole][0] for sole in order],
         "N",
         names=order,
@@ -273,14 +275,16 @@ def default_quantities(splits: Mapping[tuple[str, str], Split]) -> dict[str, Qua
     return quantities
 
 
-def _middle(split: Split, take: str) -> float:
+def _middle(split: PrintedSplit, take: str) -> float:
     """Return what a part of the friction is at the medians of the law's inputs, N."""
     if take == "loss":
         return float(np.median(split.loss))
     return split.medians[0] if take == "adhesion" else split.medians[1]
 
 
-def _ends_of_the_pairs(splits: Mapping[tuple[str, str], Split], take: str) -> Quantity:
+def _ends_of_the_pairs(
+    splits: Mapping[tuple[str, str], PrintedSplit], take: str
+) -> ComputedQuantity:
     """Return a part of the friction of the pairs that the report names, and of those between."""
     extremes = [("polyurethane", "marble"), ("hard rubber", "vinyl")]
     rest = [pair for pair in splits if pair not in extremes]
@@ -289,7 +293,7 @@ def _ends_of_the_pairs(splits: Mapping[tuple[str, str], Split], take: str) -> Qu
     first, last = (getattr(splits[pair], take) for pair in extremes)
     above = (first - np.max(others, axis=0) > TIE) & (np.min(others, axis=0) - last > TIE)
     between = [medians[pair] for pair in rest]
-    return Quantity.of(
+    return ComputedQuantity.of(
         [medians[extremes[0]], max(between), min(between), medians[extremes[1]]],
         "N",
         names=("polyurethane on marble", "highest other", "lowest other", "hard rubber on vinyl"),
@@ -308,7 +312,7 @@ def eq26_at_its_best(catalogue: Catalogue) -> tuple[dict[str, float], dict[str, 
     return dry, left
 
 
-def table_5_orders() -> dict[str, Quantity]:
+def table_5_orders() -> dict[str, ComputedQuantity]:
     """Return the orders of alpha and beta in Table 5."""
     alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
     beta = {fluid: float(blocking.beta) for fluid, blocking in BLOCKING.items()}
@@ -321,12 +325,12 @@ def table_5_orders() -> dict[str, Quantity]:
         max(value for name, value in beta.items() if not name.startswith("glycerol")),
     )
     return {
-        "alpha": Quantity.of(
+        "alpha": ComputedQuantity.of(
             [alpha["water"], middle, alpha["canola oil"]],
             "N",
             names=("water", "other fluids", "canola oil"),
         ),
-        "beta": Quantity.of(glycerols, names=("glycerols", "other fluids")),
+        "beta": ComputedQuantity.of(glycerols, names=("glycerols", "other fluids")),
     }
 
 
@@ -356,7 +360,7 @@ def _interval(drawn: Array) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _split_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+def _split_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     rows = []
     for (sole, floor), one in splits.items():
         row: dict[str, object] = {"sole": sole, "floor": floor}
@@ -369,7 +373,7 @@ def _split_table(splits: Mapping[tuple[str, str], Split]) -> Table:
             row |= {name: value, f"{name}: 95 %": f"{low:.2g} to {high:.2g}"}
         rows.append(row)
     title = "Friction of 20.9 N by the law of the pair, fitted without the report's readings"
-    return Table.of("default_split", title, rows)
+    return StudyTable.of("default_split", title, rows)
 
 
 EFFECTS = {"sole": "sole", "floor": "floor", "sole:floor": "sole with floor"}
@@ -381,7 +385,9 @@ PRINTED_EFFECTS = {
 """Of the analyses of variance in G.3.2."""
 
 
-def expected_analysis(splits: Mapping[tuple[str, str], Split], take: str) -> dict[str, float]:
+def expected_analysis(
+    splits: Mapping[tuple[str, str], PrintedSplit], take: str
+) -> dict[str, float]:
     """Return p of sole, floor and both together, as the report's test would find it.
 
     Readings are the law's medians, three of each pair about them with the report's scatter: 0.82 N
@@ -400,7 +406,7 @@ def expected_analysis(splits: Mapping[tuple[str, str], Split], take: str) -> dic
     return {row.term: float(row.p) for row in table.rows if row.p is not None}
 
 
-def _analysis_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+def _analysis_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     names = {
         "adhesion": "dry adhesion",
         "hysteresis": "under gear oil",
@@ -420,10 +426,10 @@ def _analysis_table(splits: Mapping[tuple[str, str], Split]) -> Table:
         "Analysis of variance of the law's medians, three readings a pair with the report's "
         "scatter of 0.82 N"
     )
-    return Table.of("analysis_of_variance", title, rows)
+    return StudyTable.of("analysis_of_variance", title, rows)
 
 
-def _lubricated_table(splits: Mapping[tuple[str, str], Split]) -> Table:
+def _lubricated_table(splits: Mapping[tuple[str, str], PrintedSplit]) -> StudyTable:
     rows = [
         {
             "fluid": fluid,
@@ -434,10 +440,10 @@ def _lubricated_table(splits: Mapping[tuple[str, str], Split]) -> Table:
         for fluid in FLUIDS
     ]
     title = "Adhesion left under a fluid by the same law (friction less that under gear oil), N"
-    return Table.of("default_lubricated", title, rows)
+    return StudyTable.of("default_lubricated", title, rows)
 
 
-def _conclusions(splits: Mapping[tuple[str, str], Split]) -> tuple[str, ...]:
+def _conclusions(splits: Mapping[tuple[str, str], PrintedSplit]) -> tuple[str, ...]:
     alpha = {fluid: float(blocking.alpha) for fluid, blocking in BLOCKING.items()}
     by_sole = {sole: np.mean([splits[sole, f].medians[0] for f in FLOORS]) for sole in SOLES}
     listed = ", ".join(f"{sole} {value:.1f} N" for sole, value in by_sole.items())
@@ -457,7 +463,7 @@ def _conclusions(splits: Mapping[tuple[str, str], Split]) -> tuple[str, ...]:
     )
 
 
-def _words_on_loss(splits: Mapping[tuple[str, str], Split]) -> str:
+def _words_on_loss(splits: Mapping[tuple[str, str], PrintedSplit]) -> str:
     loss = {pair: _middle(one, "loss") for pair, one in splits.items()}
     share = max(loss[pair] / one.medians[1] for pair, one in splits.items())
     by_floor = [np.mean([loss[sole, floor] for sole in SOLES]) for floor in ("vinyl", "marble")]
@@ -493,7 +499,7 @@ def _pair_figure(
 
 
 def _fluid_figure(
-    catalogue: Catalogue, splits: Mapping[tuple[str, str], Split], left: Mapping[str, Array]
+    catalogue: Catalogue, splits: Mapping[tuple[str, str], PrintedSplit], left: Mapping[str, Array]
 ) -> Figure:
     """Return adhesion by fluid, a panel a sole: default law, Eq. 26 and the printed range."""
     published = catalogue.entry("published", "boundary_g3")

@@ -17,7 +17,7 @@ from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import ConvergenceError, Progress, display, silent
 from underfoot.core.catalogue import Catalogue
-from underfoot.questions.outcomes import Outcome, outcomes
+from underfoot.questions.outcomes import CaseOutcome, outcomes
 from underfoot.questions.sensitivity import OpenInput, Sensitivity, open_inputs, sensitivity
 from underfoot.trials.statistics import analysis_of_variance
 
@@ -32,9 +32,9 @@ from .figure import (
     line,
     points,
 )
-from .runner import Computed, Options, Table, part
-from .sampled import sampled
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable, part
+from .sampled import sample_inputs
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g4.toml")
 
@@ -70,7 +70,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Condition:
+class ShoeInFluid:
     """One shoe in one fluid; ``squares``: without finer cells along the sliding, for a look."""
 
     kind: str
@@ -112,15 +112,15 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Reading:
+class GridReading:
     """What one condition gave on grids from coarse to fine, and the finest one's map.
 
     ``x``, ``y`` and ``pressure`` (len(x), len(y)) in m and Pa as the tracks in the middle position
     see them, ``outline`` (n, 2) of the plan form; ``draws`` of each number over the open inputs.
     """
 
-    condition: Condition
-    levels: tuple[tuple[float, Outcome], ...]
+    condition: ShoeInFluid
+    levels: tuple[tuple[float, CaseOutcome], ...]
     x: Array
     y: Array
     pressure: Array
@@ -128,7 +128,7 @@ class Reading:
     draws: Mapping[str, Array]
 
     @property
-    def outcome(self) -> Outcome:
+    def outcome(self) -> CaseOutcome:
         """On the finest grid."""
         return self.levels[-1][1]
 
@@ -149,15 +149,17 @@ class Reading:
         low, high = np.percentile(self.draws[name], [2.5, 97.5])
         return min(float(low), self.number(name)), max(float(high), self.number(name))
 
-    def quantity(self, name: str, unit: str) -> Quantity:
+    def quantity(self, name: str, unit: str) -> ComputedQuantity:
         """Return a scalar with its grids and its distribution over the open inputs."""
         levels = [(spacing, outcome.number(name)) for spacing, outcome in self.levels]
-        return Quantity.of(self.number(name), unit, draws=self.draws.get(name), levels=levels)
+        return ComputedQuantity.of(
+            self.number(name), unit, draws=self.draws.get(name), levels=levels
+        )
 
 
-def conditions(*, squares: bool = False) -> list[Condition]:
+def conditions(*, squares: bool = False) -> list[ShoeInFluid]:
     """Return the twelve: work and athletic shoe, three depths of tread, two fluids."""
-    return [Condition(k, t, fluid, squares) for k in KINDS for t in TREADS for fluid in FLUIDS]
+    return [ShoeInFluid(k, t, fluid, squares) for k in KINDS for t in TREADS for fluid in FLUIDS]
 
 
 def compute(options: Options) -> Computed:
@@ -178,7 +180,7 @@ def compute(options: Options) -> Computed:
         options.progress(condition.name, 0.5 + 0.35 * number / len(plan))
         readings.append(reading(condition, varied.get(condition.name), quick=options.quick))
     options.progress("Tread depth and lower force", 0.9)
-    base = Condition("work", "half_tread", "glycerol", options.quick).case
+    base = ShoeInFluid("work", "half_tread", "glycerol", options.quick).case
     tried = QUICK_DEPTHS if options.quick else DEPTHS
     depths = depth_series(base, tried, processes=options.processes)
     lower = at_lower_force(readings, processes=options.processes)
@@ -200,7 +202,9 @@ def compute(options: Options) -> Computed:
     )
 
 
-def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = False) -> Reading:
+def reading(
+    condition: ShoeInFluid, varied: Sensitivity | None, *, quick: bool = False
+) -> GridReading:
     """Return what a condition gives on the quick grid, or on quick, default and finer ones."""
     numerics = condition.case.numerics
     spacings = [numerics.quick_grid_spacing]
@@ -210,15 +214,15 @@ def reading(condition: Condition, varied: Sensitivity | None, *, quick: bool = F
         run(condition.case.replace("numerics.grid_spacing", f"{spacing!r} m"))
         for spacing in spacings
     ]
-    levels = tuple(zip(spacings, map(Outcome.of, results), strict=True))
+    levels = tuple(zip(spacings, map(CaseOutcome.of, results), strict=True))
     fields = results[-1].data
     x, y, pressure = (fields[f"sensor_{name}"].values for name in ("x", "y", "pressure"))
     outline = np.column_stack([fields["outline_x"].values, fields["outline_y"].values])
     draws = {} if varied is None else {name: _draws(name, levels[-1][1], varied) for name in LEAST}
-    return Reading(condition, levels, x, y, pressure, outline, draws)
+    return GridReading(condition, levels, x, y, pressure, outline, draws)
 
 
-def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
+def _draws(name: str, outcome: CaseOutcome, varied: Sensitivity) -> Array:
     """Return draws of a number over open inputs and place of the tracks, about the finest grid."""
     value, spread = outcome.number(name), outcome.spread(name)
     factors = [1.0 + spread / value] if value > LEAST[name] and spread > 0 else []
@@ -227,10 +231,10 @@ def _draws(name: str, outcome: Outcome, varied: Sensitivity) -> Array:
         ends = [end for effect in varied.effects for end in (effect.low, effect.high)]
         highest = [one.number("peak_fluid_pressure") for one in (outcome, varied.nominal, *ends)]
         most = max(value * (1.0 + 1e-6), float(np.nanmax(highest)))
-    return sampled(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
+    return sample_inputs(varied, name, value=value, factors=factors, least=LEAST[name], most=most)
 
 
-def inputs_of(condition: Condition, *, quick: bool = False) -> list[OpenInput]:
+def inputs_of(condition: ShoeInFluid, *, quick: bool = False) -> list[OpenInput]:
     """Return the open inputs that are varied: all of an untreaded shoe, the deciding ones else."""
     inputs = open_inputs(condition.case)
     if condition.untreaded and not quick:
@@ -239,7 +243,7 @@ def inputs_of(condition: Condition, *, quick: bool = False) -> list[OpenInput]:
 
 
 def sensitivities(
-    chosen: list[Condition],
+    chosen: list[ShoeInFluid],
     *,
     quick: bool = False,
     processes: int | None = 1,
@@ -275,7 +279,9 @@ def sensitivities(
     return by_condition, lost
 
 
-def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) -> dict[str, Outcome]:
+def at_lower_force(
+    readings: Sequence[GridReading], *, processes: int | None = 1
+) -> dict[str, CaseOutcome]:
     """Return the conditions above COF 0.11 at 250 N, where the tester gave no more; by name."""
     high = [one.condition for one in readings if one.number("cof") > LOWER_FORCE_ABOVE]
     cases = [
@@ -287,7 +293,7 @@ def at_lower_force(readings: Sequence[Reading], *, processes: int | None = 1) ->
 
 def depth_series(
     base: Case, depths: Sequence[float], *, processes: int | None = 1
-) -> list[tuple[float, Outcome]]:
+) -> list[tuple[float, CaseOutcome]]:
     """Return the half-treaded work shoe in glycerol with its tread at other depths (m).
 
     One compound, one roughness and one set of channels, so that the depth alone changes; on the
@@ -303,7 +309,7 @@ def depth_series(
     return list(zip(depths, found, strict=True))
 
 
-def threshold(depths: Sequence[tuple[float, Outcome]]) -> tuple[float, float] | None:
+def threshold(depths: Sequence[tuple[float, CaseOutcome]]) -> tuple[float, float] | None:
     """Return the two neighbouring depths (m) between which the sensor's load falls below 5 N."""
     loads = [(depth, outcome.number(LOAD)) for depth, outcome in sorted(depths, key=lambda d: d[0])]
     for (shallow, before), (deep, _) in pairwise(loads):
@@ -313,10 +319,10 @@ def threshold(depths: Sequence[tuple[float, Outcome]]) -> tuple[float, float] | 
 
 
 def quantities(
-    by: Mapping[str, Reading], depths: Sequence[tuple[float, Outcome]]
-) -> dict[str, Quantity]:
+    by: Mapping[str, GridReading], depths: Sequence[tuple[float, CaseOutcome]]
+) -> dict[str, ComputedQuantity]:
     """Return every quantity of the study by name."""
-    by_name: dict[str, Quantity] = {}
+    by_name: dict[str, ComputedQuantity] = {}
     for path, one in by.items():
         by_name[f"{path}.load"] = one.quantity(LOAD, "N")
         by_name[f"{path}.peak"] = one.quantity(PEAK, "Pa")
@@ -332,27 +338,29 @@ def quantities(
                 (spacing, last.number(LOAD) - before.number(LOAD))
                 for (spacing, last), (_, before) in zip(b.levels, a.levels, strict=True)
             ]
-            by_name[f"{kind}.{name}"] = Quantity.of(levels[-1][1], "N", levels=levels)
+            by_name[f"{kind}.{name}"] = ComputedQuantity.of(levels[-1][1], "N", levels=levels)
     work, athletic = (by[f"{kind}.untreaded.glycerol"] for kind in KINDS)
-    by_name["work.place"] = Quantity.of(work.place[0], "m")
-    by_name["athletic.ahead_of_channel"] = Quantity.of(
+    by_name["work.place"] = ComputedQuantity.of(work.place[0], "m")
+    by_name["athletic.ahead_of_channel"] = ComputedQuantity.of(
         athletic.place[0] - channel_at(athletic, athletic.place[1]), "m"
     )
     deep = [outcome.number(LOAD) for depth, outcome in depths if 1.5e-3 <= depth <= 3e-3]
-    by_name["depth.change"] = Quantity.of(max(deep) - min(deep), "N")
+    by_name["depth.change"] = ComputedQuantity.of(max(deep) - min(deep), "N")
     limit = threshold(depths)
-    none = Quantity.none("no depth that was computed brings it below 5 N", "m")
-    by_name["depth.threshold"] = none if limit is None else Quantity.of(limit[1], "m")
+    none = ComputedQuantity.none("no depth that was computed brings it below 5 N", "m")
+    by_name["depth.threshold"] = none if limit is None else ComputedQuantity.of(limit[1], "m")
     loads = [one.number(LOAD) for one in by.values()]
     terms = {"tread": "tread", "fluid": "fluid", "fluid:tread": "interaction"}
     p = dict.fromkeys(terms, math.nan)
     if all(math.isfinite(load) for load in loads):
         p = variance_p([one.condition for one in by.values()], loads)
-    none = Quantity.none("the loads do not scatter")
-    return by_name | {f"p.{n}": Quantity.of(p[t]) if t in p else none for t, n in terms.items()}
+    none = ComputedQuantity.none("the loads do not scatter")
+    return by_name | {
+        f"p.{n}": ComputedQuantity.of(p[t]) if t in p else none for t, n in terms.items()
+    }
 
 
-def channel_at(sensor_reading: Reading, y: float) -> float:
+def channel_at(sensor_reading: GridReading, y: float) -> float:
     """Return where the arc channel's middle line lies at y (m), from the back of the heel."""
     tread = sensor_reading.condition.case.shoe.tread
     assert tread is not None
@@ -361,7 +369,7 @@ def channel_at(sensor_reading: Reading, y: float) -> float:
     return arc.position + arc.radius - math.sqrt(max(arc.radius**2 - y**2, 0.0))
 
 
-def variance_p(chosen: Sequence[Condition], loads: Sequence[float]) -> dict[str, float]:
+def variance_p(chosen: Sequence[ShoeInFluid], loads: Sequence[float]) -> dict[str, float]:
     """Return p of tread, fluid and their interaction ("fluid:tread"); the shoes are repeats."""
     table = analysis_of_variance(
         list(loads),
@@ -375,9 +383,9 @@ def variance_p(chosen: Sequence[Condition], loads: Sequence[float]) -> dict[str,
 
 
 def conclusions(
-    readings: Sequence[Reading],
+    readings: Sequence[GridReading],
     varied: Mapping[str, Sensitivity],
-    depths: Sequence[tuple[float, Outcome]],
+    depths: Sequence[tuple[float, CaseOutcome]],
 ) -> tuple[str, ...]:
     """Return what the study says, in sentences."""
     treaded = [one for one in readings if not one.condition.untreaded]
@@ -403,7 +411,7 @@ def conclusions(
     return tuple(sentences)
 
 
-def conditions_table(readings: Sequence[Reading]) -> Table:
+def conditions_table(readings: Sequence[GridReading]) -> StudyTable:
     """Return loads, peaks, places and COF of the twelve, with bands, on the finest grid."""
     rows = []
     for row in readings:
@@ -431,7 +439,7 @@ def conditions_table(readings: Sequence[Reading]) -> Table:
                 "status": str(row.outcome.status),
             }
         )
-    return Table.of(
+    return StudyTable.of(
         "conditions",
         "Six shoes in two fluids on the finest grid: sensor's and true load, peak "
         "and its place, COF; central 95 % of what is open; load and peak on every grid",
@@ -439,9 +447,9 @@ def conditions_table(readings: Sequence[Reading]) -> Table:
     )
 
 
-def lower_table(lower: Mapping[str, Outcome]) -> Table:
+def lower_table(lower: Mapping[str, CaseOutcome]) -> StudyTable:
     """Return the readings at 250 N."""
-    return Table(
+    return StudyTable(
         "lower_force",
         "The same at 250 N where COF is above 0.11, as the tester was run (G.4.1; quick grid)",
         ("condition", "sensor N", "under the sole N", "COF"),
@@ -452,7 +460,7 @@ def lower_table(lower: Mapping[str, Outcome]) -> Table:
     )
 
 
-def inputs_table(condition: Condition, varied: Sensitivity) -> Table:
+def inputs_table(condition: ShoeInFluid, varied: Sensitivity) -> StudyTable:
     """Return what each open input does to load and peak of one condition."""
     rows = [
         {
@@ -467,7 +475,7 @@ def inputs_table(condition: Condition, varied: Sensitivity) -> Table:
         }
         for effect in varied.ranked(PEAK)
     ]
-    return Table.of(
+    return StudyTable.of(
         f"open_inputs_{condition.kind}",
         f"What one standard deviation of each open input does ({condition.name}; quick grid, where "
         f"the sensor reads {varied.nominal.number(LOAD):.0f} N and "
@@ -476,9 +484,9 @@ def inputs_table(condition: Condition, varied: Sensitivity) -> Table:
     )
 
 
-def depth_table(depths: Sequence[tuple[float, Outcome]]) -> Table:
+def depth_table(depths: Sequence[tuple[float, CaseOutcome]]) -> StudyTable:
     """Return readings against depth of tread."""
-    return Table.of(
+    return StudyTable.of(
         "tread_depth",
         "Work shoe of 71 Shore A in glycerol, lugs of 5 mm, channels of 2.4 mm; quick grid",
         [
@@ -494,18 +502,21 @@ def depth_table(depths: Sequence[tuple[float, Outcome]]) -> Table:
     )
 
 
-def printed(name: str, kind: str, unit: str) -> float:
+def printed_value(name: str, kind: str, unit: str) -> float:
     """Return what the report prints for an untreaded shoe in glycerol."""
     published = Catalogue.load().entry("published", "slip_tester_g4")
     return published.sourced(f"{name}_{kind}_shoe_untreaded_glycerol", unit).value or 0.0
 
 
-def map_figure(readings: Sequence[Reading]) -> Figure:
+def map_figure(readings: Sequence[GridReading]) -> Figure:
     """Return Fig. 29: fluid pressure as seven tracks read it, heel's back at the bottom."""
     panels = []
     for shown in readings:
         kind = shown.condition.kind
-        load, peak = printed("fluid_load", kind, "N"), printed("peak_pressure", kind, "Pa")
+        load, peak = (
+            printed_value("fluid_load", kind, "N"),
+            printed_value("peak_pressure", kind, "Pa"),
+        )
         x, y = shown.place
         layers = (
             Layer("map", 1e3 * shown.y, 1e3 * shown.x, shown.pressure.T / 1e3),
@@ -537,7 +548,7 @@ def map_figure(readings: Sequence[Reading]) -> Figure:
     )
 
 
-def load_figure(readings: Sequence[Reading]) -> Figure:
+def load_figure(readings: Sequence[GridReading]) -> Figure:
     """Return Fig. 30: load by the sensor with its 95 % band, report's values and 5 N beside it."""
     panels = []
     for kind in KINDS:
@@ -550,7 +561,7 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
             loads = [one.number(LOAD) for one in some]
             style: dict[str, Any] = {"label": fluid, "colour": colour, "width": 0.36}
             layers.append(Layer("bars", places, loads, low=low, high=high, **style))
-        load = printed("fluid_load", kind, "N")
+        load = printed_value("fluid_load", kind, "N")
         layers.append(points(-0.2, load, "report", colour=PRINTED, marker="D"))
         layers.append(level(SMALL, "report: all others below", colour=PRINTED, style="--"))
         panels.append(
@@ -575,7 +586,7 @@ def load_figure(readings: Sequence[Reading]) -> Figure:
     )
 
 
-def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
+def depth_figure(depths: Sequence[tuple[float, CaseOutcome]]) -> Figure:
     """Return load against depth of tread: by the sensor and under the sole."""
     depth = [1e3 * each for each, _ in depths]
     sole, sensor = ([outcome.number(name) for _, outcome in depths] for name in (TRUE_LOAD, LOAD))
@@ -590,7 +601,7 @@ def depth_figure(depths: Sequence[tuple[float, Outcome]]) -> Figure:
     return Figure([panel], "Half-treaded work shoe in glycerol, 500 N, 0.7 m/s", size=(6.6, 4.2))
 
 
-def inputs_figure(condition: Condition, varied: Sensitivity, count: int = 8) -> Figure:
+def inputs_figure(condition: ShoeInFluid, varied: Sensitivity, count: int = 8) -> Figure:
     """Return what one standard deviation of the open inputs does to load and peak."""
     panels = []
     for name, label, scale in ((LOAD, "load by the sensor (N)", 1.0), (PEAK, "peak (kPa)", 1e-3)):

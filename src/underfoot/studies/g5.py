@@ -26,8 +26,8 @@ from underfoot.trials.statistics.linear import all_subsets
 from .figure import GREY, OURS, PRINTED, SECOND, Figure, Panel, line, points
 from .g4 import ROUGHNESS_BEYOND_CUTOFF
 from .g6 import PRINTED_ACOF, SOLES, sole_case
-from .runner import Computed, Options, Table, cached_arrays, named, part
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable, cached_arrays, name_progress, part
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g5.toml")
 
@@ -94,7 +94,9 @@ def compute(options: Options) -> Computed:
         share = (0.8 + 0.04 * number, 0.8 + 0.04 * (number + 1))
         if options.processes == 1:
             share = (number / len(cases), (number + 1) / len(cases))
-        found[key] = slips(case, progress=named(part(options.progress, *share), ", ".join(key)))
+        found[key] = slips(
+            case, progress=name_progress(part(options.progress, *share), ", ".join(key))
+        )
     fine = {shoe: found[shoe, grids[-1]] for shoe in COUNTS}
     levels = {
         shoe: [(1e-3 * float(grid.split()[0]), numbers_of(found[shoe, grid])) for grid in grids]
@@ -237,7 +239,7 @@ def law_as_g6_leaves_it(study: SlipStudy) -> FrictionLaw:
     return replace(law, draws=calibrated_pair(readings).draws, medians={})
 
 
-def by_friction(study: SlipStudy, calibrated: FrictionLaw) -> tuple[Table, str]:
+def by_friction(study: SlipStudy, calibrated: FrictionLaw) -> tuple[StudyTable, str]:
     """Return who slips on the treaded shoe over the spread of its contact friction, and in words.
 
     By the law of the pair, and by that law ``calibrated`` to readings of the laboratory.
@@ -263,13 +265,13 @@ def by_friction(study: SlipStudy, calibrated: FrictionLaw) -> tuple[Table, str]:
         "Treaded, with the contact friction that G.6's readings leave (same laboratory): at least "
         f"half of {count} persons do not slip in {100 * most_stand:.0f} % of the draws."
     )
-    return Table.of("friction", title, rows), words
+    return StudyTable.of("friction", title, rows), words
 
 
 def quantities(
     levels: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
     draws: Mapping[str, Mapping[str, Array]],
-) -> dict[str, Quantity]:
+) -> dict[str, ComputedQuantity]:
     """Return every quantity of the study by name, with both grids and what small studies find."""
     units = {**UNITS, "slope_lateral": "Pa/m", "slope_speed": "Pa*s/m"}
     by_name = {}
@@ -278,7 +280,7 @@ def quantities(
             if name.startswith("r2_") and name != "r2_row_lateral_speed":
                 continue
             steps = [(spacing, each[name]) for spacing, each in grids]
-            by_name[f"{shoe}.{name}"] = Quantity.of(
+            by_name[f"{shoe}.{name}"] = ComputedQuantity.of(
                 value, units.get(name, "1"), draws=draws[shoe].get(name), levels=steps
             )
         by_name[f"{shoe}.r2_all"] = by_name.pop(f"{shoe}.r2_row_lateral_speed")
@@ -287,13 +289,13 @@ def quantities(
             first, second, third = (draws[shoe][f"r2_{name}"] for name in names)
             chance = float(np.mean((first > second) & (second > third)))
         single = [grids[-1][1][f"r2_{name}"] for name in names]
-        by_name[f"{shoe}.r2_single"] = Quantity.of(single, names=names, chance=chance)
+        by_name[f"{shoe}.r2_single"] = ComputedQuantity.of(single, names=names, chance=chance)
     bare, tread = (levels[shoe] for shoe in COUNTS)
     ratios = [
         (spacing, b["peak_pressure"] / a["peak_pressure"])
         for (spacing, a), (_, b) in zip(bare, tread, strict=True)
     ]
-    by_name["pressure_ratio"] = Quantity.of(ratios[-1][1], levels=ratios)
+    by_name["pressure_ratio"] = ComputedQuantity.of(ratios[-1][1], levels=ratios)
     return by_name
 
 
@@ -301,7 +303,7 @@ def tables(
     studies: Mapping[str, SlipStudy],
     levels: Mapping[str, Sequence[tuple[float, Mapping[str, float]]]],
     draws: Mapping[str, Mapping[str, Array]],
-) -> tuple[Table, ...]:
+) -> tuple[StudyTable, ...]:
     """Return the population's numbers, the rows of sensors, the grids, and Table 7 beside ours."""
     scales = {
         "peak_speed": ("m/s", 1.0),
@@ -332,19 +334,19 @@ def tables(
         tuple(n.split("_")[1:]): v for n, v in levels["untreaded"][-1][1].items() if n[:3] == "r2_"
     }
     return (
-        Table.of(
+        StudyTable.of(
             "population",
             "Persons whose heel crossed the sensors: mean, 95 % of the mean of as "
             "many as the report had, and the mean on each grid",
             rows,
         ),
-        Table(
+        StudyTable(
             "rows",
             "Mean peak of each row of sensors, kPa",
             ("shoe", "first", "second", "third"),
             [(shoe, *(peak / 1e3 for peak in study.rows())) for shoe, study in studies.items()],
         ),
-        Table.of(
+        StudyTable.of(
             "table7",
             "Adjusted R2 of the peak pressure at single sensors, untreaded",
             [
@@ -588,13 +590,13 @@ def wedge_sentence(films: Sequence[HeldFilm]) -> str:
     return f"Fig. 35, {1e3 * CURVES[1]:g} mPa s: after {HELD_FOR:g} s the film carries {shares}."
 
 
-def _wedge_squeeze_quantities(films: Sequence[HeldFilm]) -> dict[str, Quantity]:
+def _wedge_squeeze_quantities(films: Sequence[HeldFilm]) -> dict[str, ComputedQuantity]:
     """Return the trends that the concept of Fig. 35 draws: more film with each of three."""
     by = {(film.viscosity, film.speed): film for film in films}
     thin, middle, thick = (by[v, 0.5] for v in sorted(CURVES))
     slow, quick = (by[CURVES[1], s].at(0.2) for s in (HELD_SPEEDS[0], HELD_SPEEDS[-1]))
     return {
-        "film.viscosity": Quantity.of((thick.at(0.2) - thin.at(0.2)) / 100.0),
-        "film.dwell": Quantity.of((middle.at(HELD_FOR) - middle.at(0.05)) / 100.0),
-        "film.speed": Quantity.of((quick - slow) / 100.0),
+        "film.viscosity": ComputedQuantity.of((thick.at(0.2) - thin.at(0.2)) / 100.0),
+        "film.dwell": ComputedQuantity.of((middle.at(HELD_FOR) - middle.at(0.05)) / 100.0),
+        "film.speed": ComputedQuantity.of((quick - slow) / 100.0),
     }

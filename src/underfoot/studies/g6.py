@@ -22,7 +22,7 @@ from underfoot.friction import SpeedTableLaw, self_affine_scale, stribeck_cof
 from underfoot.friction import shear_strength_from_cof as strength_from_cof
 from underfoot.friction.asperity_ehl import STYLUS_RESOLUTION
 from underfoot.friction.propagation import normal_draws
-from underfoot.questions.outcomes import Outcome, outcomes
+from underfoot.questions.outcomes import CaseOutcome, outcomes
 from underfoot.slip import ADULTS_LEVEL_WALKING as ADULTS
 from underfoot.slip import MODELS, ReportG6, slip_model
 from underfoot.slip.dynamics import cof_table, slip_study
@@ -30,8 +30,8 @@ from underfoot.trials.statistics.logistic import logistic_regression, risk_curve
 
 from .default_law import chance_of_order, file_without_report
 from .figure import PRINTED, Figure, Layer, Panel, grouped_bars, line, points
-from .runner import Computed, Options, Table, part
-from .verdict import Quantity
+from .runner import Computed, Options, StudyTable, part
+from .verdict import ComputedQuantity
 
 STATEMENTS = Path(__file__).with_name("g6.toml")
 
@@ -107,7 +107,7 @@ class Logistic:
 
 
 @dataclass(frozen=True, slots=True)
-class Slips:
+class OutsoleSlips:
     """Steps of one population on three outsoles.
 
     ``acof``, ``rcof``, ``slipped`` (n,) are of all steps; ``share`` of each outsole.
@@ -222,7 +222,7 @@ def sole_frictions(
         cases += [at(shore + side * HARDNESS_BAND, law, WINDOW[1]) for side in (1, -1)]
     fine = {"progress": part(progress, 0.0, 0.8), "stage": "Whole-shoe friction"}
     found = outcomes(cases, quick=quick, processes=processes, **fine)
-    coarse: Sequence[Outcome | None] = [None] * len(plan)
+    coarse: Sequence[CaseOutcome | None] = [None] * len(plan)
     if not quick:
         cases = [at(shore, law, WINDOW[1]) for _, law, shore in plan]
         stage = {"progress": part(progress, 0.8, 1.0), "stage": "Coarse grid"}
@@ -249,7 +249,7 @@ def _with_draws(friction: SoleFriction) -> SoleFriction:
 
 
 def _friction(
-    sole: str, law: str, shore: float, computed: list[Outcome], coarse: Outcome | None
+    sole: str, law: str, shore: float, computed: list[CaseOutcome], coarse: CaseOutcome | None
 ) -> SoleFriction:
     window, ends = computed[:-2], [outcome.number("cof") for outcome in computed[-2:]]
     values = np.array([outcome.number("cof") for outcome in window])
@@ -341,7 +341,7 @@ def fitted_logistic(difference: Array, slipped: Array) -> Logistic:
 
 def slips(
     acof: Mapping[str, float], *, own_speed: bool, subjects: int, progress: Progress = silent
-) -> Slips:
+) -> OutsoleSlips:
     """Return computed steps of one population on three outsoles.
 
     Parameters:
@@ -373,7 +373,7 @@ def slips(
         share[sole] = float(fell.mean())
         every.append((np.full(fell.size, level), rcof, fell))
     levels, rcof, fell = (np.concatenate(column) for column in zip(*every, strict=True))
-    return Slips(levels, rcof, fell, share, fitted_logistic(levels - rcof, fell))
+    return OutsoleSlips(levels, rcof, fell, share, fitted_logistic(levels - rcof, fell))
 
 
 def of_law(frictions: Sequence[SoleFriction], law: str) -> dict[str, SoleFriction]:
@@ -382,13 +382,13 @@ def of_law(frictions: Sequence[SoleFriction], law: str) -> dict[str, SoleFrictio
 
 
 def quantities(
-    frictions: Sequence[SoleFriction], steps: Mapping[str, Slips], *, quick: bool, seed: int
-) -> dict[str, Quantity]:
+    frictions: Sequence[SoleFriction], steps: Mapping[str, OutsoleSlips], *, quick: bool, seed: int
+) -> dict[str, ComputedQuantity]:
     """Return every quantity of the study by name."""
     numerics = sole_case(60.0, "stribeck").numerics
     spacings = (numerics.quick_grid_spacing, numerics.grid_spacing)
     spacings = spacings[:1] if quick else spacings
-    by_name: dict[str, Quantity] = {}
+    by_name: dict[str, ComputedQuantity] = {}
 
     def on_grids(coarse: float, fine: float) -> list[tuple[float, float]]:
         return list(zip(spacings, (fine,) if quick else (coarse, fine), strict=True))
@@ -401,9 +401,11 @@ def quantities(
             if draws is None:
                 normal = np.random.default_rng(seed).normal(size=400)
                 draws = friction.cof * np.exp(friction.spread / friction.cof * normal)
-            by_name[f"acof.{law}.{sole}"] = Quantity.of(friction.cof, draws=draws, levels=levels)
+            by_name[f"acof.{law}.{sole}"] = ComputedQuantity.of(
+                friction.cof, draws=draws, levels=levels
+            )
             risks = [population_risk(min(float(v), 1.0))["report_g6"] for v in draws]
-            by_name[f"risk.{law}.{sole}"] = Quantity.of(
+            by_name[f"risk.{law}.{sole}"] = ComputedQuantity.of(
                 population_risk(friction.cof)["report_g6"], draws=risks
             )
         hard, soft = soles["hard"], soles["soft"]
@@ -416,16 +418,16 @@ def quantities(
         if soft.draws is not None and hard.draws is not None:
             given = {"draws": soft.draws - hard.draws}
             chance = chance_of_order([soft.draws, hard.draws], TIE)
-        by_name[f"softer.{law}"] = Quantity.of(change, **given, levels=levels)
-        order = Quantity.of([soft.cof, hard.cof], names=("soft", "hard"), chance=chance)
+        by_name[f"softer.{law}"] = ComputedQuantity.of(change, **given, levels=levels)
+        order = ComputedQuantity.of([soft.cof, hard.cof], names=("soft", "hard"), chance=chance)
         by_name[f"order.{law}"] = order
     pressures = np.max([sole_friction.sensor_pressure for sole_friction in frictions], axis=0)
     levels = on_grids(pressures[0], pressures[-1])
-    by_name["sensor_pressure"] = Quantity.of(pressures[-1], "Pa", levels=levels)
+    by_name["sensor_pressure"] = ComputedQuantity.of(pressures[-1], "Pa", levels=levels)
     for sole, acof in PRINTED_ACOF.items():
-        by_name[f"risk.printed.{sole}"] = Quantity.of(population_risk(acof)["report_g6"])
+        by_name[f"risk.printed.{sole}"] = ComputedQuantity.of(population_risk(acof)["report_g6"])
     for name, risk in zip(("lowest", "median", "highest"), risk_by_rcof(), strict=True):
-        by_name[f"risk.rcof.{name}"] = Quantity.of(risk)
+        by_name[f"risk.rcof.{name}"] = ComputedQuantity.of(risk)
     for name, walked in steps.items():
         count = walked.slipped.size // len(walked.share)
         shares = {**walked.share, "all": float(np.mean(list(walked.share.values())))}
@@ -435,19 +437,21 @@ def quantities(
             drawn = np.random.default_rng(seed).beta(
                 slipped + 0.5, trials - slipped + 0.5, 4000
             )  # Jeffreys' posterior of a share
-            by_name[f"steps.{name}.{sole}"] = Quantity.of(share, draws=drawn)
+            by_name[f"steps.{name}.{sole}"] = ComputedQuantity.of(share, draws=drawn)
         spread = (walked.fit.slope_high - walked.fit.slope_low) / (2 * 1.96)
         if math.isnan(walked.fit.slope):
-            none = Quantity.none(f"{_who(walked)} slips: there is no logistic")
+            none = ComputedQuantity.none(f"{_who(walked)} slips: there is no logistic")
             by_name |= {f"slope.{name}": none, f"half.{name}": none}
         else:
-            by_name[f"slope.{name}"] = Quantity.of(walked.fit.slope, deviation=spread)
-            by_name[f"half.{name}"] = Quantity.of(walked.fit.half, deviation=walked.fit.half_error)
+            by_name[f"slope.{name}"] = ComputedQuantity.of(walked.fit.slope, deviation=spread)
+            by_name[f"half.{name}"] = ComputedQuantity.of(
+                walked.fit.half, deviation=walked.fit.half_error
+            )
     return by_name
 
 
-def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
-    return Table.of(
+def _friction_table(frictions: Sequence[SoleFriction]) -> StudyTable:
+    return StudyTable.of(
         "whole_shoe_acof",
         "ACOF under the slip tester of G.6; low and high: hardness ± 5 Shore A",
         [
@@ -468,10 +472,10 @@ def _friction_table(frictions: Sequence[SoleFriction]) -> Table:
     )
 
 
-def _risk_table(frictions: Sequence[SoleFriction]) -> Table:
+def _risk_table(frictions: Sequence[SoleFriction]) -> StudyTable:
     every = [("printed", name, acof) for name, acof in PRINTED_ACOF.items()]
     every += [(friction.law, friction.sole, friction.cof) for friction in frictions]
-    return Table.of(
+    return StudyTable.of(
         "slip_risk",
         "Share of a population with RCOF 0.20 ± 0.03 that slips, by published models",
         [
@@ -481,8 +485,8 @@ def _risk_table(frictions: Sequence[SoleFriction]) -> Table:
     )
 
 
-def _step_table(steps: Mapping[str, Slips]) -> Table:
-    return Table.of(
+def _step_table(steps: Mapping[str, OutsoleSlips]) -> StudyTable:
+    return StudyTable.of(
         "slips",
         "Steps computed one by one",
         [
@@ -501,7 +505,7 @@ def _step_table(steps: Mapping[str, Slips]) -> Table:
 
 
 def _conclusions(
-    frictions: Sequence[SoleFriction], steps: Mapping[str, Slips], drawn: tuple[Array, Array]
+    frictions: Sequence[SoleFriction], steps: Mapping[str, OutsoleSlips], drawn: tuple[Array, Array]
 ) -> tuple[str, ...]:
     area, own = of_law(frictions, "bowden_tabor"), of_law(frictions, JUDGED)
     constant, falling = (steps[name] for name in STEPS)
@@ -524,7 +528,7 @@ def _conclusions(
     )
 
 
-def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]) -> Figure:
+def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, OutsoleSlips]) -> Figure:
     """Return slip risk (left) and friction (right) of the outsoles, printed and by each law."""
     risks = {
         sole: [100 * PRINTED_RISK[sole], *(100 * s.share[sole] for s in steps.values())]
@@ -559,7 +563,7 @@ def outsole_figure(frictions: Sequence[SoleFriction], steps: Mapping[str, Slips]
     )
 
 
-def logistic_figure(steps: Mapping[str, Slips], drawn: tuple[Array, Array]) -> Figure:
+def logistic_figure(steps: Mapping[str, OutsoleSlips], drawn: tuple[Array, Array]) -> Figure:
     """Return simulated slips over ACOF, RCOF and their difference, with what is printed of each."""
     columns = len(steps)
     rows: list[list[Panel]] = [[], [], []]
@@ -625,11 +629,11 @@ PRINTED_BY_RCOF = (0.03, 0.26, 0.83)
 _PRINTED_POINTS: dict[str, Any] = {"colour": PRINTED, "marker": "D"}
 
 
-def _who(steps: Slips) -> str:
+def _who(steps: OutsoleSlips) -> str:
     return "everybody" if steps.slipped.all() else "nobody"
 
 
-def _logistic_words(steps: Slips) -> str:
+def _logistic_words(steps: OutsoleSlips) -> str:
     if math.isnan(steps.fit.slope):
         return f"{_who(steps)} slips"
     return f"slope {steps.fit.slope:.0f}, half at {steps.fit.half:.3f}"

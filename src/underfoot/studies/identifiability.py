@@ -25,7 +25,7 @@ class Fixed(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class MisfitProfile:
     """A parameter's least misfit over all others.
 
     ``best`` is None where the data leave both sides open or refute every value: then there is no
@@ -91,7 +91,9 @@ def chi_square(model: ArrayLike, data: ArrayLike, deviation: ArrayLike) -> Array
     return np.where(np.isfinite(found), found, np.inf)
 
 
-def profile(name: str, unit: str, grid: ArrayLike, misfit: ArrayLike, *, data: int) -> Profile:
+def profile(
+    name: str, unit: str, grid: ArrayLike, misfit: ArrayLike, *, data: int
+) -> MisfitProfile:
     """Return a parameter's interval from chi-square on a grid.
 
     Parameters:
@@ -116,11 +118,11 @@ def profile(name: str, unit: str, grid: ArrayLike, misfit: ArrayLike, *, data: i
     least = int(flat.argmin())
     lowest = float(flat[least])
     if not math.isfinite(lowest) or lowest > limit(data):
-        return Profile(name, unit, None, None, None, lowest, data, places, flat)
+        return MisfitProfile(name, unit, None, None, None, lowest, data, places, flat)
     low = _crossing(places[: least + 1][::-1], flat[: least + 1][::-1], lowest + RISE)
     high = _crossing(places[least:], flat[least:], lowest + RISE)
     best = float(places[least]) if low is not None and high is not None else None
-    return Profile(name, unit, best, low, high, lowest, data, places, flat)
+    return MisfitProfile(name, unit, best, low, high, lowest, data, places, flat)
 
 
 def _crossing(places: Array, values: Array, level: float) -> float | None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from underfoot.case import Case
 from underfoot.compute.contact_friction import contact_friction
-from underfoot.compute.prepare import Prepared, prepared
-from underfoot.compute.solve import solved
+from underfoot.compute.prepare import Prepared, prepare_case
+from underfoot.compute.solve import solve_case
 from underfoot.core.arrays import Array
 from underfoot.friction.tread_error import PRIOR, TreadPair, log_posterior
 from underfoot.sole_contact.lug_edges import EdgedLaw
@@ -43,8 +43,8 @@ def states_scores(stresses: Sequence[float] = STRESSES) -> list[StatesScore]:
     def cof_at(case: Case, stress: float) -> Array:
         if case.hash not in solutions:
             single = case.replace("numerics.tread_positions", 1)
-            parts = prepared(single, case.numerics.quick_grid_spacing, {})
-            solutions[case.hash] = parts, solved(parts).contact
+            parts = prepare_case(single, case.numerics.quick_grid_spacing, {})
+            solutions[case.hash] = parts, solve_case(parts).contact
         parts, contact = solutions[case.hash]
         law = parts.local_law
         if isinstance(law, EdgedLaw):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from underfoot.calibrate.least_squares import Calibration, Parameter, calibrated
+from underfoot.calibrate.least_squares import Calibration, Parameter, calibrate_model
 from underfoot.calibrate.stribeck_points import (
     CofPoints,
     Pin,
@@ -175,11 +175,11 @@ def calibrated_mechanism(
 
     def model(values: Mapping[str, float]) -> NDArray[np.float64]:
         return np.concatenate(
-            [predicted(chosen, values, point, pin, own_boundary=own_boundary) for point in points]
+            [predict_cof(chosen, values, point, pin, own_boundary=own_boundary) for point in points]
         )
 
     fluids = ", ".join(dict.fromkeys(point.label for point in points))
-    return calibrated(
+    return calibrate_model(
         model,
         np.concatenate([point.cof for point in points]),
         unknown,
@@ -187,7 +187,7 @@ def calibrated_mechanism(
     )
 
 
-def predicted(
+def predict_cof(
     chosen: Mechanism,
     values: Mapping[str, float],
     points: CofPoints,
@@ -218,7 +218,7 @@ def predicted(
 
 
 @dataclass(frozen=True, slots=True)
-class Prediction:
+class FluidPrediction:
     """One fluid (or roughness) predicted without having been seen."""
 
     points: CofPoints
@@ -239,7 +239,7 @@ class BlindTest:
 
     mechanism: Mechanism
     calibration: Calibration
-    predictions: tuple[Prediction, ...]
+    predictions: tuple[FluidPrediction, ...]
     own_boundary: bool
 
     @property
@@ -269,7 +269,9 @@ def blind_test(
         chosen,
         fit,
         tuple(
-            Prediction(other, predicted(chosen, fit.values, other, pin, own_boundary=own_boundary))
+            FluidPrediction(
+                other, predict_cof(chosen, fit.values, other, pin, own_boundary=own_boundary)
+            )
             for other in others
         ),
         own_boundary,
@@ -278,7 +280,7 @@ def blind_test(
 
 def leave_one_out(
     chosen: Mechanism, points: Sequence[CofPoints], pin: Pin
-) -> tuple[Prediction, ...]:
+) -> tuple[FluidPrediction, ...]:
     """Return each fluid predicted from its viscosity by the mechanism calibrated on all others."""
     if len(points) < 2:
         raise InputError(f"{len(points)} fluid", where="points", allowed="2 or more")
@@ -287,12 +289,14 @@ def leave_one_out(
         rest = tuple(point for point in points if point is not left_out)
         fit = calibrated_mechanism(chosen, rest, pin)
         found.append(
-            Prediction(left_out, predicted(chosen, fit.values, left_out, pin, own_boundary=False))
+            FluidPrediction(
+                left_out, predict_cof(chosen, fit.values, left_out, pin, own_boundary=False)
+            )
         )
     return tuple(found)
 
 
-def stribeck_left_out(fluids: Sequence[BoundaryFriction], pin: Pin) -> tuple[Prediction, ...]:
+def stribeck_left_out(fluids: Sequence[BoundaryFriction], pin: Pin) -> tuple[FluidPrediction, ...]:
     """Return each fluid predicted by ``stribeck_law_at`` from the others: the peer to beat."""
     from underfoot.friction import stribeck_law_at
 
@@ -302,7 +306,7 @@ def stribeck_left_out(fluids: Sequence[BoundaryFriction], pin: Pin) -> tuple[Pre
         points = fluid_points(fluid, rq=pin.sole_rq)
         # a film of 1 m: the viscous part is no part of what Eq. 17 fits
         shear = law(pin.pressure, points.speed, 1.0)
-        found.append(Prediction(points, (shear.adhesion + shear.hysteresis) / pin.pressure))
+        found.append(FluidPrediction(points, (shear.adhesion + shear.hysteresis) / pin.pressure))
     return tuple(found)
 
 

@@ -40,7 +40,7 @@ from underfoot.friction.pair_contact import (
 from underfoot.friction.tread_error import PRIOR as TREAD_PRIOR
 from underfoot.friction.tread_error import fluid_class, learned_deviation, tread_pairs
 
-from .sources import NUMBERS, Condition, Span, corpus, sampled_numbers
+from .sources import NUMBERS, PublishedCondition, Span, corpus, sampled_numbers
 
 DRAWS_KEPT = 2000
 """Of a posterior."""
@@ -195,7 +195,7 @@ class Rows:
     ``left`` names a laboratory whose treads say nothing of the error of the tread model.
     """
 
-    def __init__(self, conditions: Sequence[Condition], left: str = "") -> None:
+    def __init__(self, conditions: Sequence[PublishedCondition], left: str = "") -> None:
         self.conditions = tuple(conditions)
         shares = qmc.Sobol(len(NUMBERS), rng=0).random(DRAWS)
         members = [(row, m) for row, c in enumerate(conditions) for m in c.members or (c,)]
@@ -260,14 +260,14 @@ def _same(names: Sequence[object], group: NDArray[np.intp]) -> Array:
     return np.array([[float(names[i] == names[j]) for j in group] for i in group])
 
 
-def _tread(condition: Condition) -> str:
+def _tread(condition: PublishedCondition) -> str:
     """Return the name of the tread whose error a reading has; empty where there is none."""
     if "tread" in condition.labels or condition.labels.get("device") == "whole shoe":
         return f"{condition.source} {condition.labels.get('tread')}"
     return ""
 
 
-def _fluid_class(condition: Condition) -> str:
+def _fluid_class(condition: PublishedCondition) -> str:
     one = (condition.members or (condition,))[-1]
     return fluid_class(None if one.fluid == "dry" else one.numbers["viscosity"].low)
 
@@ -303,11 +303,13 @@ class PairPosterior:
         columns, spreads = self.theta[rows].T, self.spreads[rows].T
         return PairDraws(_constants(columns), *spreads[[0, 3, 1, 2]])
 
-    def expected(self, conditions: Sequence[Condition]) -> Array:
+    def expected(self, conditions: Sequence[PublishedCondition]) -> Array:
         """Return the mean of ln COF (rows,) without errors: equal for equal conditions."""
         return Rows(conditions).predicted(self.law, self.theta)[0].mean(axis=0)
 
-    def predicted(self, conditions: Sequence[Condition], seed: int = 0) -> tuple[Array, Array]:
+    def predicted(
+        self, conditions: Sequence[PublishedCondition], seed: int = 0
+    ) -> tuple[Array, Array]:
         """Return ln COF (draws, rows) on unseen testers, one a source, and sd of a reading."""
         rows, generator = Rows(conditions, self.left), np.random.default_rng(seed)
         count = self.theta.shape[0]
@@ -383,9 +385,9 @@ def log_likelihood(mean: Array, covariance: Array, low: Array, high: Array) -> A
     return total
 
 
-def fitted(
+def fit_law(
     law: PairLaw,
-    conditions: Sequence[Condition],
+    conditions: Sequence[PublishedCondition],
     *,
     steps: int = 600,
     seed: int = 0,
@@ -533,13 +535,13 @@ AIR = 1.8e-5
 """Viscosity of air (Pa s): the fluid of a dry floor."""
 
 
-def features(conditions: Sequence[Condition]) -> Array:
+def features(conditions: Sequence[PublishedCondition]) -> Array:
     """Return ln(viscosity x speed), ln Rq of sole and floor, Shore A and whether the fluid is oil.
 
     At the geometric middle of what is open, (rows, 5); means over members.
     """
 
-    def feature_row(c: Condition) -> list[float]:
+    def feature_row(c: PublishedCondition) -> list[float]:
         middle = {name: np.sqrt(s.low * s.high) for name, s in c.numbers.items()}
         drag = (AIR if c.fluid == "dry" else middle["viscosity"]) * middle["speed"]
         rough = [_L(middle[name]) for name in ("sole_rq", "floor_rq")]
@@ -550,14 +552,14 @@ def features(conditions: Sequence[Condition]) -> Array:
     )
 
 
-def middle(conditions: Sequence[Condition]) -> Array:
+def middle(conditions: Sequence[PublishedCondition]) -> Array:
     """Return ln COF (rows,) of values and of the middle of ranges; nan for a bound of one side."""
     with np.errstate(divide="ignore", invalid="ignore"):
         found = np.log([(c.reading.low, c.reading.high) for c in conditions]).mean(axis=1)
     return np.where(np.isfinite(found), found, np.nan)
 
 
-def weights(conditions: Sequence[Condition]) -> Array:
+def weights(conditions: Sequence[PublishedCondition]) -> Array:
     """Return weights (rows,): each laboratory 1, its printed curves alike, their points alike."""
     curves = [c.curve for c in conditions]
     each = [
@@ -568,7 +570,7 @@ def weights(conditions: Sequence[Condition]) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Score:
+class DrawScore:
     """How draws of ln COF (draws, rows) meet readings; one number a row.
 
     ``inside_50`` and ``inside_95`` are 1 or 0 for a value; for bounds the share of the draws
@@ -583,7 +585,7 @@ class Score:
     width: Array
 
 
-def scored(draws: Array, conditions: Sequence[Condition]) -> Score:
+def score_predictions(draws: Array, conditions: Sequence[PublishedCondition]) -> DrawScore:
     """Return the score of predictions; a bound counts by the probability beyond it.
 
     ``width`` is that of the 95 % interval of ln COF.
@@ -606,7 +608,7 @@ def scored(draws: Array, conditions: Sequence[Condition]) -> Score:
         known = np.ptp(within, axis=0) / np.maximum(np.ptp(share, axis=0), 1 / len(draws))
         inside.append(np.where(censored, known, np.all(within == share, axis=0)))
     low, high = np.quantile(draws, [0.025, 0.975], axis=0)
-    return Score(log_density, nearest - median, inside[0], inside[1], high - low)
+    return DrawScore(log_density, nearest - median, inside[0], inside[1], high - low)
 
 
 @dataclass(frozen=True, slots=True)
@@ -618,16 +620,16 @@ class LaboratoryScore:
     """
 
     laboratory: str
-    conditions: tuple[Condition, ...]
+    conditions: tuple[PublishedCondition, ...]
     draws: Array
     expected: Array
     after: Array
-    score: Score
+    score: DrawScore
 
 
 def laboratory_left_out(
     law: PairLaw | str,
-    conditions: Sequence[Condition],
+    conditions: Sequence[PublishedCondition],
     laboratory: str,
     *,
     steps: int = 600,
@@ -650,16 +652,21 @@ def laboratory_left_out(
     if isinstance(law, str):
         draws, expected = _regression(law, training, left_out, seed)
     else:
-        posterior = fitted(law, training, steps=steps, seed=seed, left=laboratory)
+        posterior = fit_law(law, training, steps=steps, seed=seed, left=laboratory)
         latent, noise = posterior.predicted(left_out, seed)
         generator = np.random.default_rng(seed)
         draws = latent + noise * generator.normal(size=latent.shape)
         expected, after = posterior.expected(left_out), one_reading(left_out, latent, noise)
-    return LaboratoryScore(laboratory, left_out, draws, expected, after, scored(draws, left_out))
+    return LaboratoryScore(
+        laboratory, left_out, draws, expected, after, score_predictions(draws, left_out)
+    )
 
 
 def _regression(
-    name: str, training: Sequence[Condition], left_out: Sequence[Condition], seed: int
+    name: str,
+    training: Sequence[PublishedCondition],
+    left_out: Sequence[PublishedCondition],
+    seed: int,
 ) -> tuple[Array, Array]:
     """Return draws (draws, rows) and means of ln COF by a regression on features.
 
@@ -687,7 +694,7 @@ def _regression(
     return mean + sd * noise, mean
 
 
-def one_reading(conditions: Sequence[Condition], latent: Array, noise: Array) -> Array:
+def one_reading(conditions: Sequence[PublishedCondition], latent: Array, noise: Array) -> Array:
     """Return the rest of each source given one of its values, each in turn, (rows, 5).
 
     Columns: row that is known, row predicted, median and 95 % interval of ln COF. Points of one
@@ -781,7 +788,7 @@ def r2(measured: Array, predicted: Array, weight: Array) -> float:
 def write_draws(path: Path, *, seed: int = 0) -> None:
     """Write draws of the law "pair" fitted to every reading, as a case takes them."""
     conditions = [c for source in corpus() if source.verified for c in source.conditions]
-    fitted(law_named("pair"), conditions, steps=3000, seed=seed).draws(1000, seed).write(path)
+    fit_law(law_named("pair"), conditions, steps=3000, seed=seed).draws(1000, seed).write(path)
 
 
 if __name__ == "__main__":

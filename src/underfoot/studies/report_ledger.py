@@ -28,7 +28,7 @@ from underfoot.reference import soft_ehl_film
 from . import studies, study
 from .default_law import RQ_PER_RA, draws_without_report, viscosity_of
 from .g3 import FLOORS, split
-from .summary import folded
+from .summary import folded_lines
 
 ROWS = Path(__file__).with_name("report_rows.toml")
 RATINGS = {"works": "works", "part": "in part", "outside": "outside the model"}
@@ -44,7 +44,7 @@ SUBJECTS = ("eq", "statement", "figure", "test", "command", "entry", "protocol",
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class LedgerRow:
     """One thing that the report holds: what a person runs for it, and what shows that it works."""
 
     number: str
@@ -72,7 +72,7 @@ class Sentence:
     sources: str
 
 
-def rows() -> tuple[Row, ...]:
+def rows() -> tuple[LedgerRow, ...]:
     """Return the rows of the report."""
     claims = []
     for row in read_toml(ROWS)["row"]:
@@ -80,7 +80,7 @@ def rows() -> tuple[Row, ...]:
             (kind, name) for kind, _, name in (e.partition(" ") for e in row["evidence"])
         )
         claims.append(
-            Row(
+            LedgerRow(
                 row["n"],
                 row["what"],
                 row["how"],
@@ -184,7 +184,7 @@ def summary_verdicts(text: str) -> dict[str, str]:
     return found
 
 
-def beside_the_print(row: Row, verdicts: Mapping[str, str]) -> str:
+def beside_the_print(row: LedgerRow, verdicts: Mapping[str, str]) -> str:
     """Return the verdicts of a row's statements, as "2 agrees, 1 undecided"; "-" without any."""
     known = {
         statement.name: statement for name in studies() for statement in study(name).statements
@@ -248,14 +248,14 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         cells = (row.number, row.what, f"`{row.how}`" if row.how != "-" else "-")
         cells += (RATINGS[row.rating], beside_the_print(row, verdicts), row.cause or " ")
         table.append("| " + " | ".join(cells) + " |")
-    text += [*folded(f"Rows: {len(every)}", table), "## The 27 equations", ""]
+    text += [*folded_lines(f"Rows: {len(every)}", table), "## The 27 equations", ""]
     table = ["| equation | where | what | computed by |", "|---|---|---|---|"]
     for number, equation in EQUATIONS.items():
         code = ", ".join(f"`{path.removeprefix('underfoot.')}`" for path in equation.code) or "-"
         table.append(f"| {number} | {equation.place} | {equation.title} | {code} |")
     errata = [(name, entry) for name in studies() for entry in study(name).errata]
     text += [
-        *folded(f"Equations: {len(EQUATIONS)}", table),
+        *folded_lines(f"Equations: {len(EQUATIONS)}", table),
         f"## Not taken as printed ({len(errata)})",
         "",
         "As `underfoot studies errata` lists.",
@@ -266,7 +266,7 @@ def markdown(verdicts: Mapping[str, str]) -> str:
         table.append(
             "| " + " | ".join((name, *(re.sub(r"\|", "/", cell) for cell in entry))) + " |"
         )
-    text += folded(f"Corrections: {len(errata)}", table)
+    text += folded_lines(f"Corrections: {len(errata)}", table)
     return "\n".join(text).rstrip() + "\n"
 
 

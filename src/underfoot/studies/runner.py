@@ -19,8 +19,8 @@ from underfoot.core.presentation import Table as ShownTable
 from underfoot.core.progress import part as part
 
 from .figure import Figure
-from .statements import Study, studies, study, study_module
-from .verdict import Judgement, Quantity, Verdict, counts, judged, tables_by_kind
+from .statements import PublishedStudy, studies, study, study_module
+from .verdict import ComputedQuantity, Judgement, Verdict, counts, judge_study, tables_by_kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class StudyTable:
     """A table: ``columns`` and ``rows`` of words or numbers; None and nan are kept as None."""
 
     name: str
@@ -48,7 +48,7 @@ class Table:
         object.__setattr__(self, "rows", cells)
 
     @classmethod
-    def of(cls, name: str, title: str, records: Iterable[Mapping[str, Any]]) -> Table:
+    def of(cls, name: str, title: str, records: Iterable[Mapping[str, Any]]) -> StudyTable:
         """Return the table of one or more records, each cell by the name of its column."""
         items = list(records)
         return cls(name, title, tuple(items[0]), [tuple(item.values()) for item in items])
@@ -64,8 +64,8 @@ def _cell(value: Any) -> Any:
 class Computed:
     """What a study computes: quantities by name, and what a reader sees beside the verdicts."""
 
-    quantities: Mapping[str, Quantity]
-    tables: Sequence[Table] = ()
+    quantities: Mapping[str, ComputedQuantity]
+    tables: Sequence[StudyTable] = ()
     figures: Mapping[str, Figure] = field(default_factory=dict)
     conclusions: Sequence[str] = ()
     notes: Sequence[str] = ()
@@ -73,11 +73,11 @@ class Computed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StudyResult(Presentable):
+class PublishedStudyResult(Presentable):
     """A study that was run; ``error`` says why there is nothing, where it failed."""
 
     kind: ClassVar[str] = "study"
-    study: Study
+    study: PublishedStudy
     computed: Computed
     quick: bool
     seconds: float
@@ -87,10 +87,10 @@ class StudyResult(Presentable):
     @property
     def judgements(self) -> list[Judgement]:
         """Every statement with its verdict; empty where the study failed."""
-        return [] if self.error else judged(self.study.statements, self.computed.quantities)
+        return [] if self.error else judge_study(self.study.statements, self.computed.quantities)
 
     def __repr__(self) -> str:
-        return f"StudyResult({self.study.name}: {len(self.study.statements)} statements)"
+        return f"PublishedStudyResult({self.study.name}: {len(self.study.statements)} statements)"
 
     def table(self) -> ShownTable:
         return self.tables()[0]
@@ -165,14 +165,14 @@ class StudyResult(Presentable):
         }
 
     @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> StudyResult:
+    def from_dict(cls, content: Mapping[str, Any]) -> PublishedStudyResult:
         """Return the result that ``to_dict`` wrote; its statements are those of today."""
         computed = TypeAdapter(Computed).validate_python(content)
         names = ("quick", "seconds", "process_seconds", "error")
         return cls(study(content["study"]), computed, *(content[name] for name in names))
 
 
-def run_study(chosen: Study, options: Options) -> StudyResult:
+def run_study(chosen: PublishedStudy, options: Options) -> PublishedStudyResult:
     """Return the result of a study; a finished one of the same program is taken from the cache.
 
     Raises:
@@ -189,12 +189,12 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
     key = content_hash(chosen.name, module.compute, options.quick, options.seed, options.settings)
     stored = store.load(key)
     if stored is not None:
-        return StudyResult.from_dict(json.loads(str(stored["result"])))
+        return PublishedStudyResult.from_dict(json.loads(str(stored["result"])))
     started, used = time.perf_counter(), time.process_time()
     computed: Computed = module.compute(options)
     options.progress("done", 1.0)
     seconds, process_seconds = time.perf_counter() - started, time.process_time() - used
-    result = StudyResult(chosen, computed, options.quick, seconds, process_seconds)
+    result = PublishedStudyResult(chosen, computed, options.quick, seconds, process_seconds)
     if not any(q.unconverged for q in computed.quantities.values()):
         store.store(key, {"result": np.array(json.dumps(result.to_dict(figures=True)))})
     return result
@@ -202,7 +202,7 @@ def run_study(chosen: Study, options: Options) -> StudyResult:
 
 def run_all(
     names: Sequence[str] | None = None, options: Options | None = None
-) -> Iterator[StudyResult]:
+) -> Iterator[PublishedStudyResult]:
     """Yield every study's result; one that fails says why and does not stop the others.
 
     Raises:
@@ -211,7 +211,7 @@ def run_all(
     options, names = options or Options(), studies() if names is None else names
     for number, name in enumerate(names):
         share = part(options.progress, number / len(names), (number + 1) / len(names))
-        stage = named(share, name)
+        stage = name_progress(share, name)
         stage("begins", 0.0)
         try:
             yield run_study(study(name), replace(options, settings=None, progress=stage))
@@ -219,10 +219,10 @@ def run_all(
             raise
         except Exception as failure:  # stands on the page; the other studies go on
             text = f"{type(failure).__name__}: {failure}"
-            yield StudyResult(study(name), Computed({}), options.quick, 0.0, 0.0, text)
+            yield PublishedStudyResult(study(name), Computed({}), options.quick, 0.0, 0.0, text)
 
 
-def named(progress: Progress, name: str) -> Progress:
+def name_progress(progress: Progress, name: str) -> Progress:
     """Return a receiver of progress that puts a name before every stage."""
 
     def report(stage: str, fraction: float, residual: float | None = None) -> None:

@@ -14,7 +14,7 @@ LARGEST = 1.0
 that of a heel's angle, the largest of all, does not go on growing."""
 
 
-def sampled(
+def sample_inputs(
     sensitivity: Sensitivity,
     name: str,
     *,

@@ -30,7 +30,7 @@ POINTS = 15
 
 
 @dataclass(frozen=True, slots=True)
-class Slips:
+class SlipShare:
     """One share of slips: ``acof`` are equally probable values of the available friction.
 
     ``low`` and ``high`` bound the printed share; ``steps`` are those it is a share of.
@@ -46,13 +46,13 @@ class Slips:
     own_scale: bool = False
 
 
-def published(computed: Array) -> tuple[Slips, ...]:
+def published_shares(computed: Array) -> tuple[SlipShare, ...]:
     """Return the four sources; ``computed`` are draws of ACOF of the shoe of G.5."""
     spread = np.linspace(0.0, 1.0, 9)
     return (
-        Slips("report, G.6", "COF 0.159: 41 %", np.array([0.159]), 0.41, 0.41, 29),
-        Slips("report, G.6", "COF 0.182: 6 %", np.array([0.182]), 0.06, 0.06, 29),
-        Slips(
+        SlipShare("report, G.6", "COF 0.159: 41 %", np.array([0.159]), 0.41, 0.41, 29),
+        SlipShare("report, G.6", "COF 0.182: 6 %", np.array([0.182]), 0.06, 0.06, 29),
+        SlipShare(
             "Liu 2013",
             "COF 0.12 to 0.15: 77 slips of 240 steps, 122 with slides",
             0.12 + 0.03 * spread,
@@ -60,8 +60,10 @@ def published(computed: Array) -> tuple[Slips, ...]:
             122 / 240,
             240,
         ),
-        Slips("McGorry 2010", "COF 0.12 to 0.21: half", 0.12 + 0.09 * spread, 0.5, 0.5, 20),
-        Slips("report, G.5", "treaded shoe, 90 % glycerol: none of 6", computed, 0.0, 0.0, 6, True),
+        SlipShare("McGorry 2010", "COF 0.12 to 0.21: half", 0.12 + 0.09 * spread, 0.5, 0.5, 20),
+        SlipShare(
+            "report, G.5", "treaded shoe, 90 % glycerol: none of 6", computed, 0.0, 0.0, 6, True
+        ),
     )
 
 
@@ -73,7 +75,7 @@ def _grid() -> tuple[Array, Array, Array]:
     return -np.exp(SLOPE[0] + SLOPE[1] * first), HALF[0] + HALF[1] * second, weight / weight.sum()
 
 
-def share(slips: Slips, slope: Array, half: Array, u: Array) -> Array:
+def share(slips: SlipShare, slope: Array, half: Array, u: Array) -> Array:
     """Return the share of slips (points, errors) at slopes and points of even odds (points,)."""
     acof = slips.acof * np.exp(np.zeros(1) if slips.own_scale else u)[:, None]
     mean, sd = ADULTS_LEVEL_WALKING.mean, ADULTS_LEVEL_WALKING.sd
@@ -84,7 +86,7 @@ def share(slips: Slips, slope: Array, half: Array, u: Array) -> Array:
     return np.broadcast_to(np.array(shares), (slope.size, u.size))
 
 
-def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
+def predict_shares(sources: Sequence[SlipShare]) -> list[dict[str, Any]]:
     """Return each share as predicted from the other publications, with the report's own curve."""
     slope, half, prior = _grid()
     z = np.linspace(-2.5, 2.5, 15)
@@ -129,11 +131,11 @@ def predicted(sources: Sequence[Slips]) -> list[dict[str, Any]]:
     return rows
 
 
-def _off(p: float, slips: Slips) -> float:
+def _off(p: float, slips: SlipShare) -> float:
     return p - float(np.clip(p, slips.low, slips.high))
 
 
-def _likelihood(slips: Slips, p: Array) -> Array:
+def _likelihood(slips: SlipShare, p: Array) -> Array:
     """Return the probability of the printed count, or of a count within the printed bounds."""
     low, high = round(slips.low * slips.steps), round(slips.high * slips.steps)
     return binom.cdf(high, slips.steps, p) - binom.cdf(low - 1, slips.steps, p)

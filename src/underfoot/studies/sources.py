@@ -76,7 +76,7 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class PublishedReading:
     """One measured value: COF or its bounds, and its standard deviation in ln COF."""
 
     kind: str
@@ -92,15 +92,15 @@ class Reading:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class PublishedCondition:
     """One condition of one source with what was measured on it."""
 
     source: str
     id: str
     numbers: Mapping[str, Span]
     labels: Mapping[str, Any]
-    reading: Reading
-    members: tuple[Condition, ...] = ()
+    reading: PublishedReading
+    members: tuple[PublishedCondition, ...] = ()
     laboratory: str = ""
 
     @property
@@ -125,7 +125,7 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True)
-class Effect:
+class PublishedEffect:
     """A published effect between conditions."""
 
     source: str
@@ -143,8 +143,8 @@ class Source:
     read: str
     laboratory: str
     verified: bool
-    conditions: tuple[Condition, ...]
-    effects: tuple[Effect, ...]
+    conditions: tuple[PublishedCondition, ...]
+    effects: tuple[PublishedEffect, ...]
 
 
 @cache
@@ -195,7 +195,7 @@ def read_source(path: Path) -> Source:
     )
 
 
-def _conditions(source: str, entry: dict[str, Any]) -> Iterator[Condition]:
+def _conditions(source: str, entry: dict[str, Any]) -> Iterator[PublishedCondition]:
     name = entry.pop("id", None)
     if not isinstance(name, str):
         raise DataError("a condition has no id", where=f"{source}.toml: condition")
@@ -209,8 +209,8 @@ def _conditions(source: str, entry: dict[str, Any]) -> Iterator[Condition]:
 
 
 def _condition(
-    source: str, name: str, entry: dict[str, Any], reading: Reading, where: str
-) -> Condition:
+    source: str, name: str, entry: dict[str, Any], reading: PublishedReading, where: str
+) -> PublishedCondition:
     _known(entry, (*NUMBERS, *WORDS), where)
     members = tuple(
         _condition(
@@ -243,10 +243,12 @@ def _condition(
             )
         if labels["fluid"] not in FLUIDS:
             raise _unknown(f'fluid "{labels["fluid"]}"', labels["fluid"], FLUIDS, f"{where}.fluid")
-    return Condition(source, name, numbers, labels, reading, members)
+    return PublishedCondition(source, name, numbers, labels, reading, members)
 
 
-def _readings(measured: dict[str, Any], where: str) -> Iterator[tuple[str | None, Reading]]:
+def _readings(
+    measured: dict[str, Any], where: str
+) -> Iterator[tuple[str | None, PublishedReading]]:
     kind = measured.get("kind")
     if kind not in KINDS:
         raise _unknown(f"kind of measurement {kind!r}", kind, KINDS, f"{where}.measured.kind")
@@ -263,16 +265,16 @@ def _readings(measured: dict[str, Any], where: str) -> Iterator[tuple[str | None
         for text in measured["speeds"]:
             speed = _number(text, "m/s", f"{where}.measured.speeds")
             cof = end + (level - end) * math.exp(-speed / tau)
-            yield text, Reading("value", cof, cof, float(measured["sd_ln"]), derived)
+            yield text, PublishedReading("value", cof, cof, float(measured["sd_ln"]), derived)
     elif kind == "range":
         low, high = (_cof(measured[end], where) for end in ("low", "high"))
-        yield None, Reading(kind, low, high, float(measured.get("sd_ln", 0.1)), derived)
+        yield None, PublishedReading(kind, low, high, float(measured.get("sd_ln", 0.1)), derived)
     else:
         cof = _cof(measured["cof"], where)
         spread = float(measured.get("sd_ln", measured.get("sd", 0.08 * cof) / cof))
         low = 0.0 if kind == "upper" else cof
         high = math.inf if kind == "lower" else cof
-        yield None, Reading(kind, low, high, spread, derived)
+        yield None, PublishedReading(kind, low, high, spread, derived)
 
 
 def _cof(item: Any, where: str) -> float:
@@ -316,7 +318,7 @@ def _number(item: Any, unit: str, where: str) -> float:
         ) from error
 
 
-def _effect(source: str, entry: dict[str, Any]) -> Effect:
+def _effect(source: str, entry: dict[str, Any]) -> PublishedEffect:
     name, kind = entry.pop("id", None), entry.pop("kind", None)
     if not isinstance(name, str) or kind not in EFFECTS:
         raise DataError(
@@ -324,7 +326,7 @@ def _effect(source: str, entry: dict[str, Any]) -> Effect:
             where=f"{source}.toml: {name or 'effect'}",
             allowed=", ".join(EFFECTS),
         )
-    return Effect(source, name, kind, entry)
+    return PublishedEffect(source, name, kind, entry)
 
 
 def _known(table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
@@ -340,7 +342,7 @@ def _unknown(what: str, given: object, known: Iterable[str], where: str) -> Data
 
 
 def sampled_numbers(
-    condition: Condition, shares: Array, unknown: Mapping[str, Span] | None = None
+    condition: PublishedCondition, shares: Array, unknown: Mapping[str, Span] | None = None
 ) -> dict[str, Array]:
     """Return the numbers of a condition at ``shares`` (draws, numbers), open ones over their range.
 

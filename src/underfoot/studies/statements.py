@@ -19,7 +19,7 @@ from typing import Any
 
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.files import read_toml
-from underfoot.core.registry import offered, offers
+from underfoot.core.registry import find_offer, offers
 
 Z95 = 1.959963984540054
 OURS = ("g1", "g2", "g3", "g4", "g5", "g6", "calibration", "corpus")
@@ -44,7 +44,7 @@ UNITS = {
 """SI over a printed unit, and the SI unit."""
 
 
-class Kind(StrEnum):
+class StatementKind(StrEnum):
     """What a statement is worth as evidence; only independent ones are counted."""
 
     INDEPENDENT = "independent"
@@ -58,13 +58,13 @@ class Kind(StrEnum):
     def heading(self) -> str:
         """Return the heading of the table of such statements."""
         return {
-            Kind.INDEPENDENT: "Independent statements",
-            Kind.RESTATES: "The same readings in other words",
-            Kind.AGAINST_ITSELF: "The report's numbers against each other",
-            Kind.OWN_GOAL: "Goals of this project; the report prints no number",
-            Kind.CALIBRATED_ON: "Readings that a parameter was chosen on",
-            Kind.ALTERNATIVE: "The same statements with a model or parameters other than the "
-            "default",
+            StatementKind.INDEPENDENT: "Independent statements",
+            StatementKind.RESTATES: "The same readings in other words",
+            StatementKind.AGAINST_ITSELF: "The report's numbers against each other",
+            StatementKind.OWN_GOAL: "Goals of this project; the report prints no number",
+            StatementKind.CALIBRATED_ON: "Readings that a parameter was chosen on",
+            StatementKind.ALTERNATIVE: "The same statements with a model or parameters "
+            "other than the default",
         }[self]
 
 
@@ -119,7 +119,7 @@ class Statement:
     effect: int
     quick_error: tuple[float, float] | tuple[()]
     quantity: str
-    kind: Kind
+    kind: StatementKind
     of: str
     not_comparable: str
     remark: str
@@ -146,7 +146,7 @@ class Statement:
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class PublishedStudy:
     """One publication that can be run again, with everything that is fixed before a run.
 
     ``errata`` are (where, printed, used, why); ``figures`` are (number in the publication, what it
@@ -176,19 +176,19 @@ def study_module(name: str) -> Any:
     """
     if name in OURS:
         return import_module(f".{name}", __package__)
-    if (module := offered("studies", name)) is None:
+    if (module := find_offer("studies", name)) is None:
         raise unknown_name("study", name, studies())
     return module
 
 
 @cache
-def study(name: str) -> Study:
+def study(name: str) -> PublishedStudy:
     """Return a study by its name; an unknown name is answered with the nearest one."""
     chosen = name.strip().lower()
     return read_study(chosen, read_toml(Path(study_module(chosen).STATEMENTS)))
 
 
-def read_study(name: str, content: Mapping[str, Any]) -> Study:
+def read_study(name: str, content: Mapping[str, Any]) -> PublishedStudy:
     """Return a study from the content of its file.
 
     Raises:
@@ -212,7 +212,7 @@ def read_study(name: str, content: Mapping[str, Any]) -> Study:
             }
             statements.append(_statement(name, other))
     _check(name, statements)
-    return Study(
+    return PublishedStudy(
         name,
         content["title"],
         content["source"],
@@ -235,13 +235,13 @@ def _check(study_name: str, statements: Sequence[Statement]) -> None:
         where = f"statements/{study_name}.toml, {statement.id}"
         if ids.count(statement.id) > 1:
             raise InputError("two statements have this id", where=where)
-        if statement.kind in (Kind.RESTATES, Kind.ALTERNATIVE):
+        if statement.kind in (StatementKind.RESTATES, StatementKind.ALTERNATIVE):
             other, _, rest = statement.of.partition(".")
             if not rest and statement.of not in ids:
                 raise unknown_name("statement", statement.of or "(none)", ids, where=f"{where}.of")
             if rest and other not in studies():
                 raise unknown_name("study", other, studies(), where=f"{where}.of")
-        if statement.kind is Kind.INDEPENDENT and statement.quantity:
+        if statement.kind is StatementKind.INDEPENDENT and statement.quantity:
             if statement.quantity in read:
                 raise InputError(
                     f"reads {statement.quantity}, as {read[statement.quantity]} does",
@@ -257,7 +257,7 @@ def _statement(study_name: str, table: Mapping[str, Any]) -> Statement:
         if key not in KEYS:
             raise unknown_name("key of a statement", key, KEYS, where=where)
     try:
-        claim, kind = Claim(table["claim"]), Kind(table.get("kind", "independent"))
+        claim, kind = Claim(table["claim"]), StatementKind(table.get("kind", "independent"))
     except ValueError as error:
         raise InputError(str(error), where=where) from error
     none = table.get("not_comparable", "")

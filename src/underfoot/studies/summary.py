@@ -9,12 +9,12 @@ from pathlib import Path
 
 from underfoot.core import InputError
 
-from .runner import StudyResult
+from .runner import PublishedStudyResult
 from .statements import studies
 from .verdict import Verdict, counts, tables_by_kind
 
 
-def headline(results: Iterable[StudyResult]) -> list[tuple[str, list[int]]]:
+def headline(results: Iterable[PublishedStudyResult]) -> list[tuple[str, list[int]]]:
     """Return (study, independent statements by verdict) and the sum over all studies last."""
     rows = []
     for result in results:
@@ -27,7 +27,7 @@ def headline(results: Iterable[StudyResult]) -> list[tuple[str, list[int]]]:
 
 
 def figure_rows(
-    results: Iterable[StudyResult], written: Mapping[str, Sequence[str]]
+    results: Iterable[PublishedStudyResult], written: Mapping[str, Sequence[str]]
 ) -> list[tuple[int, str, str, str]]:
     """Return (number, what it shows, our file or "-", remark) of the publication's figures."""
     rows = []
@@ -41,7 +41,7 @@ def figure_rows(
     return sorted(rows)
 
 
-def summary_markdown(results: Sequence[StudyResult]) -> str:
+def summary_markdown(results: Sequence[PublishedStudyResult]) -> str:
     """Return all statements as Markdown, as docs/studies/summary.md keeps it."""
     missing = [name for name in studies() if name not in {r.study.name for r in results}]
     text = [
@@ -84,21 +84,21 @@ def summary_markdown(results: Sequence[StudyResult]) -> str:
                 )
                 cells = (f"{s.text} ({s.place})", s.printed, s.tolerance_reason, *ours)
                 table.append("| " + " | ".join(_cell(cell) for cell in cells) + " |")
-            text += folded(f"Statements: {len(some)}", table)
+            text += folded_lines(f"Statements: {len(some)}", table)
         remarks = result.remarks()
         for key, title in (("Not taken as printed",) * 2, ("Assumptions", "Assumed")):
             if remarks[key]:
                 label = f"{title} ({len(remarks[key])})"
-                text += folded(label, (f"- {entry}" for entry in remarks[key]))
+                text += folded_lines(label, (f"- {entry}" for entry in remarks[key]))
     return "\n".join(text).rstrip() + "\n"
 
 
-def folded(label: str, lines: Iterable[str]) -> list[str]:
+def folded_lines(label: str, lines: Iterable[str]) -> list[str]:
     """Return lines of Markdown that a page hides until their label is opened."""
     return ["<details>", f"<summary>{label}</summary>", "", *lines, "", "</details>", ""]
 
 
-def write_summary(results: Sequence[StudyResult], folder: Path) -> None:
+def write_summary(results: Sequence[PublishedStudyResult], folder: Path) -> None:
     """Write summary.csv and summary.md into an existing folder."""
     rows = [judgement.to_dict() for result in results for judgement in result.judgements]
     with (folder / "summary.csv").open("w", newline="", encoding="utf-8-sig") as stream:
@@ -108,7 +108,7 @@ def write_summary(results: Sequence[StudyResult], folder: Path) -> None:
     (folder / "summary.md").write_text(summary_markdown(results), encoding="utf-8")
 
 
-def read_results(folder: Path) -> list[StudyResult]:
+def read_results(folder: Path) -> list[PublishedStudyResult]:
     """Return the results that earlier runs left in a folder, judged by today's statements.
 
     Raises
@@ -121,7 +121,7 @@ def read_results(folder: Path) -> list[StudyResult]:
     if not texts:
         allowed = "a folder that `underfoot studies run --out` wrote"
         raise InputError(f"{folder} holds no study", where="FOLDER", allowed=allowed)
-    return [StudyResult.from_dict(json.loads(text)) for text in texts]
+    return [PublishedStudyResult.from_dict(json.loads(text)) for text in texts]
 
 
 def _cell(text: str) -> str:

@@ -18,7 +18,7 @@ from underfoot.core.checks import choice, host_array
 from underfoot.core.threads import threads_limited
 from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contacts
 from underfoot.rough_contact._kernels.krylov import Workspace
-from underfoot.rough_contact._kernels.operators import Body, Operators
+from underfoot.rough_contact._kernels.operators import ElasticBody, Operators
 from underfoot.rough_contact._kernels.periodic import ShiftedMap, unit_compliance
 from underfoot.rough_contact.sliding_input import checked_contact_input
 
@@ -103,7 +103,7 @@ class _March:
         self.floor = ShiftedMap(floor / self.rms, spacing[0])
         self.shoe = shoe / self.rms
         self.unit = self.instantaneous * self.rms / (spacing[0] * min(floor.shape))
-        self._body = Body(
+        self._body = ElasticBody(
             moduli=lambda qx: np.ones(qx.shape),
             unit=lambda q: unit_compliance(q, body[1], body[0]),
             spacing=spacing,

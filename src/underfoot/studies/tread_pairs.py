@@ -15,7 +15,7 @@ from scipy.stats import norm
 
 from underfoot.case import Case
 from underfoot.compute.contact_friction import place_of_tread
-from underfoot.compute.resolve import resolved
+from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
 from underfoot.compute.sole import sole_map
 from underfoot.core import DataError
@@ -97,7 +97,7 @@ def _pair(
     extremes_of: int = 2,
 ) -> TreadPair:
     """Return a pair from the case of its first tread and the ratio computed and drawn."""
-    fluid = fluid_class(resolved(case).viscosity_value)
+    fluid = fluid_class(resolve_context(case).viscosity_value)
     # by quantiles: draws that the law bounds hold less of the error than was taken off
     spread = np.ptp(np.quantile(np.log(drawn[1:]), norm.cdf([-1, 1]))) / 2
     low, high, ratio = map(float, (*ends, np.log(drawn[0])))
@@ -109,7 +109,7 @@ def _drawn(stand: Stand, of_case: Callable[[Case], Array]) -> Array:
     """Return COF of what stands for a condition, and its draws (1 + draws,)."""
     rows = []
     for case in stand.cases:
-        (cof, *draws), error = of_case(case), tread_error(resolved(case).viscosity_value)
+        (cof, *draws), error = of_case(case), tread_error(resolve_context(case).viscosity_value)
         off = error.draws(_place(case), samples=len(draws), seed=case.numerics.seed)
         rows.append(np.append(cof, draws * np.exp(-off)))
     return np.mean(rows, axis=0) * stand.contact_time

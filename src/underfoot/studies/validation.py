@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from underfoot.case import Case
-from underfoot.compute.prepare import prepared
+from underfoot.compute.prepare import prepare_case
 from underfoot.compute.solve import solved_motion
 from underfoot.core import ConvergenceError
 from underfoot.core.arrays import Array, Mask
@@ -200,7 +200,8 @@ def heel_on_two_grids() -> Check:
         numerics={"cells_along": 16},
     )
     coarse, fine = (
-        _usable(solved_motion(prepared(case, spacing))).fluid_load for spacing in (1e-3, 0.75e-3)
+        _usable(solved_motion(prepare_case(case, spacing))).fluid_load
+        for spacing in (1e-3, 0.75e-3)
     )
     return Check(
         "sole solver: untreaded heel in glycerol, load on the film (N)",

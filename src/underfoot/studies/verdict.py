@@ -18,7 +18,7 @@ from pydantic import TypeAdapter
 
 from underfoot.core import InputError, unknown_name
 
-from .statements import Claim, Kind, Statement
+from .statements import Claim, Statement, StatementKind
 
 MORE_LIKELY_THAN_NOT = 0.5
 LEAST_OVERLAP = 0.2
@@ -72,7 +72,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class ComputedQuantity:
     """A computed quantity, SI.
 
     Parameters:
@@ -108,7 +108,7 @@ class Quantity:
         levels: Sequence[tuple[float, ArrayLike]] | None = None,
         names: Sequence[str] = (),
         chance: float | None = None,
-    ) -> Quantity:
+    ) -> ComputedQuantity:
         """Return a quantity; a ``deviation`` stands for a normal distribution, ``draws`` for any.
 
         On the "log" ``scale`` of a positive quantity and the "logit" one of a share it is that of
@@ -136,7 +136,7 @@ class Quantity:
         return cls(numbers, unit, quantiles, grids, levels is not None, tuple(names), chance)
 
     @classmethod
-    def none(cls, reason: str, unit: str = "1") -> Quantity:
+    def none(cls, reason: str, unit: str = "1") -> ComputedQuantity:
         """Return a quantity that the model does not have, with the reason."""
         return cls((), unit, missing=reason)
 
@@ -164,7 +164,7 @@ class Quantity:
         return asdict(self)
 
     @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> Quantity:
+    def from_dict(cls, content: Mapping[str, Any]) -> ComputedQuantity:
         """Return the quantity that ``to_dict`` wrote."""
         return TypeAdapter(cls).validate_python(content)
 
@@ -243,7 +243,7 @@ def grid_value(levels: Sequence[tuple[float, float]], tolerance: float) -> GridV
     return GridValue(last, 0.0, False, f"the last refinement moved it by {step:+.3g}")
 
 
-def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement:
+def judge(statement: Statement, quantities: Mapping[str, ComputedQuantity]) -> Judgement:
     """Return the verdict on one statement.
 
     Raises:
@@ -303,7 +303,7 @@ def judge(statement: Statement, quantities: Mapping[str, Quantity]) -> Judgement
     return _judgement(statement, verdict, note, quantity, values, chance)
 
 
-def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
+def _judged_order(statement: Statement, quantity: ComputedQuantity) -> Judgement:
     """Return the verdict on an order: the sign of each step from one name to the next."""
     by_name = dict(zip(quantity.names, quantity.values, strict=True))
     steps = [by_name[a] - by_name[b] for a, b in pairwise(statement.names)]
@@ -322,7 +322,9 @@ def _judged_order(statement: Statement, quantity: Quantity) -> Judgement:
     return _judgement(statement, verdict, "", chance=chance, ours=ours)
 
 
-def judged(statements: Iterable[Statement], quantities: Mapping[str, Quantity]) -> list[Judgement]:
+def judge_study(
+    statements: Iterable[Statement], quantities: Mapping[str, ComputedQuantity]
+) -> list[Judgement]:
     """Return the verdicts of a study."""
     return [judge(statement, quantities) for statement in statements]
 
@@ -331,14 +333,14 @@ def counts(judgements: Iterable[Judgement]) -> dict[Verdict, int]:
     """Return how many *independent* statements got each verdict; no other kind is counted."""
     number = dict.fromkeys(Verdict, 0)
     for judgement in judgements:
-        if judgement.statement.kind is Kind.INDEPENDENT:
+        if judgement.statement.kind is StatementKind.INDEPENDENT:
             number[judgement.verdict] += 1
     return number
 
 
-def tables_by_kind(judgements: Sequence[Judgement]) -> list[tuple[Kind, list[Judgement]]]:
+def tables_by_kind(judgements: Sequence[Judgement]) -> list[tuple[StatementKind, list[Judgement]]]:
     """Return the statements of each kind that there is, independent ones first."""
-    groups = [(kind, [j for j in judgements if j.statement.kind is kind]) for kind in Kind]
+    groups = [(kind, [j for j in judgements if j.statement.kind is kind]) for kind in StatementKind]
     return [(kind, some) for kind, some in groups if some]
 
 
@@ -346,7 +348,7 @@ def _judgement(
     statement: Statement,
     verdict: Verdict,
     note: str,
-    quantity: Quantity | None = None,
+    quantity: ComputedQuantity | None = None,
     values: Sequence[float] = (),
     chance: float | None = None,
     ours: str = "",

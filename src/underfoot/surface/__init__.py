@@ -1,5 +1,7 @@
 """Heights and profiles: read, level, filter, roughness numbers, spectrum, generate."""
 
+from underfoot.core.deprecation import package_names
+
 from .arrays import read_array as read_array
 from .filter import long_waves as long_waves
 from .filter import short_waves as short_waves
@@ -14,10 +16,10 @@ from .heights import Resolution as Resolution
 from .heights import profile_from_positions as profile_from_positions
 from .heights import shortest_reliable_wavelength as shortest_reliable_wavelength
 from .instruments import read_instrument as read_instrument
-from .prepare import filled as filled
-from .prepare import levelled as levelled
-from .prepare import periodised as periodised
-from .prepare import squared as squared
+from .prepare import fill_missing_heights as fill_missing_heights
+from .prepare import level_surface as level_surface
+from .prepare import make_periodic as make_periodic
+from .prepare import square_cells as square_cells
 from .read import InstrumentResult as InstrumentResult
 from .read import read_dektak as read_dektak
 from .read import read_map as read_map
@@ -44,3 +46,12 @@ from .spectrum import isotropic_spectrum as isotropic_spectrum
 from .spectrum import profile_spectrum as profile_spectrum
 from .spectrum import spectral_moments as spectral_moments
 from .write import write_surface as write_surface
+
+__getattr__ = package_names(
+    __name__,
+    gone="0.5",
+    filled="fill_missing_heights",
+    levelled="level_surface",
+    periodised="make_periodic",
+    squared="square_cells",
+)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, text, to_si
-from underfoot.core.missing import coded
+from underfoot.core.missing import mask_of_codes
 from underfoot.core.optional import optional_module
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Profile, profile_from_positions
-from .prepare import filled
+from .prepare import fill_missing_heights
 
 GSF = b"Gwyddion Simple Field 1."
 _SDF = re.compile(rb"[ab](ISO|BCR|NIST)-\d")
@@ -70,7 +70,7 @@ def complete(
     heights: np.ndarray, fill_missing: bool, where: str, first_line: int | None = None
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return the heights without gaps and what was done, if anything."""
-    missing = ~np.isfinite(heights) | coded(heights)
+    missing = ~np.isfinite(heights) | mask_of_codes(heights)
     if not missing.any():
         return heights, ()
     if not fill_missing:
@@ -82,7 +82,7 @@ def complete(
             where=where,
             remedy="Ask for interpolation (fill_missing=True); the result then says so",
         )
-    whole, note = filled(np.where(missing, np.nan, heights))
+    whole, note = fill_missing_heights(np.where(missing, np.nan, heights))
     return whole, (note,)
 
 

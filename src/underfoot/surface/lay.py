@@ -9,7 +9,7 @@ import numpy as np
 from underfoot.core.arrays import Array
 
 from .heights import HeightMap, Profile
-from .prepare import levelled
+from .prepare import level_surface
 
 DECAY = 0.2
 """Level of the autocorrelation at which ISO 25178-2 takes its lengths."""
@@ -97,7 +97,7 @@ def texture(surface: HeightMap) -> Texture | None:
     ratio = float(lengths[shortest] / lengths[longest])
     coherence = math.hypot(twist, lean) / float(np.mean(zx**2 + zy**2))
     direction = (steepest + 0.5 * math.pi) % math.pi
-    lays = _crossed_lays(surface if surface.periodic else levelled(surface))
+    lays = _crossed_lays(surface if surface.periodic else level_surface(surface))
     if not lays and ratio < ISOTROPIC and coherence > COHERENT:
         lays = (direction,)
     return Texture(ratio, not reached[longest], direction, float(lengths[longest]), coherence, lays)

@@ -15,7 +15,9 @@ SPIKE = 10.0
 """Robust standard deviations by which a dead point stands out of its neighbours."""
 
 
-def filled(heights: ArrayLike, *, largest_share: float = 0.05) -> tuple[np.ndarray, str]:
+def fill_missing_heights(
+    heights: ArrayLike, *, largest_share: float = 0.05
+) -> tuple[np.ndarray, str]:
     """Return heights with missing ones filled, and a line that says how many.
 
     Profiles are interpolated linearly; maps linearly between their neighbours, and by the
@@ -71,7 +73,7 @@ def held_level(heights: ArrayLike) -> tuple[float, float]:
     return share, float(values[k])
 
 
-def levelled(surface: Surface, degree: int = 1) -> Surface:
+def level_surface(surface: Surface, degree: int = 1) -> Surface:
     """Return the surface without its least squares polynomial of ``degree`` in x (and y).
 
     0 removes the mean, 1 the line or plane, 2 and more also a curved form; on a map all terms up
@@ -110,24 +112,24 @@ def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
     """
     from scipy.ndimage import median_filter
 
-    flat = levelled(surface)
+    flat = level_surface(surface)
     z = flat.heights
     robust = 1.4826 * float(np.median(np.abs(z - np.median(z))))
     dead = np.abs(z - median_filter(z, size=5, mode="nearest")) > SPIKE * robust
     if not dead.any() or robust == 0.0:
         return surface, flat
     marked = np.where(dead, np.nan, surface.heights)
-    heights, _ = filled(marked)
+    heights, _ = fill_missing_heights(marked)
     count = int((~np.isfinite(marked)).sum())
     whole = surface.changed(
         heights,
         f"{count} of {dead.size} points stand out of their neighbours (dead pixels) and are "
         "interpolated",
     )
-    return whole, levelled(whole)
+    return whole, level_surface(whole)
 
 
-def squared(surface: HeightMap) -> HeightMap:
+def square_cells(surface: HeightMap) -> HeightMap:
     """Return a map of square cells; oblong ones are divided along their longer side by splines.
 
     Nothing shorter than the coarser spacing resolves is added; ``resolution`` says so.
@@ -163,7 +165,7 @@ def squared(surface: HeightMap) -> HeightMap:
 METHODS = ("taper", "mirror")
 
 
-def periodised(surface: HeightMap, method: str = "taper", *, share: float = 0.1) -> HeightMap:
+def make_periodic(surface: HeightMap, method: str = "taper", *, share: float = 0.1) -> HeightMap:
     """Return a periodic map made from one that is not; a periodic one comes back unchanged.
 
     - "taper": the plane is removed and the heights are faded to their mean over ``share`` of each
@@ -182,7 +184,7 @@ def periodised(surface: HeightMap, method: str = "taper", *, share: float = 0.1)
         return surface
     if method not in METHODS:
         raise InputError(f'"{method}"', where="method", allowed=", ".join(METHODS))
-    flat = levelled(surface, 1)
+    flat = level_surface(surface, 1)
     z = flat.heights
     if method == "mirror":
         closed = np.concatenate([z, z[::-1]], axis=0)

@@ -17,7 +17,7 @@ from .heights import (
     shortest_derivable_wavelength,
     shortest_reliable_wavelength,
 )
-from .prepare import levelled
+from .prepare import level_surface
 
 STANDARDS = ("ISO 21920-2:2021", "ISO 4287:1997")
 NO_CUTOFF = "no short cut-off given: it would be set by the spacing and the noise"
@@ -137,7 +137,7 @@ def profile_roughness(
         RangeError: Short cut-off below what the measurement resolves.
         DataError: Profile too short.
     """
-    flat = profile if profile.periodic else levelled(profile, 1)
+    flat = profile if profile.periodic else level_surface(profile, 1)
     return level_roughness(
         flat, long_cutoff, short_cutoff, sections=sections, ends=ends, standard=standard
     )
@@ -317,7 +317,7 @@ def areal_roughness(
     )
     if short_cutoff is not None:
         _check_short_cutoff(short_cutoff, limit)
-    rough = surface if surface.periodic else levelled(surface, 1)
+    rough = surface if surface.periodic else level_surface(surface, 1)
     if short_cutoff is not None:
         rough = long_waves(rough, short_cutoff, ends)
     if long_cutoff is not None:

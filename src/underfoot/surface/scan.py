@@ -18,7 +18,7 @@ from underfoot.core.presentation import Presentable, Table, percent
 from .filter import holds, short_waves, within_cutoffs
 from .heights import HeightMap, Profile, shortest_derivable_wavelength
 from .lay import Directions, Texture, directions, lines_across, lines_along_axes, texture
-from .prepare import held_level, levelled, without_spikes
+from .prepare import held_level, level_surface, without_spikes
 from .read import read_surface
 from .roughness import STANDARDS, level_roughness
 from .spectrum import (
@@ -263,7 +263,7 @@ def read_scan(
             sides = " by ".join(display(side, "m") for side in surface.spacings)
             notes.append(f"cells of {sides}: numbers are of lines along {finer}, which shows more")
     cutoff, lines = chosen, [line for line in lines if holds(line.length, chosen)]
-    level = [flat] if isinstance(flat, Profile) else [levelled(line) for line in lines]
+    level = [flat] if isinstance(flat, Profile) else [level_surface(line) for line in lines]
     values, sections, uneven = _numbers(
         lines, level, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface
     )

@@ -11,7 +11,7 @@ from underfoot.core import InputError, SourcedValue
 from underfoot.core.units import metres
 
 from .heights import HeightMap, Heights, check_heights, shortest_reliable_wavelength
-from .prepare import levelled
+from .prepare import level_surface
 
 WINDOWS = ("none", "hann")
 POINTS_PER_DECADE = 12
@@ -148,7 +148,7 @@ def isotropic_spectrum(surface: HeightMap, *, window: str | None = None) -> Isot
     along the axes are kept (so that the sum is the mean square height) but not believed. Windows
     as in ``profile_spectrum``, after removing the plane.
     """
-    return level_spectrum(surface if surface.periodic else levelled(surface, 1), window=window)
+    return level_spectrum(surface if surface.periodic else level_surface(surface, 1), window=window)
 
 
 def level_spectrum(surface: HeightMap, *, window: str | None = None) -> IsotropicSpectrum:
@@ -229,7 +229,7 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     """
     from scipy.optimize import isotonic_regression
 
-    q, c, count = averaged(spectrum)
+    q, c, count = average_by_band(spectrum)
     falling = isotonic_regression(c, weights=count, increasing=False).x
     changed = float(np.max(np.abs(1.0 - falling / c)))
     tail = q >= q[-1] / np.sqrt(10.0)
@@ -248,12 +248,12 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
 
 
 def rises_text(levelled: float) -> str:
-    """Return by how much rises were levelled; ``levelled`` is the largest relative change."""
+    """Return by how much rises were levelled; ``level_surface`` is the largest relative change."""
     most = f"up to {100 * levelled:.0f} %" if levelled < 10.0 else "more than tenfold"
     return f"rises of the profile spectrum levelled (by {most})"
 
 
-def averaged(
+def average_by_band(
     spectrum: ProfileSpectrum | IsotropicSpectrum,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the reliable wave numbers and densities averaged over a twelfth of a decade, and how
@@ -280,7 +280,7 @@ def averaged(
 
 def spectrum_by_decades(spectrum: IsotropicSpectrum) -> IsotropicSpectrum:
     """Return the reliable part of a map's spectrum, averaged over a twelfth of a decade."""
-    q, density, _ = averaged(spectrum)
+    q, density, _ = average_by_band(spectrum)
     edges = np.concatenate([[q[0]], np.sqrt(q[1:] * q[:-1]), [q[-1]]])
     return replace(spectrum, wavenumber=q, density=density, area=np.pi * np.diff(edges**2))
 
@@ -301,7 +301,7 @@ def power_law(
     of a profile; roll-offs within the longest half of the decades are tried, none included. Values
     of few waves count less, and their mean logarithm is corrected.
     """
-    q, c, count = averaged(measured)
+    q, c, count = average_by_band(measured)
     log_q, log_c = np.log(q), np.log(c) - digamma(count) + np.log(count)
     weight = np.sqrt(np.minimum(count, 30))
     best: tuple[float, float, float, float] | None = None
@@ -352,7 +352,7 @@ def autocorrelation(surface: Heights, *, axis: int = 0) -> tuple[np.ndarray, np.
     Raises:
         InputError: A flat surface.
     """
-    z = (surface if surface.periodic else levelled(surface)).heights
+    z = (surface if surface.periodic else level_surface(surface)).heights
     lines = _lines(z - z.mean(), axis)
     n = lines.shape[0]
     size = n if surface.periodic else 2 * n

@@ -1,5 +1,7 @@
 """Measurements: files to trials, trials to the numbers the field publishes."""
 
+from underfoot.core.deprecation import package_names
+
 from .machines.pressures import (
     Passage,
     Pulse,
@@ -19,8 +21,8 @@ from .machines.slip_friction import (
 )
 from .readers import (
     PlateColumns,
-    Profile,
     Sheet,
+    TrialsProfile,
     profile_from,
     read_profile,
     read_sheet,
@@ -49,11 +51,11 @@ from .recording.trial import (
     PlateAccuracy,
     Trial,
     file_checksum,
-    joined,
+    join_trials,
 )
 from .walking.belts import Belt
 from .walking.body_weight import body_mass, body_weight
-from .walking.describe import Description, described, described_file
+from .walking.describe import Description, describe_trial, described_file
 from .walking.events import EditError, Stance, stances
 from .walking.gait import (
     DEFINITIONS,
@@ -85,17 +87,88 @@ from .walking.slips import (
 from .walking.walkway import Walkway, walkway_of
 
 __all__ = [
-    "ACOF_WINDOWS", "DEFINITIONS", "FILTERS", "FORCE_FILTER", "MARKER_FILTER", "Axes", "Belt",
-    "Channel", "Description", "Edit", "EditError", "Event", "Flag", "GaitContext", "HeelMotion",
-    "LowPass", "Marker", "Measurement", "Outcome", "OutcomeLimits", "Passage", "Plate",
-    "PlateAccuracy", "PlateColumns", "Profile", "Pulse", "PulseDefinition", "Ramp",
-    "RcofDefinition", "RequiredFriction", "SensorArrayReading", "Sheet", "Slip", "SlipCourse",
-    "SlipDefinition", "Stance", "Trial", "Walkway", "available_friction", "available_frictions",
-    "axes_of", "axis_name", "axis_vector", "body_mass", "body_weight", "contact_from_heel",
-    "contacts", "described", "described_file", "file_checksum", "finished_plate", "foot_angle",
-    "gait_context", "heel_candidates", "heel_motion", "heel_track", "joined", "low_passed",
-    "mean_friction", "mean_of", "passages", "pressure_pulse", "profile_from", "ramp_from",
-    "read_profile", "read_sheet", "read_trial", "read_trials", "required_friction",
-    "required_frictions", "sensor_array_reading", "sensor_rows", "slip", "slip_course", "slip_of",
-    "stance_curves", "stance_frictions", "stances", "velocity", "walkway_of",
+    "ACOF_WINDOWS",
+    "DEFINITIONS",
+    "FILTERS",
+    "FORCE_FILTER",
+    "MARKER_FILTER",
+    "Axes",
+    "Belt",
+    "Channel",
+    "Description",
+    "Edit",
+    "EditError",
+    "Event",
+    "Flag",
+    "GaitContext",
+    "HeelMotion",
+    "LowPass",
+    "Marker",
+    "Measurement",
+    "Outcome",
+    "OutcomeLimits",
+    "Passage",
+    "Plate",
+    "PlateAccuracy",
+    "PlateColumns",
+    "Pulse",
+    "PulseDefinition",
+    "Ramp",
+    "RcofDefinition",
+    "RequiredFriction",
+    "SensorArrayReading",
+    "Sheet",
+    "Slip",
+    "SlipCourse",
+    "SlipDefinition",
+    "Stance",
+    "Trial",
+    "TrialsProfile",
+    "Walkway",
+    "available_friction",
+    "available_frictions",
+    "axes_of",
+    "axis_name",
+    "axis_vector",
+    "body_mass",
+    "body_weight",
+    "contact_from_heel",
+    "contacts",
+    "describe_trial",
+    "described_file",
+    "file_checksum",
+    "finished_plate",
+    "foot_angle",
+    "gait_context",
+    "heel_candidates",
+    "heel_motion",
+    "heel_track",
+    "join_trials",
+    "low_passed",
+    "mean_friction",
+    "mean_of",
+    "passages",
+    "pressure_pulse",
+    "profile_from",
+    "ramp_from",
+    "read_profile",
+    "read_sheet",
+    "read_trial",
+    "read_trials",
+    "required_friction",
+    "required_frictions",
+    "sensor_array_reading",
+    "sensor_rows",
+    "slip",
+    "slip_course",
+    "slip_of",
+    "stance_curves",
+    "stance_frictions",
+    "stances",
+    "velocity",
+    "walkway_of",
 ]  # fmt: skip
+
+__getattr__ = package_names(
+    __name__, gone="0.5", described="describe_trial", joined="join_trials", Profile="TrialsProfile"
+)

@@ -16,17 +16,17 @@ from underfoot.core.presentation import is_wide, percent, probability_text
 
 from ..components import (
     SoleView,
-    folded,
+    folded_section,
     interruption,
+    package_label,
     scale,
     sentences,
     table,
     task_line,
     title,
-    told,
 )
 from ..inputs import Input, sliders
-from ..jobs import DONE, Task
+from ..jobs import DONE, QueuedTask
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant, no_variant, variant_bar
 from . import repair, wear
@@ -55,11 +55,11 @@ def build(session: Session) -> None:
     name = session.variant
     if name is None:
         no_variant(session, ROUTE, example)
-    elif (case := repair.opened(session, ROUTE, name)) is not None:
+    elif (case := repair.open_variant(session, ROUTE, name)) is not None:
         _Answer(session, name, case).show()
 
 
-def begin_run(session: Session, name: str, *, later: bool = False) -> Task:
+def begin_run(session: Session, name: str, *, later: bool = False) -> QueuedTask:
     """Queue the full run of a variant as its file says; one of these inputs is taken as it is.
 
     It comes before those that wait, and what would help follows it; not so one of many (``later``).
@@ -94,7 +94,7 @@ class _Answer:
         self.folder = session.project.result_folder(name)
         self.changes: dict[str, Any] = {}
         self.preview_cof = 0.0
-        self.tried: Task | None = None
+        self.tried: QueuedTask | None = None
 
     def show(self) -> None:
         title(self.text("answer.title")).classes("hidden-title")
@@ -124,10 +124,10 @@ class _Answer:
     def _reload(self) -> None:
         self.session.go(ROUTE, **{**self.session.query, "variant": self.name})
 
-    def _follow(self, task: Task) -> None:
+    def _follow(self, task: QueuedTask) -> None:
         self.run_button.disable()
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             self.run_button.enable()
             with self.progress:
                 _alert(done.problem)
@@ -212,11 +212,11 @@ class _Answer:
             if not (self.folder / "report.html").exists():
                 cautions.insert(0, self.text("answer.no_report"))
             for caution in cautions:
-                told(caution).classes("caution")
+                package_label(caution).classes("caution")
         with self.reasons, ui.element("div").classes("answer-card"):
             self.beside = ui.element("div")
             self._beside(answer)
-            told(answer["limit"]).classes("soft")
+            package_label(answer["limit"]).classes("soft")
 
     def _under(self) -> dict[str, str]:
         """Return floor and contaminant of what was computed, which no name of a variant tells."""
@@ -255,15 +255,15 @@ class _Answer:
                 ui.link(self.text("answer.how_sure"), pair)
 
     def _tables(self, answer: dict[str, Any], current: bool) -> None:
-        with folded(self.text("answer.in_words")):
+        with folded_section(self.text("answer.in_words")):
             sentences(answer["headline"])
         cut = (self.text("answer.cut"), self._cut) if current and self.case.shoe.tread else None
         for shown in answer["tables"]:
-            with folded(shown["title"]):
+            with folded_section(shown["title"]):
                 untitled = {**shown, "title": ""}
                 table(untitled, cut, answer["advised"] if shown["shows"] == "lug" else ())
         for heading, lines in answer["remarks"].items():
-            with folded(heading):
+            with folded_section(heading):
                 sentences(lines, "soft")
         report = self.session.project.folder.name
         ui.label(self.text("answer.files", folder=f"{report}/results/{self.name}")).classes("soft")
@@ -351,7 +351,7 @@ class _Answer:
         )
         self.behind.clear()
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             if done is not self.tried:
                 return
             with self.behind:
@@ -433,7 +433,7 @@ class _Answer:
                     for message in rest:
                         ui.label(message).classes("soft")
 
-    def _offer_help(self, task: Task | None) -> None:
+    def _offer_help(self, task: QueuedTask | None) -> None:
         """Offer to simulate what would help where nothing has: of many runs at once none does."""
         project = self.session.project
         if (task is not None and task.state == DONE) or not project.is_current(self.name):

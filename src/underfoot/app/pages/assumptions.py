@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.case import Case, assumptions, unit_at
 from underfoot.core import display
 
-from ..components import interruption, refilled, task_line, told
+from ..components import interruption, package_label, show_refillable, task_line
 from ..session import Session
 
 EFFECTS = "underfoot.app.work:effects"
@@ -19,7 +19,7 @@ EFFECTS = "underfoot.app.work:effects"
 
 def build(session: Session, name: str) -> None:
     """Show the assumptions, those with the largest known effect first."""
-    refilled(partial(_filled, session, name))
+    show_refillable(partial(_filled, session, name))
 
 
 def _filled(session: Session, name: str, again: Any) -> None:
@@ -56,10 +56,10 @@ def _filled(session: Session, name: str, again: Any) -> None:
             )
             if effect and largest:
                 ui.element("div").classes("effect").style(f"width: {100 * effect / largest:.0f}%")
-            told(each["reason"]).classes("soft")
+            package_label(each["reason"]).classes("soft")
     with ui.expansion(text("assumptions.all"), value=effects is None).classes("plain"):
         for line in assumptions(case):
-            told(line).classes("soft")
+            package_label(line).classes("soft")
 
 
 def _label(session: Session, path: str) -> str:

@@ -10,7 +10,7 @@ from nicegui import ui
 from underfoot.core import InputError
 
 from ..components import SoleView, sentences, table, task_line, title
-from ..jobs import DONE, Task
+from ..jobs import DONE, QueuedTask
 from ..result_table import ResultTable
 from ..session import PICTURES, Session
 from .answer import begin_run
@@ -118,7 +118,7 @@ class _Compare:
             words = self.text("compare.separate")
             task = self.session.submit(words, SEPARATED, self.folders(), about=about, first=True)
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             if done.answer and self.choice.value == chosen:
                 self._say(done.answer)
 
@@ -157,7 +157,7 @@ class _Compare:
             self.equal.clear()
             show(chosen)
 
-        async def ended(done: Task) -> None:
+        async def ended(done: QueuedTask) -> None:
             if done.state == DONE and new in project.variants():
                 show([first, new])
 

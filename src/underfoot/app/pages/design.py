@@ -80,7 +80,7 @@ def build(session: Session) -> None:
     name = session.variant
     if name is None:
         no_variant(session, ROUTE, example)
-    elif repair.opened(session, ROUTE, name) is not None:
+    elif repair.open_variant(session, ROUTE, name) is not None:
         _Design(session, name).show()
 
 

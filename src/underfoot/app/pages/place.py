@@ -9,7 +9,7 @@ from pathlib import Path
 from nicegui import ui
 
 from ..components import drop_zone, interruption, sentences, table, task_line, title
-from ..jobs import Task
+from ..jobs import QueuedTask
 from ..session import Session
 
 ROUTE = "/place"
@@ -63,7 +63,7 @@ class _Place:
         with self.busy:
             task_line(self.session, task, partial(self.ended, name))
 
-    async def ended(self, name: str, task: Task) -> None:
+    async def ended(self, name: str, task: QueuedTask) -> None:
         """Show what came of a task, and what there was before it where nothing did."""
         self.show(name)
         if task.problem:

@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.core import InputError
 
 from ..components import title
-from ..jobs import DONE, FAILED, RUNNING, Task
+from ..jobs import DONE, FAILED, RUNNING, QueuedTask
 from ..projects import known_projects
 from ..result_table import ResultTable
 from ..session import LOOK, Session
@@ -84,12 +84,12 @@ def _names(session: Session) -> list[str]:
     return sorted(session.project.variants(), key=str.casefold)
 
 
-def _runs(session: Session) -> dict[str, Task]:
+def _runs(session: Session) -> dict[str, QueuedTask]:
     """Return the newest run of each variant."""
     return {task.about: task for task in session.jobs.tasks.values() if task.function == RUN}
 
 
-def _state_text(session: Session, task: Task) -> str:
+def _state_text(session: Session, task: QueuedTask) -> str:
     """Return what a run does or why it has no result; empty where it is done."""
     if task.state == DONE:
         return ""

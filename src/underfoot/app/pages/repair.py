@@ -23,7 +23,7 @@ from ..variant_bar import variant_bar
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class FileReference:
     """A file of the project that a variant names, with the checksum of the one it means."""
 
     name: str
@@ -39,23 +39,23 @@ class Reference:
         return path.is_file() and self.sha256 in (None, checksum(path))
 
 
-def references(project: Project, name: str) -> list[Reference]:
+def references(project: Project, name: str) -> list[FileReference]:
     """Return the files of the project that a variant names, whether it can be read or not."""
     try:
-        return list(_references(toml.parsed(project.text(name))))
+        return list(_references(toml.parse_toml(project.text(name))))
     except UnderfootError:
         return []
 
 
-def _references(table: Mapping[str, Any]) -> Iterator[Reference]:
+def _references(table: Mapping[str, Any]) -> Iterator[FileReference]:
     for key, value in table.items():
         if isinstance(value, Mapping):
             yield from _references(value)
         elif isinstance(value, str) and value.split("/")[:2] in [["..", each] for each in PLACES]:
-            yield Reference(value, table.get("sha256") if key == "file" else None)
+            yield FileReference(value, table.get("sha256") if key == "file" else None)
 
 
-def replaced(project: Project, name: str, reference: Reference, path: Path) -> None:
+def replace_file(project: Project, name: str, reference: FileReference, path: Path) -> None:
     """Let a variant name another file: in its text, since it can't be read as a case."""
     text = project.text(name)
     new = f"../{path.relative_to(project.folder).as_posix()}"
@@ -66,7 +66,7 @@ def replaced(project: Project, name: str, reference: Reference, path: Path) -> N
     project.write(name, text)
 
 
-def opened(session: Session, route: str, name: str) -> Case | None:
+def open_variant(session: Session, route: str, name: str) -> Case | None:
     """Return the case of a variant; where it can't be read, show the bar and what would mend it."""
     try:
         return session.project.case(name)
@@ -95,14 +95,16 @@ def _card(session: Session, name: str, error: UnderfootError, mended: Callable[[
             ui.label(text("repair.undo"))
 
 
-def _choices(session: Session, name: str, reference: Reference, mended: Callable[[], None]) -> None:
+def _choices(
+    session: Session, name: str, reference: FileReference, mended: Callable[[], None]
+) -> None:
     text, project = session.text, session.project
     path = reference.path(project)
     beside = sorted(each for each in path.parent.glob("[!.]*") if each.suffix == path.suffix)
     same = [each for each in beside if reference.sha256 and checksum(each) == reference.sha256]
 
     def take(file: Path) -> None:
-        replaced(project, name, reference, file)
+        replace_file(project, name, reference, file)
         mended()
 
     async def arrived(paths: list[str]) -> None:

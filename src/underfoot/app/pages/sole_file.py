@@ -14,7 +14,7 @@ from underfoot.core.errors import Cancelled
 from underfoot.core.remark import is_assumed
 from underfoot.core.worker import Job
 
-from ..components import SoleView, drop_zone, sentences, table, told
+from ..components import SoleView, drop_zone, package_label, sentences, table
 from ..session import Session
 from ..text import as_json
 from ..uploads import revision, revisions
@@ -151,7 +151,7 @@ class _Inspection:
             sentences(answer["headline"])
             self._uses(answer["shoe"])
             for line in next(iter(answer["remarks"].values()), []):
-                told(line).classes("assumed" if is_assumed(line) else "soft")
+                package_label(line).classes("assumed" if is_assumed(line) else "soft")
             for shown in answer["tables"]:
                 table(shown)
 

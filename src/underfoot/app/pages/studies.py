@@ -24,7 +24,7 @@ from underfoot.core.units import display, to_si
 
 from ..components import SoleView, interruption, sentences, task_line, title
 from ..inputs import read_count, read_field, whole_number
-from ..jobs import Task
+from ..jobs import QueuedTask
 from ..project import NAME
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant
@@ -329,10 +329,10 @@ class _Study:
             await self._fill()
         await self.run()
 
-    def _follow(self, task: Task) -> None:
+    def _follow(self, task: QueuedTask) -> None:
         timer = self._watch()
 
-        async def done(ended: Task) -> None:
+        async def done(ended: QueuedTask) -> None:
             timer.deactivate()
             if ended.problem:
                 self.session.tell(InputError(ended.problem))
@@ -524,7 +524,7 @@ def _value(
     """
     read = read or (lambda key, reader: reader(fields[key]))
     if fields.get("values", "").strip():
-        each = partial(typed, path=path, comma=comma, names=True)
+        each = partial(typed_value, path=path, comma=comma, names=True)
         return read(
             "values", lambda text: [each(part) for part in SEPARATOR.split(text.strip()) if part]
         )
@@ -533,7 +533,7 @@ def _value(
         return None
     keys = KINDS[fields["kind"]] if section == "uncertain" else ends
     value = {
-        key: read(end, partial(typed, path="" if key == "factor" else path, comma=comma))
+        key: read(end, partial(typed_value, path="" if key == "factor" else path, comma=comma))
         for key, end in zip(keys, ends, strict=True)
     }
     if fields.get("steps", "").strip():
@@ -541,7 +541,7 @@ def _value(
     return value
 
 
-def typed(text: str, path: str, *, comma: bool, names: bool = False) -> Any:
+def typed_value(text: str, path: str, *, comma: bool, names: bool = False) -> Any:
     """Return what was typed of a value at a path as a study file writes it: a number, a quantity.
 
     Parameters:

@@ -17,7 +17,7 @@ from underfoot.core.errors import UnderfootError
 from ..components import title
 from ..gate import UPLOADS
 from ..session import Session
-from ..trials_study import Study, free_name, studies
+from ..trials_study import TrialsFolder, free_name, studies
 from .trials_folder import STATIC, WORK, FolderView
 from .trials_trial import TrialView
 
@@ -42,7 +42,7 @@ def build(session: Session) -> None:
     wanted, file = session.query.get("study", ""), session.query.get("trial", "")
     # What waits for an answer stands beside the place that it fills: there it would be removed.
     if wanted in studies(session.project):
-        page.study = Study(session.project, wanted)
+        page.study = TrialsFolder(session.project, wanted)
         if file:
             ui.timer(0.01, partial(page.show, file), once=True)
         else:
@@ -94,7 +94,7 @@ class _Trials:
 
     async def make_example(self) -> None:
         """Make a folder of made-up slips and open it."""
-        study = Study(
+        study = TrialsFolder(
             self.session.project,
             free_name(self.session.project, self.session.text("trials.example")),
         )
@@ -104,7 +104,7 @@ class _Trials:
 
     def open(self, name: str) -> None:
         """Show a folder."""
-        self.study = Study(self.session.project, name)
+        self.study = TrialsFolder(self.session.project, name)
         self.overview()
 
     def overview(self) -> None:

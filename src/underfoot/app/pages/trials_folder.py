@@ -12,12 +12,12 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 
-from ..components import sentences, table, task_line, title, told
-from ..jobs import Task
+from ..components import package_label, sentences, table, task_line, title
+from ..jobs import QueuedTask
 from ..session import Session
-from ..trials_study import Study
+from ..trials_study import TrialsFolder
 
 WORK = "underfoot.app.work_trials"
 STATIC = Path(str(files("underfoot.app"))) / "static"
@@ -31,7 +31,7 @@ class FolderView:
     def __init__(
         self,
         session: Session,
-        study: Study,
+        study: TrialsFolder,
         back: Callable[[], None],
         show: Callable[[str], Awaitable[None]],
     ) -> None:
@@ -162,7 +162,7 @@ class FolderView:
             words = [self.text("trials.edited", count=card["edits"])] if card["edits"] else []
             if card["verdict"] != "accepted":
                 words += card["reasons"][:1]
-            told(joined(words)).classes("reason")
+            package_label(join_lines(words)).classes("reason")
 
     async def report(self) -> None:
         """Write the report and show the way to it."""
@@ -172,7 +172,7 @@ class FolderView:
             text("trials.report_job"), work, self.study.asked, about=self.study.name
         )
 
-        async def done(ended: Task) -> None:
+        async def done(ended: QueuedTask) -> None:
             if ended.problem:
                 session.tell(InputError(ended.problem))
             elif ended.answer:

@@ -13,7 +13,7 @@ from underfoot.core.errors import UnderfootError
 
 from ..components import sentences, title
 from ..session import Session
-from ..trials_study import Study
+from ..trials_study import TrialsFolder
 from .trials_folder import STATIC, WORK
 
 PLOT_WORDS = (
@@ -47,7 +47,7 @@ class TrialView:
     def __init__(
         self,
         session: Session,
-        study: Study,
+        study: TrialsFolder,
         view: dict[str, Any],
         back: Callable[[], None],
         show: Callable[[str], Awaitable[None]],

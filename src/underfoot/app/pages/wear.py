@@ -11,7 +11,7 @@ from nicegui import ui
 from underfoot.core import InputError
 from underfoot.core.units import to_si
 
-from ..components import interruption, refilled, sentences, table, task_line
+from ..components import interruption, sentences, show_refillable, table, task_line
 from ..inputs import read_field
 from ..session import Session
 
@@ -20,7 +20,7 @@ WORN = "underfoot.app.work:worn"
 
 def build(session: Session, name: str) -> None:
     """Show what was computed of the wear of a variant, and two fields that begin it."""
-    refilled(partial(_filled, session, name))
+    show_refillable(partial(_filled, session, name))
 
 
 def _filled(session: Session, name: str, again: Any) -> None:

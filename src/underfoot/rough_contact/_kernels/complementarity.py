@@ -12,7 +12,7 @@ from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
 
 from .krylov import Restriction, Workspace, residual_correction
-from .members import counted, each, flat, members
+from .members import count_true, each, flat, members
 from .operators import Operators
 
 _SWITCH = 1e-5
@@ -367,7 +367,7 @@ def _closed(
     )
     full += each([course.mean_pressure for course in batch.courses], full)
     touching = full > 0.0
-    points, nodes = height.shape[-2] * height.shape[-1], counted(flat(touching, xp), xp)
+    points, nodes = height.shape[-2] * height.shape[-1], count_true(flat(touching, xp), xp)
     ends = [_End.ON] * len(nodes)
     for n, course in enumerate(batch.courses):
         course.products += int(closed[n])

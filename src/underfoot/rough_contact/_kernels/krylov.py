@@ -12,7 +12,7 @@ from scipy.sparse import csr_array
 from underfoot.core.arrays import AnyArray
 from underfoot.core.threads import on_host
 
-from .members import counted, each, flat, products, sums
+from .members import count_true, each, flat, products, sums
 from .operators import Operators
 
 _DEPENDENT = 1e-5
@@ -43,7 +43,7 @@ class Restriction:
         self.xp = xp
         rows = flat(inside, xp)
         self.points = rows.shape[1]
-        self.nodes = counted(rows, xp)
+        self.nodes = count_true(rows, xp)
         self.gathered = rows.shape[0] == 1 and self.nodes[0] < _GATHER_BELOW * self.points
         self._shape = inside.shape
         self._buffer: AnyArray = None

@@ -31,7 +31,7 @@ def flat(field: AnyArray, xp: Any) -> AnyArray:
     return xp.reshape(field, (field.shape[0], -1))
 
 
-def counted(inside: AnyArray, xp: Any) -> list[int]:
+def count_true(inside: AnyArray, xp: Any) -> list[int]:
     """Return how many values of each row are true."""
     if inside.shape[0] == 1:
         return [int(xp.count_nonzero(inside))]

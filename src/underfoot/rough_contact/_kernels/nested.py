@@ -9,7 +9,7 @@ from underfoot.core.fourier import Transform
 from .complementarity import ContactState, Search, solved_contacts
 from .krylov import Workspace
 from .members import each
-from .operators import Body, Operators
+from .operators import ElasticBody, Operators
 
 _COARSEST = 4096
 """Points at which coarsening stops: below, a grid costs no less than its overhead."""
@@ -24,7 +24,7 @@ _REDUCTION, _COARSE_REDUCTION = 0.15, 0.3
 
 def solve_nested(
     height: AnyArray,
-    body: Body,
+    body: ElasticBody,
     mean_pressure: Sequence[float],
     *,
     exact: Transform,
@@ -69,7 +69,7 @@ def solve_nested(
             pressure = xp.clip(guess, 0.0, None)
             del guess
         else:
-            pressure = repeated(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
+            pressure = repeat_cells(pressure, (before[0] // factor[0], before[1] // factor[1]), xp)
         guessed = operators.count - began
         states = solved_contacts(
             operators, heights, pressure, mean_pressure, workspace, search if last else coarse
@@ -102,7 +102,7 @@ def low_pass(
     return field / (factor[0] * factor[1])
 
 
-def repeated(field: AnyArray, factor: tuple[int, int], xp: Any) -> AnyArray:
+def repeat_cells(field: AnyArray, factor: tuple[int, int], xp: Any) -> AnyArray:
     """Return the field on the finer grid, constant over each coarse cell."""
     for axis in (-2, -1):
         if factor[axis] > 1:

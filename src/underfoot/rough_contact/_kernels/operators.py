@@ -17,7 +17,7 @@ from .periodic import wavenumbers
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class ElasticBody:
     """A body whose compliance is scale * unit(|q|) / moduli(qx), and what computes with it.
 
     ``moduli`` returns E*(qx v) for a column of qx of NumPy (real when elastic), ``unit`` the
@@ -46,7 +46,7 @@ class Operators:
 
     def __init__(
         self,
-        body: Body,
+        body: ElasticBody,
         shape: tuple[int, ...],
         coarsening: tuple[int, int] = (1, 1),
         exact: Transform | None = None,

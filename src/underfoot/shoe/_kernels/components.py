@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from underfoot.core.arrays import Array
 from underfoot.core.compiled import njit
 
-from .mesh_edges import mixed, soup_keys
+from .mesh_edges import hash_key, soup_keys
 
 MOST_FACES = 2_000_000
 """Bodies of a larger mesh are not looked for: scans are one surface."""
@@ -68,8 +68,8 @@ def _roots(corners: NDArray[np.uint32]) -> NDArray[np.int32]:
     parent = np.empty(count, dtype=np.int32)
     for n in range(count):
         key = np.uint64(corners[n, 0]) | (np.uint64(corners[n, 1]) << np.uint64(32))
-        key = mixed(key + np.uint64(0x9E3779B97F4A7C15))
-        key = mixed(key ^ (np.uint64(corners[n, 2]) + np.uint64(0x632BE59BD9B4E019)))
+        key = hash_key(key + np.uint64(0x9E3779B97F4A7C15))
+        key = hash_key(key ^ (np.uint64(corners[n, 2]) + np.uint64(0x632BE59BD9B4E019)))
         place = np.int64(key & np.uint64(size - 1))
         while True:
             k = table[place]

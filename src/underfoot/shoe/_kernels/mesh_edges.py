@@ -11,7 +11,7 @@ Triangles = NDArray[np.float32]
 
 
 @njit(cache=True, inline="always")
-def mixed(key: np.uint64) -> np.uint64:
+def hash_key(key: np.uint64) -> np.uint64:
     """Return a hash of a key."""
     key ^= key >> np.uint64(30)
     key *= np.uint64(0xBF58476D1CE4E5B9)
@@ -61,13 +61,13 @@ def soup_keys(
         for k in range(3):
             # + 0.0 turns a negative zero, which has other bits, into zero
             key = np.uint64(bits[n, k, 0]) | (np.uint64(bits[n, k, 1]) << np.uint64(32))
-            key = mixed(key + np.uint64(0x9E3779B97F4A7C15))
-            corner[k] = mixed(key ^ (np.uint64(bits[n, k, 2]) + np.uint64(0x632BE59BD9B4E019)))
-        faces[n] = mixed(corner[0] + corner[1] + corner[2]) | one
+            key = hash_key(key + np.uint64(0x9E3779B97F4A7C15))
+            corner[k] = hash_key(key ^ (np.uint64(bits[n, k, 2]) + np.uint64(0x632BE59BD9B4E019)))
+        faces[n] = hash_key(corner[0] + corner[1] + corner[2]) | one
         for k in range(3):
             a, b = corner[k], corner[(k + 1) % 3]
             low, high = (a, b) if a < b else (b, a)
-            key = mixed(low + mixed(high))
+            key = hash_key(low + hash_key(high))
             edges[3 * n + k] = (key & ~one) | (one if a < b else np.uint64(0))
     return edges, faces, counts, volume
 

@@ -159,7 +159,7 @@ def outline_distance(x: Array, y: Array, segments: Array, corner: Array, pitch: 
     return np.where(within, -distance, distance).reshape(x.shape)
 
 
-def rotated(x: Array, y: Array, angle: float) -> tuple[Array, Array]:
+def rotate_coordinates(x: Array, y: Array, angle: float) -> tuple[Array, Array]:
     """Return coordinates in a frame that is turned by ``angle`` (rad, anticlockwise)."""
     if angle == 0.0:
         return x, y

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, unknown_name
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.remark import ASSUMED, Message, Remark, assumed
+from underfoot.core.remark import ASSUMED, Message, Remark, assumption_line
 
 from .._kernels.components import MOST_FACES, components, extents_of_bodies
-from .carriers import carried
+from .carriers import group_bodies
 from .floor import without_floor
 from .mesh import Mesh
 from .orientation import box_axes, tread_share
@@ -108,7 +108,7 @@ def found_outsole(mesh: Mesh, settings: FileSettings, where: str) -> Found:
     if mesh.body is None or np.ptp(mesh.body) == 0:
         _refuse_unknown(mesh.bodies, settings, where)
         return Found((mesh,), away, tuple(remarks))
-    group = np.arange(len(mesh.bodies)) if settings.solid is not None else carried(mesh)
+    group = np.arange(len(mesh.bodies)) if settings.solid is not None else group_bodies(mesh)
     keep, told = _named(_measured(mesh), group, settings, where)
     remarks += told
     mesh, keep, told = _joined(mesh, group, keep)
@@ -344,7 +344,7 @@ def _without_plates(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     rest = keep & ~plates
     named = _listed([n for n, p in zip(bodies.names, plates, strict=True) if p])
     return rest, [
-        assumed("{names} is a plate under or over the sole and was left out.", names=named)
+        assumption_line("{names} is a plate under or over the sole and was left out.", names=named)
     ]
 
 

@@ -41,7 +41,7 @@ class _Claim:
     misfit: float
 
 
-def carried(mesh: Mesh) -> NDArray[np.intp]:
+def group_bodies(mesh: Mesh) -> NDArray[np.intp]:
     """Return for each body the number of the group that it makes one sole with.
 
     A body carries lugs where these touch it over most of their plan form, leave gaps between them
@@ -132,7 +132,7 @@ def _claim(
         mesh.triangles[lugs[mesh.body]], seen.axes, seen.first, seen.spacing, seen.covered.shape
     )
     plan = np.isfinite(lowest) & seen.covered
-    span = spanned(plan) & seen.covered
+    span = span_mask(plan) & seen.covered
     gaps = span & ~plan
     if not plan.any() or np.count_nonzero(gaps) <= _OPEN * np.count_nonzero(plan):
         return None
@@ -146,7 +146,7 @@ def _claim(
     return _Claim(carrier, frozenset(np.flatnonzero(lugs).tolist()), sign * seen.axes[2], misfit)
 
 
-def spanned(mask: Mask) -> Mask:
+def span_mask(mask: Mask) -> Mask:
     """Return the cells between cells of the mask across, then those between these along."""
     for axis in (1, 0):
         back = np.flip(np.logical_or.accumulate(np.flip(mask, axis), axis), axis)

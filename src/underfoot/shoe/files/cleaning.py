@@ -24,7 +24,7 @@ _ALONG = 0.35  # of the sides of a ledge: along the rim
 _MOST_LEDGE = 0.4  # of the plan form: more is no ledge
 
 
-def cleaned(height: Array, spacing: float) -> tuple[Array, list[Message]]:
+def clean_height_map(height: Array, spacing: float) -> tuple[Array, list[Message]]:
     """Return the height map without stray parts, small holes and spikes, and a remark for each."""
     remarks: list[Message] = []
     height, new = _without_stray_parts(height, spacing)

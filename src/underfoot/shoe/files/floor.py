@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.arrays import Array, Mask
-from underfoot.core.remark import Message, assumed
+from underfoot.core.remark import Message, assumption_line
 
 from .._kernels.components import MOST_FACES, components
 from .._kernels.regions import grown, shrunk, without_specks
-from .carriers import spanned
+from .carriers import span_mask
 from .mesh import Mesh
-from .orientation import box_axes, levelled
+from .orientation import box_axes, level_axes
 from .settings import FileSettings
 from .view import View, extents, view
 
@@ -56,7 +56,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
         if not rest.any():
             continue
         solid = float(np.median((seen.highest - seen.lowest)[rest])) > 2 * half
-        hull = spanned(rest)
+        hull = span_mask(rest)
         plan = rest if solid else hull
         beyond = np.pad(flat & ~plan, 2, mode="edge")
         beyond = grown(shrunk(beyond, 1), 1)[2:-2, 2:-2] & ~plan
@@ -74,7 +74,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
     risen = float(np.median((seen.lowest - level)[rest]))
     towards = risen * float(np.median(seen.facing[beyond])) > 0
     if not settings.cut_floor and (land or not (solid or towards)):
-        told = assumed(
+        told = assumption_line(
             "a level plane of {length:.4g} x {width:.4g} that reaches beyond all else in the file "
             "is part of the sole. If it is a floor or a table, cut it with --cut-floor (in a case: "
             "cut_floor = true).",
@@ -106,7 +106,7 @@ def without_floor(mesh: Mesh, settings: FileSettings) -> tuple[Mesh, Array | Non
             **plane,
         )
         if settings.cut_floor
-        else assumed(
+        else assumption_line(
             "a level plane of {length:.4g} x {width:.4g} that reaches beyond all else in the file "
             "was taken as floor and cut ({faces} faces).{lost}",
             **plane,
@@ -153,7 +153,7 @@ def _level_axes(triangles: NDArray[np.float32]) -> Array:
     slope_x, slope_y = (
         -_median(normal[level, n] / normal[level, 2], area[level]) for n in range(2)
     )
-    turned, angle = levelled(axes, (slope_x, slope_y, 0.0))
+    turned, angle = level_axes(axes, (slope_x, slope_y, 0.0))
     return turned if angle > _TILT else axes
 
 

@@ -15,7 +15,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.core.remark import Message
 
-from .mesh import AGAIN, MOST_UNFOLDED, Body, MeshFile, Unmet
+from .mesh import AGAIN, MOST_UNFOLDED, FileBody, MeshFile, Unmet
 
 _LONGEST, _SHORTEST = 2.0, 0.02  # m: what glTF may hold when its metres are meant
 _COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -124,7 +124,7 @@ class _Asset:
 
     def _node(
         self, number: int, place: Array, names: tuple[str, ...], shown: bool, above: tuple[int, ...]
-    ) -> Iterator[Body]:
+    ) -> Iterator[FileBody]:
         if number in above:
             raise self._error(f"its nodes hold each other: {number} is within itself")
         node = self.json["nodes"][number]
@@ -147,7 +147,7 @@ class _Asset:
                         )
                     own = name or str(mesh.get("name", ""))
                     layer = "/".join(filter(None, names))
-                    yield Body(vertices, faces, own, layer, shown, "model", place @ instance)
+                    yield FileBody(vertices, faces, own, layer, shown, "model", place @ instance)
         for child in node.get("children", ()):
             yield from self._node(child, place, (*names, name), shown, (*above, number))
 
@@ -280,7 +280,7 @@ class _Asset:
             )
         return np.fromfile(beside, dtype=np.uint8)
 
-    def _unit(self, bodies: list[Body]) -> tuple[float | None, tuple[Message, ...]]:
+    def _unit(self, bodies: list[FileBody]) -> tuple[float | None, tuple[Message, ...]]:
         with np.errstate(invalid="ignore"):
             corners = [
                 body.vertices.astype(np.float64) @ body.placement[:3, :3].T + body.placement[:3, 3]

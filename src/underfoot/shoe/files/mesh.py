@@ -37,7 +37,7 @@ class Unmet:
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class FileBody:
     """A body as its format describes it.
 
     Parameters:
@@ -93,7 +93,7 @@ class MeshFile:
     """
 
     format: str
-    bodies: Sequence[Body]
+    bodies: Sequence[FileBody]
     unit: float | None = None
     unmet: tuple[Unmet, ...] = ()
     remarks: tuple[Message, ...] = ()
@@ -125,7 +125,7 @@ class Mesh:
     unmet: tuple[Unmet, ...] = ()
 
 
-def assembled(file: MeshFile, where: str) -> Mesh:
+def assemble_mesh(file: MeshFile, where: str) -> Mesh:
     """Return the triangles of what is visible and model in a file, placed.
 
     Raises:
@@ -177,7 +177,7 @@ def assembled(file: MeshFile, where: str) -> Mesh:
     )
 
 
-def _check(body: Body, kind: str, where: str) -> None:
+def _check(body: FileBody, kind: str, where: str) -> None:
     faces, count = body.faces, body.vertices.shape[0]
     if faces is not None and (faces.min() < 0 or faces.max() >= count):
         bad = int(faces.max()) if faces.max() >= count else int(faces.min())
@@ -186,7 +186,7 @@ def _check(body: Body, kind: str, where: str) -> None:
         )
 
 
-def _kinds(left: Iterable[Body]) -> Message:
+def _kinds(left: Iterable[FileBody]) -> Message:
     """Return bodies that are no visible model by what they are, in words."""
     groups: dict[str, list[str]] = {}
     for body in left:
@@ -205,7 +205,7 @@ def _kinds(left: Iterable[Body]) -> Message:
     return Message("{bodies: and }", bodies=words)
 
 
-def _labels(bodies: Sequence[Body]) -> list[str]:
+def _labels(bodies: Sequence[FileBody]) -> list[str]:
     """Return the bodies' labels without the layers that all of them share."""
     layers = [body.layer.split("/") if body.layer else [] for body in bodies]
     common = 0
@@ -218,7 +218,7 @@ def _labels(bodies: Sequence[Body]) -> list[str]:
     ]
 
 
-def _origin(bodies: Sequence[Body], where: str) -> tuple[Array, list[Message]]:
+def _origin(bodies: Sequence[FileBody], where: str) -> tuple[Array, list[Message]]:
     """Return where coordinates count from and a remark where the file holds them coarsely."""
     with np.errstate(over="ignore", invalid="ignore"):
         sampled = []
@@ -249,7 +249,7 @@ def _origin(bodies: Sequence[Body], where: str) -> tuple[Array, list[Message]]:
     return (middle if float(np.abs(middle).max()) > _FAR * size else np.zeros(3)), []
 
 
-def _step(body: Body) -> float:
+def _step(body: FileBody) -> float:
     """Return the step between the numbers that a body's single precision can tell; 0 for double."""
     if body.vertices.dtype != np.float32 or body.vertices.shape[0] == 0:
         return 0.0

@@ -10,7 +10,7 @@ from underfoot.core.arrays import Array, Mask
 from .._kernels.covering_discs import local_width
 from .._kernels.regions import pieces, without_holes
 from ..tread_measures import WIDEST_CHANNEL
-from .carriers import spanned
+from .carriers import span_mask
 from .mesh import Unmet
 from .view import Soundness
 
@@ -110,7 +110,7 @@ def check_carried(
     if np.count_nonzero(land) < _ALL_LAND * np.count_nonzero(inside):
         return
     _, parts = pieces(inside, diagonal=True)
-    gaps = spanned(inside) & ~inside
+    gaps = span_mask(inside) & ~inside
     if parts < _SEVERAL or not gaps.any():
         return
     narrow = gaps & (local_width(gaps, spacing) < WIDEST_CHANNEL)

@@ -195,7 +195,7 @@ def _extents(points: Array, angles: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class AxisDecision:
     """A decision: its sign (1 keep, -1 turn), how it was made ("" when stated by the user; no full
     stop), and whether that is a guess.
     """
@@ -205,7 +205,7 @@ class Choice:
     assumed: bool = False
 
 
-def ground_side(seen: View, settings: FileSettings) -> Choice:
+def ground_side(seen: View, settings: FileSettings) -> AxisDecision:
     """Return whether the ground is below the view (1) or above it (-1).
 
     In turn: the side the user names; the side with more channels (by area, narrower than 50 mm, 0.3
@@ -213,14 +213,16 @@ def ground_side(seen: View, settings: FileSettings) -> Choice:
     surface without thickness the side its normals point to; else the file's own lower side.
     """
     if settings.down in DIRECTIONS:
-        return Choice(-1, Message(""))
+        return AxisDecision(-1, Message(""))
     choice = _ground_side(seen)
     if settings.down == "flip":
-        return Choice(-choice.sign, Message("Ground side: turned over by the option down = flip"))
+        return AxisDecision(
+            -choice.sign, Message("Ground side: turned over by the option down = flip")
+        )
     return choice
 
 
-def _ground_side(seen: View) -> Choice:
+def _ground_side(seen: View) -> AxisDecision:
     below, above = seen.lowest, -seen.highest
     covered = seen.covered
     thin = np.median((seen.highest - seen.lowest)[covered]) < _SHEET
@@ -231,7 +233,7 @@ def _ground_side(seen: View) -> Choice:
         most, least = max(shares), min(shares)
         if most > _TREAD_SHARE and most > _TREAD_RATIO * least:
             sign = 1 if shares[0] > shares[1] else -1
-            return Choice(
+            return AxisDecision(
                 sign,
                 Message(
                     "Ground side: determined from the tread, channels over {most:.0%} of it, "
@@ -242,11 +244,11 @@ def _ground_side(seen: View) -> Choice:
             )
     if abs(rise) > _RIM_RISE:
         remark = Message("Ground side: determined from the rim, which turns up from the floor")
-        return Choice(1 if rise > 0 else -1, remark)
+        return AxisDecision(1 if rise > 0 else -1, remark)
     if thin and abs(turned - 0.5) > 0.25:
         remark = Message("Ground side: the side to which the normals of the scan point")
-        return Choice(1 if turned < 0.5 else -1, remark)
-    return Choice(
+        return AxisDecision(1 if turned < 0.5 else -1, remark)
+    return AxisDecision(
         1 if _file_side(seen) else -1,
         Message("the ground side is the lower one of the file; both sides look alike"),
         assumed=True,
@@ -282,7 +284,7 @@ def _rim_rise(height: Array) -> float:
     return float(np.percentile(height[ring], 20) - np.percentile(height[core], 20))
 
 
-def toe_end(plan: Mask, spacing: float, settings: FileSettings) -> Choice:
+def toe_end(plan: Mask, spacing: float, settings: FileSettings) -> AxisDecision:
     """Return whether the toe is at the far end of axis 0 (1) or at the near one (-1).
 
     The toe side of a whole sole is the heavier one: the forepart is broader, so the area's centroid
@@ -293,14 +295,14 @@ def toe_end(plan: Mask, spacing: float, settings: FileSettings) -> Choice:
         plan: The plan form on cells of ``spacing`` (m).
     """
     if settings.forward in DIRECTIONS:
-        return Choice(1, Message(""))
+        return AxisDecision(1, Message(""))
     choice = _toe_end(plan, spacing)
     if settings.forward == "flip":
-        return Choice(-choice.sign, Message("Heel end: swapped by the option forward = flip"))
+        return AxisDecision(-choice.sign, Message("Heel end: swapped by the option forward = flip"))
     return choice
 
 
-def _toe_end(plan: Mask, spacing: float) -> Choice:
+def _toe_end(plan: Mask, spacing: float) -> AxisDecision:
     length, width = (np.ptp(np.nonzero(plan)[n]) * spacing for n in (0, 1))
     cut = cut_ends(plan, 0, spacing)
     offset = off_centre(plan, 0)
@@ -316,9 +318,9 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
             length=length * 1e3,
             width=width * 1e3,
         )
-        return Choice(1 if cut[0] == forepart else -1, told, True)
+        return AxisDecision(1 if cut[0] == forepart else -1, told, True)
     if abs(offset) < OFF_CENTRE or all(cut):
-        return Choice(
+        return AxisDecision(
             1 if offset >= 0 else -1,
             Message(
                 'which end is the heel; both look alike; forward = "flip" (--forward flip) '
@@ -326,7 +328,7 @@ def _toe_end(plan: Mask, spacing: float) -> Choice:
             ),
             True,
         )
-    return Choice(
+    return AxisDecision(
         1 if offset > 0 else -1,
         Message("Heel end: determined from the plan form, which is rounder or narrower there"),
     )
@@ -430,7 +432,9 @@ def standing_share(height: Array, spacing: float) -> float:
     return float(np.count_nonzero(inside & (above < _NEAR_FLOOR)) / np.count_nonzero(inside))
 
 
-def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> tuple[Array, Choice]:
+def standing_axes(
+    triangles: NDArray[np.float32], axes: Array, unit: float
+) -> tuple[Array, AxisDecision]:
     """Return the frame in which a body too tall for a sole stands best, the ground below it.
 
     A shoe with its upper or last in one piece: of the four sides along the shoe the one with most
@@ -455,8 +459,8 @@ def standing_axes(triangles: NDArray[np.float32], axes: Array, unit: float) -> t
             "Ground side: the side that stands flat, {share:.0%} of it on the floor",
             share=shares[order[0]],
         )
-        return best, Choice(1, told)
-    return best, Choice(1, Message("the ground side is the one that stands flattest"), True)
+        return best, AxisDecision(1, told)
+    return best, AxisDecision(1, Message("the ground side is the one that stands flattest"), True)
 
 
 LEVEL = math.radians(0.05)
@@ -600,7 +604,7 @@ def _low_points(height: Array, spacing: float) -> Array:
     return np.asarray(np.column_stack([*places, low]), dtype=np.float64)
 
 
-def levelled(axes: Array, plane: tuple[float, float, float]) -> tuple[Array, float]:
+def level_axes(axes: Array, plane: tuple[float, float, float]) -> tuple[Array, float]:
     """Return the axes turned so that the plane is level, and the angle of the turn, rad."""
     slope_x, slope_y, _ = plane
     up = np.array([-slope_x, -slope_y, 1.0])

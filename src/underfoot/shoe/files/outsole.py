@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError
 from underfoot.core.arrays import Array
-from underfoot.core.remark import ASSUMED, Message, Remark, assumed
+from underfoot.core.remark import ASSUMED, Message, Remark, assumption_line
 
-from ..geometry import SoleSurface, centred
+from ..geometry import SoleSurface, centred_places
 from ..tread_measures import (
     QUIET,
     WIDEST_CHANNEL,
@@ -24,7 +24,7 @@ from ..tread_measures import (
 )
 from . import orientation
 from .bodies import Found, found_outsole
-from .cleaning import cleaned, plan_outline, without_ledges
+from .cleaning import clean_height_map, plan_outline, without_ledges
 from .draft import wall_draft
 from .edges import lug_lines, rim_lines
 from .mesh import Mesh
@@ -147,7 +147,7 @@ def _outsole(
     lag = _lag(mesh.triangles, unit, chosen.spacing)
     axes, side_remarks, alike = _sides(mesh, axes, unit, chosen, told)
     seen, axes, level_remarks = _level_view(mesh, axes, chosen.spacing, askew)
-    height, repaired = cleaned(seen.lowest, seen.spacing)
+    height, repaired = clean_height_map(seen.lowest, seen.spacing)
     whole = height
     rows, columns = (np.nonzero(np.isfinite(height).any(axis=n))[0] for n in (1, 0))
     part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
@@ -234,7 +234,7 @@ def _sides(
     low, high = extents(mesh.triangles, axes * unit)
     ground = None
     if told.down is not None:
-        ground = orientation.Choice(-1, told.ground, told.ground_assumed)
+        ground = orientation.AxisDecision(-1, told.ground, told.ground_assumed)
     elif chosen.down == "auto" and high[2] - low[2] > TALL * (high[1] - low[1]):
         axes, ground = orientation.standing_axes(mesh.triangles, axes, unit)
         low, high = extents(mesh.triangles, axes * unit)
@@ -286,9 +286,9 @@ def _level_view(
     total = askew
     remarks: list[Message] = []
     for _ in range(3):
-        height, _ = cleaned(seen.lowest, spacing)
+        height, _ = clean_height_map(seen.lowest, spacing)
         plane = orientation.resting_plane(height, spacing)
-        turned, angle = orientation.levelled(axes, plane)
+        turned, angle = orientation.level_axes(axes, plane)
         if angle < orientation.LEVEL:
             break
         if angle > _MOST_TURN and not orientation.broad_rest(height, spacing, plane):
@@ -302,7 +302,7 @@ def _level_view(
         total += angle
         axes = turned
         seen = view(mesh.triangles, axes, spacing)
-    height, _ = cleaned(seen.lowest, spacing)
+    height, _ = clean_height_map(seen.lowest, spacing)
     if total > 0:
         turn, other = math.degrees(total), orientation.other_rest(height, spacing)
         if other is None:
@@ -316,7 +316,7 @@ def _level_view(
         else:  # a file that lies level says itself which of them is the floor's
             share, angle = other
             remarks.append(
-                assumed(
+                assumption_line(
                     "turned by {turn:.2g}° so that it rests on its lowest lugs; a face of "
                     "{share:.0%} of it, {angle:.2g}° off, could stand on the floor as well. Lay "
                     "the file level in CAD to choose.",
@@ -397,7 +397,7 @@ def _surface(
         tread = tread_map(height, spacing, channels=cut_open, lag=lag)
     inside = np.isfinite(height)
     x = (np.arange(height.shape[0], dtype=np.float64) + 0.5) * spacing
-    y = centred(height.shape[1], spacing)
+    y = centred_places(height.shape[1], spacing)
     remarks.append(
         Message(
             "Land is what stands within {height:.2g} mm of the floor side; channels are deeper.",

@@ -8,8 +8,8 @@ import numpy as np
 from underfoot.core import DataError
 
 from .gltf import strip_faces
-from .mesh import AGAIN, Body, MeshFile
-from .polygons import triangulated
+from .mesh import AGAIN, FileBody, MeshFile
+from .polygons import triangulate_polygons
 from .text_meshes import _without_faces
 
 _TYPES = {
@@ -76,7 +76,7 @@ def read_ply(path: Path) -> MeshFile:
             continue
         counts = own["\0counts"]
         if not strips:
-            faces.append(triangulated(doubles, counts, corners, "PLY", where))
+            faces.append(triangulate_polygons(doubles, counts, corners, "PLY", where))
             continue
         for strip in np.split(corners, np.cumsum(counts)[:-1]):
             for piece in np.split(strip, np.flatnonzero(strip < 0)):
@@ -85,7 +85,7 @@ def read_ply(path: Path) -> MeshFile:
     triangles = np.concatenate(faces)
     if triangles.shape[0] == 0:
         raise _without_faces("PLY", f"{vertices.shape[0]} points and no faces", where)
-    return MeshFile("PLY", [Body(vertices, triangles)])
+    return MeshFile("PLY", [FileBody(vertices, triangles)])
 
 
 def _heading(data: bytes, where: str) -> tuple[str, list[_Element], int]:

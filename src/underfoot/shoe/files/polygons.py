@@ -15,7 +15,7 @@ _NO_WIDTH = 1e-12  # of the length: all corners lie on a line
 _SAME_AREA = 1e-6
 
 
-def triangulated(
+def triangulate_polygons(
     vertices: Array, counts: Ints, corners: Ints, kind: str, where: str
 ) -> NDArray[np.int64]:
     """Return triangles (n, 3) of polygons; those of fewer than three corners are left out.

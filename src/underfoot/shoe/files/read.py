@@ -13,13 +13,13 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match
 from underfoot.core.optional import optional_module
-from underfoot.core.registry import offered
+from underfoot.core.registry import find_offer
 from underfoot.core.remark import Message
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from .cad import read_cad
 from .gltf import read_gltf
-from .mesh import AGAIN, Mesh, MeshFile, assembled
+from .mesh import AGAIN, Mesh, MeshFile, assemble_mesh
 from .ply import read_ply
 from .rhino import read_rhino
 from .stl import looks_like_stl, read_stl
@@ -99,7 +99,7 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
         return _of_text(path, unit)
     optional_module("numba", "cad", "Reading a sole from a file")
     ending = path.suffix.lower()
-    if ending not in SUFFIXES and (reader := offered("outsole_readers", ending[1:])):
+    if ending not in SUFFIXES and (reader := find_offer("outsole_readers", ending[1:])):
         return reader(path)
     promised = SUFFIXES.get(ending)
     content = _format_of(head, path)
@@ -140,7 +140,7 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
 
 def _of_text(path: Path, unit: str) -> Mesh:
     """Return the triangles of a text file with a byte-order mark, as shells of Windows write it."""
-    text = decoded(path.read_bytes(), str(path), AGAIN)
+    text = decode_text(path.read_bytes(), str(path), AGAIN)
     with TemporaryDirectory() as folder:
         plain = Path(folder, path.name)
         plain.write_text(text, encoding="utf-8")
@@ -150,7 +150,7 @@ def _of_text(path: Path, unit: str) -> Mesh:
 def _read(path: Path, content: str, unit: str) -> Mesh:
     if content in ("STEP", "IGES", "BREP"):
         return read_cad(path, content, unit)
-    return assembled(_MESHES[content](path), str(path))
+    return assemble_mesh(_MESHES[content](path), str(path))
 
 
 def _head(path: Path) -> bytes:

@@ -11,7 +11,7 @@ from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
-from .mesh import MOST_UNFOLDED, Body, MeshFile, Unmet
+from .mesh import MOST_UNFOLDED, FileBody, MeshFile, Unmet
 
 _UNITS = {
     "Angstroms": 1e-10,
@@ -86,7 +86,7 @@ class _Reader:
 
     def bodies(
         self, item: Any, place: Array, within: str, shown: bool, above: tuple[str, ...]
-    ) -> Iterator[Body]:
+    ) -> Iterator[FileBody]:
         """Yield the bodies of an object or of the members of a block, placed.
 
         Parameters:
@@ -112,11 +112,11 @@ class _Reader:
                     where=self.where,
                     remedy="Export the outsole alone, once",
                 )
-            yield Body(corners, faces, name or within, layer, shown, "model", place)
+            yield FileBody(corners, faces, name or within, layer, shown, "model", place)
 
     def _members(
         self, reference: Any, place: Array, within: str, shown: bool, above: tuple[str, ...]
-    ) -> Iterator[Body]:
+    ) -> Iterator[FileBody]:
         identity = str(reference.ParentIdefId)
         if identity in above:
             raise DataError(

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import InputError, unknown_name
-from underfoot.core.remark import Message, assumed
+from underfoot.core.remark import Message, assumption_line
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
 """Units of length a file may be in, m."""
@@ -151,7 +151,7 @@ def length_unit(
     if len(likely) > 1:
         size = _length(length * UNITS[likely[1]])
         other = Message(" It could also be {unit} ({length}).", unit=likely[1], length=size)
-    return UNITS[name], assumed(
+    return UNITS[name], assumption_line(
         "unit {unit} (the file states none); length {length}, that of a {kind}.{other}",
         unit=name,
         length=_length(metres),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from underfoot.core import DataError
 from underfoot.core.remark import Message
 
-from .mesh import Body, Mesh, MeshFile
+from .mesh import FileBody, Mesh, MeshFile
 from .view import soundness
 
 _HEADER, _RECORD = 84, 50
@@ -77,7 +77,7 @@ def _is_binary(head: bytes, promised: int, spare: int) -> bool:
 def _binary(path: Path, count: int, remarks: tuple[Message, ...] = ()) -> MeshFile:
     records = np.fromfile(path, dtype=_FACET, count=count, offset=_HEADER)
     corners = np.ascontiguousarray(records["corners"], dtype=np.float32)
-    return MeshFile("STL (binary)", [Body(corners.reshape(-1, 3))], remarks=remarks)
+    return MeshFile("STL (binary)", [FileBody(corners.reshape(-1, 3))], remarks=remarks)
 
 
 def _text(path: Path) -> MeshFile:
@@ -122,7 +122,7 @@ def _text(path: Path) -> MeshFile:
     return MeshFile("STL (text)", _solids(data, numbers), remarks=remarks)
 
 
-def _solids(data: bytes, corners: NDArray[np.float64]) -> list[Body]:
+def _solids(data: bytes, corners: NDArray[np.float64]) -> list[FileBody]:
     """Return a body for each solid of a text STL, named as its first line says."""
     bodies, done = [], 0
     begins = list(_SOLID.finditer(data))
@@ -133,10 +133,10 @@ def _solids(data: bytes, corners: NDArray[np.float64]) -> list[Body]:
         else:
             count = 3 * len(re.findall(rb"\bendfacet\b", data[begin.end() : end], re.IGNORECASE))
         name = begin[1].decode("utf-8", "replace").strip()
-        bodies.append(Body(corners[done : done + count], name=name))
+        bodies.append(FileBody(corners[done : done + count], name=name))
         done += count
     if len(bodies) == 1:  # programs write their own name there, or the file's
-        return [Body(corners)]
+        return [FileBody(corners)]
     return bodies
 
 

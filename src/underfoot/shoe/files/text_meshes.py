@@ -10,8 +10,8 @@ from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.remark import Message
 
-from .mesh import AGAIN, Body, MeshFile, Unmet
-from .polygons import triangulated
+from .mesh import AGAIN, FileBody, MeshFile, Unmet
+from .polygons import triangulate_polygons
 
 OBJ_WORDS = frozenset(
     b"v vt vn vp f fo l p o g s mg mtllib usemtl maplib usemap lod bevel c_interp d_interp "
@@ -100,9 +100,9 @@ def read_obj(path: Path) -> MeshFile:
     for n, (o, g) in enumerate(names):
         mine = owner_of == n if len(names) > 1 else np.ones(len(owners), dtype=bool)
         own = corners if mine.all() else corners[np.repeat(mine, counts)]
-        made = triangulated(vertices, counts[mine], own, "OBJ", where)
+        made = triangulate_polygons(vertices, counts[mine], own, "OBJ", where)
         layer, name = (o, g) if o and g else ("", o or g)
-        bodies.append(Body(vertices, made, name, layer))
+        bodies.append(FileBody(vertices, made, name, layer))
     remarks = ()
     if unknown:
         few = ", ".join(sorted(unknown)[:4])
@@ -214,4 +214,6 @@ def read_off(path: Path) -> MeshFile:
         raise _without_faces("OFF", f"{vertex_count} points and no faces", where)
     if kind[4]:
         points = points[:, :3] / points[:, 3:]
-    return MeshFile("OFF", [Body(points, triangulated(points, counts, flat, "OFF", where))])
+    return MeshFile(
+        "OFF", [FileBody(points, triangulate_polygons(points, counts, flat, "OFF", where))]
+    )

@@ -16,7 +16,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 
 from .._kernels.elements import COMPLETE, MISSING, NO_NUMBER, OTHER, element_numbers
-from .mesh import AGAIN, MOST_UNFOLDED, Body, Kind, MeshFile, Unmet
+from .mesh import AGAIN, MOST_UNFOLDED, FileBody, Kind, MeshFile, Unmet
 
 MOST_INFLATED = 1e9
 """Bytes of the parts that are read, unpacked: a 3MF of 12 million faces."""
@@ -146,7 +146,7 @@ class _Package:
             raise self._error("the 3MF file has no build section, which says what is made")
         if not items:
             raise self._error("the build section of the 3MF file is empty: nothing is to be made")
-        bodies: list[Body] = []
+        bodies: list[FileBody] = []
         asked = [(self._key(item, start, "item"), item) for item in items]
         if sum(self._count(key, ()) for key, _ in asked) > MOST_UNFOLDED:
             raise self._error(
@@ -420,7 +420,7 @@ class _Package:
         kind: Kind | None,
         shown: bool,
         volumes: tuple[_Volume, ...],
-    ) -> Iterator[Body]:
+    ) -> Iterator[FileBody]:
         """Yield the meshes of an object, placed; what is held by a support is a support."""
         each = self._of(key)
         kind = each.kind if kind == "model" else kind
@@ -449,12 +449,12 @@ class _Package:
     def _body(
         self, each: _Object, faces: np.ndarray, name: str, layer: str, kind: Kind | None,
         shown: bool, place: Array,
-    ) -> Body:  # fmt: skip
+    ) -> FileBody:  # fmt: skip
         if kind is None:
             if shown:
                 self._unmet(f'{_SUBTRACTED} ("{name or layer}")', required=True)
             kind = "modifier"
-        return Body(each.vertices, faces, name, layer, shown, kind, place)
+        return FileBody(each.vertices, faces, name, layer, shown, kind, place)
 
     def _volumes(self) -> tuple[dict[str, tuple[_Volume, ...]], set[str]]:
         """Return what slicers say of the volumes of objects, by id, and which are hidden."""

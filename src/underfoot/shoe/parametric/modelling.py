@@ -216,7 +216,7 @@ def rim_face(arcs: Array, height: float) -> Any:
     return kernel().Face(kernel().Wire(edges))
 
 
-def raised(face: Any, height: float) -> Any:
+def raise_face(face: Any, height: float) -> Any:
     """Return the prism of a face up by ``height`` (m)."""
     return face.Extrude(height * MM * kernel().Z)
 

@@ -17,7 +17,9 @@ LONGEST = 120.0
 """s, after which the attempt is given up."""
 
 
-def rounded(body: Any, edges: Sequence[int], radius: float, *, chamfer: bool = False) -> Any | None:
+def round_edges(
+    body: Any, edges: Sequence[int], radius: float, *, chamfer: bool = False
+) -> Any | None:
     """Return the body with fillets of ``radius`` (m) on the edges of these indices.
 
     ``chamfer``: flat at 45 degrees instead, of that width.

@@ -8,7 +8,7 @@ import numpy as np
 
 from underfoot.core.arrays import Array
 
-from ..shape import Facet, Profile, Rocker, SoleShape
+from ..shape import Facet, HeelProfile, Rocker, SoleShape
 from .modelling import MM, kernel
 from .sole import SoleProfile, ToeSpring
 
@@ -53,7 +53,7 @@ def break_points(shape: SoleShape) -> list[float]:
 def land_profile(shape: SoleShape, x: Array) -> Array:
     """Return the profile (m) at x, each curve carried on beyond the ends of the sole.
 
-    ``Profile.height`` holds its last height there, which would put a kink on the rim itself.
+    ``HeelProfile.height`` holds its last height there, which would put a kink on the rim itself.
     """
     rear, toe = _parts(shape)
     height = rear.height(x)
@@ -66,7 +66,7 @@ def land_profile(shape: SoleShape, x: Array) -> Array:
     return height
 
 
-def _parts(shape: SoleShape) -> tuple[Profile, ToeSpring | None]:
+def _parts(shape: SoleShape) -> tuple[HeelProfile, ToeSpring | None]:
     profile = shape.profile
     if isinstance(profile, SoleProfile):
         return profile.rear, profile.toe

@@ -8,7 +8,7 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
-from ..shape import Flat, Profile, SoleShape, SoleWear, check_depths
+from ..shape import Flat, HeelProfile, SoleShape, SoleWear, check_depths
 from ..tread import ArcChannel, Tread
 
 SIDES = ("left", "right")
@@ -133,7 +133,7 @@ class ToeSpring:
 class SoleProfile:
     """The rear's profile and the toe spring together."""
 
-    rear: Profile
+    rear: HeelProfile
     toe: ToeSpring | None = None
 
     def height(self, x: Array) -> Array:
@@ -156,7 +156,7 @@ class WholeSole(SoleShape):
 
     outline: ShoeOutline
     outsole_thickness: float
-    rear_profile: Profile = field(default_factory=Flat)
+    rear_profile: HeelProfile = field(default_factory=Flat)
     toe_spring: ToeSpring | None = None
     edge_radius: float = 0.0
     crown_radius: float | None = None
@@ -165,7 +165,7 @@ class WholeSole(SoleShape):
     wear: SoleWear | None = None
     length: float = field(init=False)
     width: float = field(init=False)
-    profile: Profile = field(init=False)
+    profile: HeelProfile = field(init=False)
 
     def __post_init__(self) -> None:
         width = max(self.outline.ball_width, self.outline.heel_width)

@@ -24,7 +24,7 @@ from .modelling import (
     lug_outlines,
     outline_wire,
     plate_with_holes,
-    raised,
+    raise_face,
     rim_face,
     slit_outlines,
 )
@@ -62,7 +62,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     """
     check_printable(shape)
     remarks: list[str] = []
-    body = slab(shape) * raised(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
+    body = slab(shape) * raise_face(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
     if shape.edge_radius > 0:
         rim = [i for i, edge in enumerate(body.edges) if _on_lower_rim(edge, shape)]
         body = _rounded(body, rim, shape.edge_radius, "the lower rim", remarks)
@@ -71,7 +71,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     if tread is not None and tread.depth > 0:
         lugs = lug_outlines(shape, tread)
         plate = plate_with_holes(lugs, -_BELOW)
-        body = body - raised(plate, 0.3) * _layer(lower, tread.depth)
+        body = body - raise_face(plate, 0.3) * _layer(lower, tread.depth)
         hollows = hollow_outlines(lugs, tread)
         if hollows:
             body = body - _prisms(hollows) * _layer(lower, tread.depth)
@@ -146,7 +146,7 @@ def _layer(lower: Any, depth: float) -> Any:
 
 def _prisms(outlines: Sequence[Outline]) -> Any:
     return kernel().Compound(
-        [raised(kernel().Face(outline_wire(outline, -_BELOW)), 0.3) for outline in outlines]
+        [raise_face(kernel().Face(outline_wire(outline, -_BELOW)), 0.3) for outline in outlines]
     )
 
 
@@ -162,7 +162,7 @@ def _half_ring(channel: ArcChannel) -> Any:
             )
         )
 
-    return raised(closed(outer), 0.3) - raised(closed(inner), 0.3)
+    return raise_face(closed(outer), 0.3) - raise_face(closed(inner), 0.3)
 
 
 def _rounded(
@@ -175,9 +175,9 @@ def _rounded(
     chamfer: bool = False,
 ) -> Any:
     """Return the body with fillets; where the kernel cannot make them the edges stay sharp."""
-    from .rounding import rounded  # also run as a program of its own
+    from .rounding import round_edges  # also run as a program of its own
 
-    filleted = rounded(body, edges, radius, chamfer=chamfer)
+    filleted = round_edges(body, edges, radius, chamfer=chamfer)
     if filleted is None:
         remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
         return body

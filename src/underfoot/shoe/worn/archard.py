@@ -11,7 +11,7 @@ from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
 
 from .._kernels.regions import nearest_true
-from ..geometry import SoleMap, centred
+from ..geometry import SoleMap, centred_places
 from ..shape import SoleShape
 from .forms import WornMap
 
@@ -70,7 +70,7 @@ def archard_wear(
     if not angles:
         raise InputError("no angle", where="wear.angle", allowed="at least one shoe angle")
     x = (np.arange(math.ceil(shape.length / spacing), dtype=np.float64) + 0.5) * spacing
-    y = centred(math.ceil(shape.width / spacing), spacing)
+    y = centred_places(math.ceil(shape.width / spacing), spacing)
     state = begin or ArchardStep(WornMap(x, y, np.zeros((x.size, y.size))), 0.0)
     while state.worn.depth < depth * (1 - 1e-6):
         progress("Wearing the sole", state.worn.depth / depth)

@@ -8,7 +8,7 @@ import numpy as np
 from underfoot.core.arrays import Array
 
 from ..geometry import SoleSurface
-from ..shape import SoleShape, SoleWear, WearOnSole, fitted
+from ..shape import SoleShape, SoleWear, WearOnSole, fit_wear
 
 
 def worn_surface(surface: SoleSurface, wear: SoleWear | WearOnSole) -> SoleSurface:
@@ -24,7 +24,7 @@ def worn_surface(surface: SoleSurface, wear: SoleWear | WearOnSole) -> SoleSurfa
     known = np.where(np.isfinite(base), base, 0.0)
     shape = cast(SoleShape, _Extent(surface, known))
     x, y = np.meshgrid(surface.x, surface.y, indexing="ij")
-    worn = fitted(wear, shape).worn_height(x, y, known, shape)
+    worn = fit_wear(wear, shape).worn_height(x, y, known, shape)
     inside = surface.inside
     height = np.where(inside, np.maximum(surface.height, worn), np.nan)
     # what stood over the land (texture, rounded edges) is gone where the wear is deeper

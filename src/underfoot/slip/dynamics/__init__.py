@@ -1,5 +1,7 @@
 """The slip as it happens: the foot as a mass, contact and film carried in time, a population."""
 
+from underfoot.core.deprecation import package_names
+
 from .full_model import FullRun as FullRun
 from .full_model import Setting as Setting
 from .full_model import SoleFoot as SoleFoot
@@ -15,8 +17,8 @@ from .motion import slip_motion as slip_motion
 from .observation import ObservedSlip as ObservedSlip
 from .observation import Outcome as Outcome
 from .observation import OutcomeLimits as OutcomeLimits
-from .observation import judged as judged
-from .observation import observed as observed
+from .observation import judge_slip as judge_slip
+from .observation import observe_slip as observe_slip
 from .recorded import recorded_histories as recorded_histories
 from .recorded import step_history as step_history
 from .reduced_model import FitError as FitError
@@ -38,3 +40,5 @@ from .study import slip_study as slip_study
 from .walker import Population as Population
 from .walker import Spread as Spread
 from .walker import Walker as Walker
+
+__getattr__ = package_names(__name__, gone="0.5", judged="judge_slip", observed="observe_slip")

@@ -13,7 +13,7 @@ import numpy as np
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
-from underfoot.core.text import decoded, existing
+from underfoot.core.text import decode_text, existing
 
 COLUMNS = (
     "time_s",
@@ -148,7 +148,7 @@ def load_history(path: Path | str) -> GaitHistory:
     Columns: time_s, normal_per_body_weight, shear_ratio and, where known, foot_angle_deg and
     heel_velocity_m_per_s.
     """
-    text = decoded(existing(path).read_bytes(), str(path))
+    text = decode_text(existing(path).read_bytes(), str(path))
     return history_from_lines(text.splitlines(), Path(path).stem)
 
 

@@ -75,14 +75,14 @@ def heel_marker(motion: SlipMotion) -> tuple[Array, Array]:
     return frames, np.column_stack([x, np.zeros(frames.size), z])
 
 
-def judged(motion: SlipMotion) -> Slip:
+def judge_slip(motion: SlipMotion) -> Slip:
     """Return the slip as ``trials.slip`` finds it in the simulated heel marker."""
     frames, positions = heel_marker(motion)
     marker = Marker(positions, RATE, start=float(frames[0]), note="simulated")
     return slip(marker, 0.0, up=UP, walking=WALK)
 
 
-def observed(
+def observe_slip(
     motion: SlipMotion,
     pressures: Array | None,
     array: FloorSensors,
@@ -97,7 +97,7 @@ def observed(
     taken by ``trials.pressure_pulse``.
     """
     limits = limits or OutcomeLimits()
-    recorded = judged(motion)
+    recorded = judge_slip(motion)
     peak = recorded.peak_speed.value
     flags = tuple(flag.message for flag in recorded.peak_speed.flags)
     if peak is None:

@@ -224,7 +224,7 @@ class ReducedSole:
         mass: float,
         over: float,
     ) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array, int]:
-        return kernel.carried(
+        return kernel.carry_slip(
             times,
             normals,
             drives,

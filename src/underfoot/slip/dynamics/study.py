@@ -24,7 +24,7 @@ from underfoot.friction import FrictionLaw, sampled_points
 
 from .full_model import ROOM, FullRun, Setting, full_runs
 from .motion import COLUMNS, STEP, SlipMotion
-from .observation import ObservedSlip, Outcome, OutcomeLimits, observed
+from .observation import ObservedSlip, Outcome, OutcomeLimits, observe_slip
 from .reduced_model import (
     NAMES,
     SPEED_SCALE,
@@ -429,7 +429,7 @@ def _subject(
     limits: OutcomeLimits | None,
     seed: int,
 ) -> SubjectSlip:
-    seen = observed(motion, pressures, array, limits=limits, seed=seed)
+    seen = observe_slip(motion, pressures, array, limits=limits, seed=seed)
     return SubjectSlip(motion.walker, motion, pressures, seen)
 
 

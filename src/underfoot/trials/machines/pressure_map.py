@@ -11,7 +11,7 @@ from underfoot.core.remark import Message
 
 from ..recording.axes import Axes, axes_of
 from ..recording.measurement import Measurement, remark_of
-from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, saturated
+from ..recording.signals import MARKER_FILTER, LowPass, bridge_gaps, is_saturated, low_passed
 from ..recording.trial import Channel, Marker, Trial
 
 NARROW = 1.5  # spacings; pressure bumps narrower than this can hide between scans
@@ -102,7 +102,7 @@ def pressure_scan(
     if sensor.unit != "Pa":
         raise DataError(f'the pressure is in "{sensor.unit}"', where=where, allowed="Pa")
     up = (axes or axes_of(trial)).up
-    path, filled = bridged(marker.positions, round(0.1 * marker.rate))
+    path, filled = bridge_gaps(marker.positions, round(0.1 * marker.rate))
     seen = np.asarray(np.isfinite(path).all(axis=1))
     if seen.sum() < 30 or not seen[np.flatnonzero(seen)[0] : np.flatnonzero(seen)[-1] + 1].all():
         raise DataError("the shoe's marker is lost during the slip", where=where)
@@ -144,7 +144,7 @@ def pressure_scan(
         )
     rest = sensor.values[quiet] if quiet.sum() >= 10 else np.zeros(1)
     baseline, deviation = float(rest.mean()), float(rest.std())
-    if saturated(sensor.values, sensor.rate):
+    if is_saturated(sensor.values, sensor.rate):
         flags.append(_SATURATED)
     if filled[seen].any():
         flags.append(

@@ -11,7 +11,7 @@ from underfoot.core import DataError, InputError
 from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag, Measurement, remark
-from ..recording.signals import runs, saturated
+from ..recording.signals import is_saturated, runs
 from ..recording.trial import Channel, Trial
 from ..walking.slips import HeelMotion, Slip
 
@@ -131,7 +131,7 @@ def pressure_pulse(
         flags += (
             remark("{count} samples without a number", count=int(np.isnan(values[inside]).sum())),
         )
-    if saturated(values, channel.rate):
+    if is_saturated(values, channel.rate):
         flags += (remark("the sensor is saturated: the peak is a lower bound"),)
     over = np.where(inside, values - mean, np.nan)
     top = int(np.nanargmax(over))

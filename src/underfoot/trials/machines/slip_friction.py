@@ -182,7 +182,7 @@ UNCALIBRATED = Message("no record: the tester's gain is not in the uncertainty")
 """Convention of a COF whose tester has no calibration record."""
 
 
-def calibrated(cof: Measurement, record: TesterCalibration | None) -> Measurement:
+def apply_calibration(cof: Measurement, record: TesterCalibration | None) -> Measurement:
     """Return a COF with the calibration it refers to, and its uncertainty added."""
     if record is None:
         return replace(cof, conventions={**cof.conventions, "calibration": UNCALIBRATED})
@@ -268,7 +268,7 @@ def slide_friction(
         contact = plate.start + int(touched[0]) / plate.rate
         facts["static_contact_time"] = max(onset - contact, 0.0)
     curves = plate.time, normal, shear, ratio
-    return SlideFriction(calibrated(cof, record), *curves, (begin, end), facts, onset, speed)
+    return SlideFriction(apply_calibration(cof, record), *curves, (begin, end), facts, onset, speed)
 
 
 def _sliding(

@@ -12,7 +12,7 @@ import numpy as np
 from underfoot.core.remark import Message
 
 from ..recording.measurement import Flag
-from ..recording.signals import longest_run, runs, unloaded
+from ..recording.signals import longest_run, runs, unloaded_samples
 from ..recording.tester_calibration import TesterCalibration
 from ..recording.trial import Plate
 from ..walking.plausibility import HELD, Limit
@@ -132,7 +132,7 @@ class _Slide:
         self.axis = mean / max(float(np.linalg.norm(mean)), 1e-9)
         self.along = self.shear @ self.axis
         self.loaded = np.nan_to_num(self.normal) > 0.5 * self.level
-        self.rest = unloaded(self.normal, plate.rate)
+        self.rest = unloaded_samples(self.normal, plate.rate)
 
     def _noise(self, values: np.ndarray) -> float:
         """Standard deviation (N) of an unloaded channel without its slow course; 0: unknown."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +49,7 @@ class SheetPage:
     svg: str
 
 
-def contact_sheets(sheet: Sheet) -> Iterator[SheetPage]:
+def contact_sheets(sheet: TileSheet) -> Iterator[SheetPage]:
     """Yield pages of at most 60 tiles, all on the same two scales.
 
     They are written as text: thousands of tiles take seconds, and a browser draws what is opened.
@@ -67,7 +67,7 @@ def contact_sheets(sheet: Sheet) -> Iterator[SheetPage]:
         yield SheetPage(f"sheet_{sheet.kind}_{number}", _page(tiles, sheet, head, legend))
 
 
-def _page(tiles: Sequence[Tile], sheet: Sheet, head: str, legend: str) -> str:
+def _page(tiles: Sequence[Tile], sheet: TileSheet, head: str, legend: str) -> str:
     across = min(_ACROSS, len(tiles))
     down = -(-len(tiles) // across)
     size = np.array(_CELL) * _SIZE
@@ -346,7 +346,7 @@ _TRIAL = {
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class TileSheet:
     """Tiles of a folder on common scales: (file, tile) in order; refused files have no curve."""
 
     kind: str
@@ -357,7 +357,7 @@ class Sheet:
     line: float | None = None
 
 
-def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
+def sheets(files: Sequence[FileResult]) -> Iterator[TileSheet]:
     """Yield the contact sheets of files: steps, heels, slides, runs and holds, where there are."""
     # Curves, title, and the least seconds across and height of the common scales.
     for keys, title, across, up in (
@@ -377,12 +377,12 @@ def sheets(files: Sequence[FileResult]) -> Iterator[Sheet]:
         empty = [
             (
                 result.file,
-                Tile(result.file, result.verdict, *_NO_CURVE, reason=joined(result.reasons)),
+                Tile(result.file, result.verdict, *_NO_CURVE, reason=join_lines(result.reasons)),
             )
             for result in files
             if not result.curves
         ]
-        yield Sheet(
+        yield TileSheet(
             keys[0],
             title,
             (*((file, tile) for file, tile, _ in made), *empty),

@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Any
 
 from underfoot.core import Progress, silent
 from underfoot.core.files import check_writable_folder
-from underfoot.core.html import embedded, environment, png
+from underfoot.core.html import data_address, environment, png
 from underfoot.core.pool import in_processes
 from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
-from underfoot.core.remark import joined
+from underfoot.core.remark import join_lines
 from underfoot.core.text import harmless
 from underfoot.core.units import plain_number
 
@@ -33,8 +33,8 @@ from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figur
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..study import FolderAnalysis, Table
-    from ..study.tables import Column
+    from ..study import FolderAnalysis, TrialTable
+    from ..study.tables import TrialColumn
 
 STORE = ".files"
 _MARK = "analysis.txt"
@@ -126,7 +126,7 @@ def check_report_folder(folder: Path, *, overwrite: bool = False) -> None:
 
 def trials_page(
     analysis: FolderAnalysis,
-    all_tables: Sequence[Table],
+    all_tables: Sequence[TrialTable],
     pictures: list[tuple[TrialFigure, bytes]],
     pages: Sequence[SheetPage] = (),
 ) -> str:
@@ -135,7 +135,7 @@ def trials_page(
     for figure, picture in pictures:
         width = f"{5.3 * figure.figure.get_figwidth():.1f}"
         chapters[figure.chapter].append(
-            {"caption": figure.caption, "source": embedded(picture), "width": width}
+            {"caption": figure.caption, "source": data_address(picture), "width": width}
         )
     tables = {table.name: table for table in all_tables}
     return environment(__package__ or "").get_template("trials.html").render(
@@ -242,19 +242,19 @@ def _counted(number: object, things: str) -> str:
     return f"{number} {things if number != 1 else things[:-1]}"
 
 
-def _places(head: Column) -> int:
+def _places(head: TrialColumn) -> int:
     """Return the decimals of a mean on a page."""
     return 3 if head.decimals is None else head.decimals
 
 
-def _without_conditions(table: Table) -> Table:
+def _without_conditions(table: TrialTable) -> TrialTable:
     """Return the table of files with the columns that a page has room for; files keep all."""
     heads = [*enumerate(table.heads)]
     keep = [i for i, head in heads if head.role is not Role.CONDITION][:9]
     return table.only([i for i, head in heads if i in keep or head.role is Role.LONG])
 
 
-def _compact(table: Table) -> Table:
+def _compact(table: TrialTable) -> TrialTable:
     """Return a table of several quantities with mean, SD and interval of each in one cell."""
     cells = [(head.quantity, head.role) for head in table.heads]
     starts = [
@@ -286,7 +286,7 @@ def _compact(table: Table) -> Table:
     return replace(table, heads=tuple(heads), rows=rows)
 
 
-def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
+def page_table(table: TrialTable, *, limit: int = _LONG) -> dict[str, Any]:
     """Return a table as a page shows it: filled columns, texts, long text below its row, notes."""
     rows = table.rows[:limit]
     # Columns that say nothing in any row are noise on a page; the spreadsheet keeps them.
@@ -299,7 +299,7 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
         "title": table.title,
         "columns": [table.columns[i] for i in filled],
         "rows": [[_shown(row[i], table.heads[i]) for i in filled] for row in rows],
-        "below": [joined(row[i] for i in below if row[i]) for row in rows],
+        "below": [join_lines(row[i] for i in below if row[i]) for row in rows],
         "numbers": [
             all(isinstance(row[i], int | float) or row[i] in (None, "") for row in table.rows)
             for i in filled
@@ -308,7 +308,7 @@ def page_table(table: Table, *, limit: int = _LONG) -> dict[str, Any]:
     }
 
 
-def _shown(value: Any, head: Column) -> str:
+def _shown(value: Any, head: TrialColumn) -> str:
     if value is None or value == "":
         return "–"
     if isinstance(value, str):
@@ -344,7 +344,7 @@ def _svg(figure: Figure, path: Path) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def csv_text(table: Table, cautions: Sequence[str] = ()) -> str:
+def csv_text(table: TrialTable, cautions: Sequence[str] = ()) -> str:
     """Return a table as CSV text: UTF-8, comma, decimal point, full precision.
 
     ``cautions`` of the whole table stand in a last column of their own, so that a table that
@@ -358,7 +358,7 @@ def csv_text(table: Table, cautions: Sequence[str] = ()) -> str:
     return stream.getvalue()
 
 
-def write_spreadsheet(tables: Sequence[Table], methods: Sequence[str], path: Path) -> None:
+def write_spreadsheet(tables: Sequence[TrialTable], methods: Sequence[str], path: Path) -> None:
     """Write all tables into one XLSX file, one sheet each, and the methods text on the first."""
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell

@@ -4,10 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from underfoot.core import DataError, UnderfootError
-from underfoot.core.registry import offered
+from underfoot.core.deprecation import package_names
+from underfoot.core.registry import find_offer
 
 from ..recording.trial import Trial, file_checksum
-from .draft import Draft
+from .draft import RecordingDraft
 from .file_bytes import FileBytes
 from .formats import (
     C3D,
@@ -18,15 +19,15 @@ from .formats import (
     nearest_format,
     trial_suffixes,
 )
-from .profile import PlateColumns, Profile, profile_from, read_profile, with_channels
+from .profile import PlateColumns, TrialsProfile, profile_from, read_profile, with_channels
 from .sheet import Sheet, read_sheet
 
 __all__ = [
     "READERS",
     "PlateColumns",
-    "Profile",
     "Sheet",
     "TrialReader",
+    "TrialsProfile",
     "file_format",
     "nearest_format",
     "profile_from",
@@ -43,14 +44,17 @@ _LONG = 64_000_000  # bytes, above which a file is not held beside what was read
 
 
 def read_trials(
-    path: Path | str, profile: Profile | Path | str | None = None, *, subtract_baseline: bool = True
+    path: Path | str,
+    profile: TrialsProfile | Path | str | None = None,
+    *,
+    subtract_baseline: bool = True,
 ) -> tuple[Trial, ...]:
     """Return the trials in a measurement file; most files hold one, tribometer logs one a step.
 
     Understood are the formats of ``READERS`` (C3D, TRC, MOT/STO, exports of Cortex, BioWare,
     Qualisys, Vicon and others), CSV, XLSX and XLS.
 
-    ``profile``: what the columns, axes and heels are called: a ``Profile`` or a TOML file.
+    ``profile``: what the columns, axes and heels are called: a ``TrialsProfile`` or a TOML file.
     ``subtract_baseline``: subtract the mean force of the unloaded samples from each plate.
 
     DataError: the file can't be read as any of these, with the reason. InputError: the profile is
@@ -58,18 +62,18 @@ def read_trials(
     """
     path = Path(path)
     if profile is None:
-        profile = Profile()
-    elif not isinstance(profile, Profile):
+        profile = TrialsProfile()
+    elif not isinstance(profile, TrialsProfile):
         profile = read_profile(Path(profile))
     ending = path.suffix.casefold()
     data, file = _content(path, in_parts=ending in C3D.suffixes)
-    reader = None if ending in trial_suffixes() else offered("trial_readers", ending[1:])
+    reader = None if ending in trial_suffixes() else find_offer("trial_readers", ending[1:])
     if reader is None:
         kind = file_format(data, path)
         reader = (TABLE if kind.name == "BioWare" and profile.plates else kind).function
     subtracted = subtract_baseline and profile.subtract_baseline
     try:
-        draft = Draft(data, path.name, profile, subtracted, file=file)
+        draft = RecordingDraft(data, path.name, profile, subtracted, file=file)
         trials = reader(draft)
     except UnderfootError as error:
         error.where = error.where or path.name
@@ -101,7 +105,7 @@ def read_trials(
 
 def read_trial(
     path: Path | str,
-    profile: Profile | Path | str | None = None,
+    profile: TrialsProfile | Path | str | None = None,
     *,
     step: int | None = None,
     subtract_baseline: bool = True,
@@ -134,3 +138,6 @@ def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
     if not data:
         raise DataError("empty", where=path.name)
     return data, None
+
+
+__getattr__ = package_names(__name__, gone="0.5", Draft="RecordingDraft", Profile="TrialsProfile")

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
-from .draft import Draft
+from .draft import RecordingDraft
 from .sheet import sheet_from
 
 _MAIN = struct.Struct("<4i100s12s12sdds3xid7id4xi150s200s150s150s100s2xi")
@@ -14,7 +14,7 @@ _INSTRUMENT = struct.Struct("<3i20s5i5f32f" + 32 * "h2x" + "16f3f96f5f32ii2f")
 _POUND, _NAMES = 4.4482216152605, ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 
-def read_netforce(draft: Draft) -> Trial:
+def read_netforce(draft: RecordingDraft) -> Trial:
     """Return the plates of a NetForce recording as a trial.
 
     Binary: counts times 1e6 / (sensitivity gain excitation range), in pounds, turned from the force

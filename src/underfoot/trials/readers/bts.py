@@ -4,7 +4,7 @@ import numpy as np
 
 from ..recording.trial import Event, Trial, Vertical
 from .columns import trial_from_sheet
-from .draft import Draft
+from .draft import RecordingDraft
 from .sheet import Sheet
 from .text import is_number, split
 
@@ -12,7 +12,7 @@ _EVENTS = {"RHS": ("heel contact", "right"), "LHS": ("heel contact", "left"),
            "RTO": ("toe off", "right"), "LTO": ("toe off", "left")}  # fmt: skip
 
 
-def read_bts(draft: Draft) -> Trial:
+def read_bts(draft: RecordingDraft) -> Trial:
     """Return the tracks of an .emt file as channels, plates and markers, or its events.
 
     Tracks ``name.X``, ``name.Y``, ``name.Z`` in a unit of length are markers, of force a plate;

@@ -18,9 +18,9 @@ from ..recording import plates
 from ..recording.axes import axis_vector
 from ..recording.measurement import Flag
 from ..recording.trial import Event, Trial, Vertical
-from .draft import Draft
+from .draft import RecordingDraft
 from .file_bytes import FileBytes
-from .text import force_unit, si_unit, truncated
+from .text import force_unit, si_unit, truncation_error
 
 BLOCK = 512
 _ENDIAN = {84: "<", 85: "<", 86: ">"}
@@ -176,7 +176,9 @@ def _rotations(
     ratio = shell.number("ROTATION", "RATIO") or shell.number("ROTATION", "RATE") / rate
     count = frames * max(round(ratio), 1)
     if start + count * used * 17 * 4 > len(data):
-        raise truncated(f"truncated: {count} frames of {used} rotations are not there", where)
+        raise truncation_error(
+            f"truncated: {count} frames of {used} rotations are not there", where
+        )
     raw = _floats(data[start : start + count * used * 68], processor).astype(float)
     raw = raw.reshape(count, used, 17)
     poses = raw[..., :16].reshape(count, used, 4, 4).swapaxes(2, 3).copy()
@@ -229,7 +231,7 @@ def _frames(
         frames = fitting[0]
     elif largest > whole:
         words = f"truncated or damaged: {largest} frames are counted, the file holds {whole}"
-        raise truncated(words, where)
+        raise truncation_error(words, where)
     else:
         content = begin + whole * width
         while content > begin and not data[max(content - BLOCK, begin) : content].strip(b"\0"):
@@ -375,7 +377,7 @@ _EVENT_NAMES = {
 }  # fmt: skip
 
 
-def read_c3d(draft: Draft) -> Trial:
+def read_c3d(draft: RecordingDraft) -> Trial:
     """Return the trial in a C3D file.
 
     A plate that can't be worked out is kept with its reason; the rest of the file is read.
@@ -460,7 +462,7 @@ def _unused_plates(raw: C3DFile) -> list[str]:
     return [said] if left else []
 
 
-def _plate(draft: Draft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:
+def _plate(draft: RecordingDraft, raw: C3DFile, index: int, units: list[str], scale: float) -> None:
     name = f"plate {index + 1}"
     kinds = raw.whole_numbers("FORCE_PLATFORM", "TYPE").ravel(order="F")
     kind = int(kinds[index]) if index < kinds.size else 0

@@ -10,7 +10,7 @@ from underfoot.core import DataError, nearest_match
 
 from ..recording.plates import refused_plate
 from ..recording.trial import Trial
-from .draft import Draft
+from .draft import RecordingDraft
 from .formats import nearest_format
 from .profile import PlateColumns
 from .sheet import Sheet, sheet_from
@@ -57,7 +57,7 @@ _PREAMBLE = 2  # lines above the names of columns, from which a text has a forma
 _RATE = re.compile(r"rate|frequency|hz", re.I)
 
 
-def read_columns(draft: Draft) -> Trial:
+def read_columns(draft: RecordingDraft) -> Trial:
     """Return the trial in a plain table.
 
     With the profile its columns are used; what it does not name is recognised: time, force
@@ -125,7 +125,7 @@ def _folded(name: str) -> str:
     return re.sub("^daq|[^a-z\u03bc]", "", name.casefold())
 
 
-def trial_from_sheet(draft: Draft, sheet: Sheet, source: str) -> Trial:
+def trial_from_sheet(draft: RecordingDraft, sheet: Sheet, source: str) -> Trial:
     """Return the trial in named columns."""
     profile = draft.profile
     draft.notes += sheet.notes
@@ -179,7 +179,7 @@ def _factor(unit: str, dimension: str, where: str) -> float:
     return known[1]
 
 
-def _clock(draft: Draft, sheet: Sheet) -> None:
+def _clock(draft: RecordingDraft, sheet: Sheet) -> None:
     profile = draft.profile
     if profile.rate is not None and profile.time is None:
         draft.rate = profile.rate
@@ -267,7 +267,7 @@ def _plate_groups(sheet: Sheet) -> dict[tuple[str, str], dict[str, dict[str, str
     return {key: kinds for key, kinds in groups.items() if len(kinds.get("f", {})) == 3}
 
 
-def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
+def _plate_columns(draft: RecordingDraft, sheet: Sheet) -> dict[str, PlateColumns]:
     """Columns of the plates; triples whose unit is no force become refused plates."""
     plates: dict[str, PlateColumns] = {}
     for kinds in _plate_groups(sheet).values():
@@ -294,7 +294,7 @@ def _plate_columns(draft: Draft, sheet: Sheet) -> dict[str, PlateColumns]:
 
 
 def _pressure_columns(
-    draft: Draft, sheet: Sheet, columns: dict[str, str], label: str
+    draft: RecordingDraft, sheet: Sheet, columns: dict[str, str], label: str
 ) -> tuple[tuple[str, str, str] | None, str]:
     """Columns of a centre of pressure, in two axes or three, and their unit."""
     if len(columns) < 2:
@@ -313,7 +313,7 @@ def _pressure_columns(
     return (x, y, z), unit
 
 
-def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None:
+def _plate(draft: RecordingDraft, name: str, columns: PlateColumns, sheet: Sheet) -> None:
     where = f"{sheet.name}, plate {name}"
     force = np.zeros((len(next(iter(sheet.numbers.values()))), 3))
     for i, column in enumerate(columns.force):
@@ -337,7 +337,9 @@ def _plate(draft: Draft, name: str, columns: PlateColumns, sheet: Sheet) -> None
     )
 
 
-def _marker_columns(draft: Draft, sheet: Sheet) -> dict[str, tuple[tuple[str, str, str], str]]:
+def _marker_columns(
+    draft: RecordingDraft, sheet: Sheet
+) -> dict[str, tuple[tuple[str, str, str], str]]:
     markers = dict(draft.profile.markers)
     plates = _plate_groups(sheet).values()
     forces = {name for kinds in plates for columns in kinds.values() for name in columns.values()}

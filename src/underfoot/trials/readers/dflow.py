@@ -5,14 +5,14 @@ import re
 import numpy as np
 
 from ..recording.trial import Trial, Vertical
-from .draft import Draft
+from .draft import RecordingDraft
 from .text import split
 
 _COLUMN = re.compile(r"^(?P<name>.+)\.(?P<kind>Pos|Cop|For|Mom)(?P<axis>[XYZ])$")
 _UP = Vertical((0.0, 1.0, 0.0), "y as D-Flow has it")
 
 
-def read_dflow(draft: Draft) -> Trial:
+def read_dflow(draft: RecordingDraft) -> Trial:
     """Return markers (m), plates (N, m) and channels of D-Flow's mocap module as a trial.
 
     D-Flow stamps each frame when it arrives, a few ms early or late, sometimes several at once;

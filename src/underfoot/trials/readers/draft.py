@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
-from underfoot.core.missing import coded
-from underfoot.core.text import decoded
+from underfoot.core.missing import mask_of_codes
+from underfoot.core.text import decode_text
 
 from ..recording.axes import found_vertical
 from ..recording.marker_names import heel_candidates, toe_candidates
 from ..recording.plates import finished_plate, plate_up
 from ..recording.trial import Channel, Event, Marker, Plate, Trial, Vertical
 from .file_bytes import FileBytes
-from .profile import Profile
+from .profile import TrialsProfile
 from .seen import KINDS, camera_clock, coded_forces, unseen
 from .text import (
     in_si,
@@ -24,7 +24,7 @@ from .text import (
     rate_of,
     si_unit,
     table,
-    truncated,
+    truncation_error,
     unique_names,
     without_restarts,
 )
@@ -48,7 +48,7 @@ class _RawPlate:
 
 
 @dataclass
-class Draft:
+class RecordingDraft:
     """One recording while it is read; rate, start and times (s) are those of what is added next.
 
     ``up`` is the axis that the format says is up, for where neither plates nor markers tell it.
@@ -58,7 +58,7 @@ class Draft:
 
     data: bytes
     name: str
-    profile: Profile = field(default_factory=Profile)
+    profile: TrialsProfile = field(default_factory=TrialsProfile)
     subtract_baseline: bool = True
     rate: float = 0.0
     start: float = 0.0
@@ -76,7 +76,7 @@ class Draft:
 
     def lines(self) -> list[str]:
         """Return the lines of a text file."""
-        return lines_of(decoded(self.data, self.name))
+        return lines_of(decode_text(self.data, self.name))
 
     def error(self, what: str, **more: str | None) -> DataError:
         """Return the error that names this file."""
@@ -121,7 +121,9 @@ class Draft:
         said = f"{key} is {written}" if key else f"{written} samples are announced"
         less = counted < int(written)
         if less and not rows:
-            raise truncated(f"truncated or damaged: {said}, the file holds {counted}", self.name)
+            raise truncation_error(
+                f"truncated or damaged: {said}, the file holds {counted}", self.name
+            )
         more = ": was the file cut short?" if less else ""
         self.notes.append(f"{said}, the file holds {counted}: all of them are read{more}")
 
@@ -144,7 +146,7 @@ class Draft:
             # What was read of a long file is not held twice.
             values = np.multiply(values, scale * factor, out=values if self.file else None)
             values += offset
-        if si == "N" and (lost := coded(values, least=1.0)).any():
+        if si == "N" and (lost := mask_of_codes(values, least=1.0)).any():
             values = np.where(lost, np.nan, values)
             self.notes.append(f"{name}: {int(lost.sum())} samples that hold a code are left out")
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)

@@ -7,15 +7,15 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..recording.trial import Trial
-from .draft import Draft
-from .text import is_number, name_and_unit, si_unit, split, truncated
+from .draft import RecordingDraft
+from .text import is_number, name_and_unit, si_unit, split, truncation_error
 
 _TEXT_COLUMNS = ("image file name", "comments")
 # Speeds are written without a unit; the rolling speed beside them is in mm/s.
 _SPEEDS = ("Ball Speed", "Disc Speed")
 
 
-def read_cetr(draft: Draft) -> tuple[Trial, ...]:
+def read_cetr(draft: RecordingDraft) -> tuple[Trial, ...]:
     """Return one trial for each step of a CETR log.
 
     Forces come in grams-force and become N; the sign of Fz (negative under load) is kept.
@@ -29,19 +29,20 @@ def read_cetr(draft: Draft) -> tuple[Trial, ...]:
     stops = [*starts[1:], len(lines)]
     pairs = enumerate(zip(starts, stops, strict=True), start=1)
     return tuple(
-        _cetr_step(lines, *span, Draft(b"", f"{draft.name}, step {n}")) for n, span in pairs
+        _cetr_step(lines, *span, RecordingDraft(b"", f"{draft.name}, step {n}"))
+        for n, span in pairs
     )
 
 
-def _all_steps(draft: Draft, starts: list[int], announced: str) -> None:
+def _all_steps(draft: RecordingDraft, starts: list[int], announced: str) -> None:
     if not starts:
         raise draft.error("truncated: there is no step")
     if announced.isdigit() and int(announced) > len(starts):
         words = f"truncated: {announced} steps announced, {len(starts)} found"
-        raise truncated(words, draft.name)
+        raise truncation_error(words, draft.name)
 
 
-def _cetr_step(lines: list[str], start: int, stop: int, step: Draft) -> Trial:
+def _cetr_step(lines: list[str], start: int, stop: int, step: RecordingDraft) -> Trial:
     tables = (
         i
         for i in range(start + 1, stop)
@@ -78,7 +79,7 @@ def _cetr_settings(lines: list[str]) -> dict[str, str]:
     return found
 
 
-def read_pcs(draft: Draft) -> tuple[Trial, ...]:
+def read_pcs(draft: RecordingDraft) -> tuple[Trial, ...]:
     """Return one trial for each step that holds a table.
 
     Columns that repeat the first two appear once; empty columns are left out.
@@ -97,7 +98,7 @@ def read_pcs(draft: Draft) -> tuple[Trial, ...]:
             without.append(str(number))
         else:
             settings = general | _pcs_settings(lines[start:at])
-            step = Draft(b"", f"{draft.name}, step {number}", settings=settings)
+            step = RecordingDraft(b"", f"{draft.name}, step {number}", settings=settings)
             trials.append(_pcs_step(lines, at, stop, step))
     if not trials:
         raise draft.error("no step holds a table")
@@ -107,7 +108,7 @@ def read_pcs(draft: Draft) -> tuple[Trial, ...]:
     return tuple(trials)
 
 
-def _pcs_step(lines: list[str], at: int, stop: int, step: Draft) -> Trial:
+def _pcs_step(lines: list[str], at: int, stop: int, step: RecordingDraft) -> Trial:
     labels = split(lines[at].rstrip("\t "), "\t")
     ignored = frozenset(i for i, x in enumerate(labels) if x.casefold() in _TEXT_COLUMNS)
     rows = [line for line in lines[at + 1 : stop] if is_number(line.split("\t", 1)[0])]
@@ -150,7 +151,7 @@ _SENSORS = 99  # of one Pedar insole
 _MOST_CELLS = 50_000_000
 
 
-def read_pedar(draft: Draft) -> Trial:
+def read_pedar(draft: RecordingDraft) -> Trial:
     """Return the pressures of a Pedar text export (.asc, .fgt) as channels.
 
     Files with 99 or 198 sensors become ``left 1`` to ``right 99`` (Pa), with the largest and the
@@ -190,7 +191,7 @@ def read_pedar(draft: Draft) -> Trial:
     return draft.trial("Pedar")
 
 
-def read_fscan(draft: Draft) -> Trial:
+def read_fscan(draft: RecordingDraft) -> Trial:
     """Return force, largest pressure and its centre of an F-Scan ASCII movie (.asf) as channels.
 
     The force is the sum of pressure times the area of a cell; saturated cells ("B") have no

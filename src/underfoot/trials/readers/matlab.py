@@ -15,7 +15,7 @@ from underfoot.core import DataError
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
-from .draft import Draft
+from .draft import RecordingDraft
 from .sheet import Sheet
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -25,7 +25,7 @@ _LARGEST = 200_000_000  # bytes of one array
 _PATIENCE = 15.0  # s
 
 
-def read_matlab(draft: Draft) -> Trial:
+def read_matlab(draft: RecordingDraft) -> Trial:
     """Return the recording in a .mat file.
 
     Understood: the structure that Qualisys Track Manager writes, and plain arrays: vectors are
@@ -133,7 +133,7 @@ def _arrays(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str,
             yield f"{before}{name}", np.atleast_1d(value)
 
 
-def _qualisys(draft: Draft, value: Mapping[str, Any]) -> Trial:
+def _qualisys(draft: RecordingDraft, value: Mapping[str, Any]) -> Trial:
     labelled = _part(_part(value, "Trajectories"), "Labeled")
     if labelled:
         places = np.asarray(labelled["Data"], dtype=float)

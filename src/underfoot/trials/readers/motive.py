@@ -3,12 +3,12 @@
 import csv
 
 from ..recording.trial import Trial, Vertical
-from .draft import Draft
+from .draft import RecordingDraft
 
 _KINDS = ("marker", "bone marker", "rigid body marker", "rigid body", "bone")
 
 
-def read_motive(draft: Draft) -> Trial:
+def read_motive(draft: RecordingDraft) -> Trial:
     """Return markers, and the origins of rigid bodies and bones, of a Motive export as markers.
 
     Where labelled and solved markers have one name the labelled one counts. Motive's y axis is up

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from ..recording.trial import Event, Trial
-from .draft import Draft
+from .draft import RecordingDraft
 
 _RATE = ("fps", "frame_rate", "framerate", "frequency", "rate", "sampling_rate")
 _POINTS = ("markers", "keypoints", "points", "joints", "landmarks")
@@ -21,7 +21,7 @@ _BODY_25 = {
 _MOST = 5_000_000
 
 
-def read_pose_json(draft: Draft) -> Trial:
+def read_pose_json(draft: RecordingDraft) -> Trial:
     """Return the points of a JSON file as markers.
 
     Understood: ``{"fps": 100, "unit": "m", "markers": {"LHeel": [[x, y, z], ...]}}`` (also
@@ -30,7 +30,7 @@ def read_pose_json(draft: Draft) -> Trial:
     ``pose_keypoints_3d``. Points in pixels are refused: without a length there is no speed.
     """
     try:
-        content: Any = json.loads(decoded(draft.data, draft.name))
+        content: Any = json.loads(decode_text(draft.data, draft.name))
     except (ValueError, RecursionError) as error:
         raise draft.error("not valid JSON", remedy="Export it again") from error
     top: Mapping[str, Any] = content if isinstance(content, Mapping) else {"frames": content}
@@ -74,7 +74,7 @@ _EVENTS = {
 }  # fmt: skip
 
 
-def _events(draft: Draft, top: Mapping[str, Any]) -> tuple[Event, ...]:
+def _events(draft: RecordingDraft, top: Mapping[str, Any]) -> tuple[Event, ...]:
     """Return gait events: a list of objects, or lists of times by kind (heel_strikes ...).
 
     An object has "time" (s), or "frame" with a rate in the file; "type", "event" or "name"; "side".
@@ -109,7 +109,9 @@ def _points(content: Mapping[str, Any]) -> Mapping[str, Any] | None:
     return next((content[k] for k in _POINTS if isinstance(content.get(k), Mapping)), None)
 
 
-def _from_frames(draft: Draft, frames: Any) -> tuple[dict[str, list[Any]], np.ndarray | None]:
+def _from_frames(
+    draft: RecordingDraft, frames: Any
+) -> tuple[dict[str, list[Any]], np.ndarray | None]:
     if not isinstance(frames, Sequence) or not frames or isinstance(frames, str):
         raise draft.error("no points and no frames", allowed=", ".join(_POINTS))
     points: dict[str, list[Any]] = {}
@@ -129,7 +131,7 @@ def _from_frames(draft: Draft, frames: Any) -> tuple[dict[str, list[Any]], np.nd
     return points, np.array(times) if len(times) == len(frames) else None
 
 
-def _open_pose(draft: Draft, frame: Mapping[str, Any]) -> dict[str, Any]:
+def _open_pose(draft: RecordingDraft, frame: Mapping[str, Any]) -> dict[str, Any]:
     people = frame.get("people")
     person = people[0] if isinstance(people, list) and people else {}
     flat = person.get("pose_keypoints_3d") if isinstance(person, Mapping) else None

@@ -42,7 +42,7 @@ class PlateColumns:
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class TrialsProfile:
     """What a profile file says; every part is optional.
 
     See ``docs/guide/trials_reading.md`` for the file. ``landmarks``: the laboratory's own names of
@@ -71,7 +71,7 @@ class Profile:
     calibration: TesterCalibration | None = None
 
 
-def read_profile(path: Path) -> Profile:
+def read_profile(path: Path) -> TrialsProfile:
     """Return the profile in a TOML file.
 
     InputError: not TOML, an unknown key or unit, a wrong type; names the key and the nearest match.
@@ -86,7 +86,7 @@ def read_profile(path: Path) -> Profile:
     return profile_from(data, where=path.name)
 
 
-def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
+def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> TrialsProfile:
     """Return the profile in plain data (the parsed TOML); errors as ``read_profile``."""
     _known(data, ("name", *_PARTS), where)
     parts = {name: _part(data, name, keys, where) for name, keys in _PARTS.items()}
@@ -102,7 +102,7 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> Profile:
     def each(name: str, read: Callable[[object, str], T]) -> dict[str, T]:
         return {str(key): read(v, f"{where}.{name}.{key}") for key, v in parts[name].items()}
 
-    return Profile(
+    return TrialsProfile(
         name=str(data.get("name", "")),
         delimiter=_text(file, "delimiter", where),
         sheet=_text(file, "sheet", where),
@@ -260,7 +260,9 @@ def _force_columns(value: Mapping[str, Any], where: str) -> tuple[str, str, str]
     return force
 
 
-def with_channels(profile: Profile, friction: str, normal: str, *, where: str) -> Profile:
+def with_channels(
+    profile: TrialsProfile, friction: str, normal: str, *, where: str
+) -> TrialsProfile:
     """Return the profile with the two channels of a tester that a protocol names."""
     if not friction and not normal:
         return profile

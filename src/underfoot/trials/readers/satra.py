@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
-from .draft import Draft
+from .draft import RecordingDraft
 from .profile import PlateColumns
 from .sheet import sheet_from
 
@@ -13,7 +13,7 @@ _NORMAL = re.compile(r"(vertical|normal) *(force|load)", re.I)
 _FRICTION = re.compile(r"(horizontal|friction(al)?|shear|traction) *(force|load)", re.I)
 
 
-def read_stm603(draft: Draft) -> Trial:
+def read_stm603(draft: RecordingDraft) -> Trial:
     """Return the log of a slip test as a tester with friction and normal force.
 
     Columns are known by their words (vertical or normal force; horizontal or friction force); a

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from underfoot.core.missing import coded
+from underfoot.core.missing import mask_of_codes
 
 from ..recording.signals import longest_run, runs
 
@@ -120,7 +120,7 @@ def coded_forces(force: np.ndarray) -> np.ndarray:
     one = (force[:, 0] == force[:, 1]) & (force[:, 1] == force[:, 2])
     lost = one & (np.abs(force[:, 0]) >= _NO_FORCE)
     for values in np.where(lost[:, None], np.nan, force).T:
-        lost |= coded(values, apart=1.0, least=_NO_FORCE, most=_FEW)
+        lost |= mask_of_codes(values, apart=1.0, least=_NO_FORCE, most=_FEW)
     return lost
 
 

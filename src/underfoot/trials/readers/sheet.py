@@ -13,7 +13,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.numbers_text import NumberForm, one_unit, units_in_cells, without_units
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from . import text
 from .text import force_unit, si_unit
@@ -79,7 +79,7 @@ def sheet_from(
         rows = [without_units(row, inside) for row in rows] if inside else rows
         table = _layout(rows, header_line, where)
         return _sheet(rows, table, rows[table.first :], None, inside, where, notes)
-    lines = text.lines_of(decoded(data, where))
+    lines = text.lines_of(decode_text(data, where))
     while lines and not lines[-1].strip():
         lines.pop()
     body = lines[len(lines) // 2 :]  # a free header may hold other signs: the body decides

@@ -8,11 +8,11 @@ from underfoot.core.optional import optional_module
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
-from .draft import Draft
+from .draft import RecordingDraft
 from .sheet import Sheet
 
 
-def read_tdms(draft: Draft) -> tuple[Trial, ...]:
+def read_tdms(draft: RecordingDraft) -> tuple[Trial, ...]:
     """Return one trial for each group of a TDMS file (npTDMS).
 
     Columns are the channels with their units; time is a channel of that name, else the increment
@@ -39,7 +39,7 @@ def read_tdms(draft: Draft) -> tuple[Trial, ...]:
             columns = {"time": step * np.arange(float(lengths.pop())), **columns}
             units["time"] = "s"
         label = draft.name if len(file.groups()) == 1 else f"{draft.name}, {group.name}"
-        own = Draft(b"", label, draft.profile, draft.subtract_baseline)
+        own = RecordingDraft(b"", label, draft.profile, draft.subtract_baseline)
         trials.append(trial_from_sheet(own, Sheet(label, columns, {}, units), "TDMS"))
     if not trials:
         raise draft.error("no group holds channels of numbers")

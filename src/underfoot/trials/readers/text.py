@@ -79,7 +79,7 @@ def split(line: str, delimiter: str) -> list[str]:
     return cells_of(line, delimiter or None)
 
 
-def truncated(what: str, where: str) -> DataError:
+def truncation_error(what: str, where: str) -> DataError:
     """Return the error for a file that holds less, or more, than it should."""
     return DataError(what, where=where, remedy="Export or copy the file again")
 
@@ -147,7 +147,7 @@ def check_rows(rows: Sequence[Sequence[str]], width: int, first_line: int, where
     lengths = [min(len(row), width) for row in rows]
     if len(rows) > 1 and lengths[-1] < min(lengths[:-1]):
         words = "truncated: the last row is shorter than the others"
-        raise truncated(words, f"{where}, line {first_line + len(rows) - 1}")
+        raise truncation_error(words, f"{where}, line {first_line + len(rows) - 1}")
 
 
 def measurable(values: np.ndarray, notes: list[str]) -> np.ndarray:

@@ -7,11 +7,11 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..recording.trial import Trial, Vertical
-from .draft import Draft
-from .text import delimiter_of, is_number, number_after, si_unit, split, truncated
+from .draft import RecordingDraft
+from .text import delimiter_of, is_number, number_after, si_unit, split, truncation_error
 
 
-def read_trc(draft: Draft) -> Trial:
+def read_trc(draft: RecordingDraft) -> Trial:
     """Return the markers of a TRC file as a trial."""
     lines = draft.lines()
     if len(lines) < 6 or "PathFileType" not in lines[0]:
@@ -36,7 +36,7 @@ def read_trc(draft: Draft) -> Trial:
     written = header.get("NumFrames", "")
     cut = len(rows) > 1 and rows[-1].count("\t") < min(row.count("\t") for row in rows[:-1])
     if cut and written.isdigit() and len(rows) <= int(written):
-        raise truncated("truncated: the last row is shorter than the others", draft.name)
+        raise truncation_error("truncated: the last row is shorter than the others", draft.name)
     rows = [row + "\t" * (columns - 1 - row.count("\t")) for row in rows]
     numbers = draft.table(rows, "\t", columns, first + 1)
     draft.count(written, len(numbers), "NumFrames", rows=True)
@@ -58,7 +58,7 @@ _NUMBERED = re.compile(r"^(?P<kind>f|force|p|point)_?(?P<base>\d+)_(?P<axis>[123
 _FAR = 5.0  # m; no plate lies further from the origin: larger numbers are mm
 
 
-def read_motion(draft: Draft) -> Trial:
+def read_motion(draft: RecordingDraft) -> Trial:
     """Return the table of a .mot or .sto file as a trial; ground reactions become plates.
 
     OpenSim's ground reactions are forces on the body in ground axes, N and m; y is up in its own
@@ -126,7 +126,7 @@ def _header(lines: list[str]) -> dict[str, str]:
     return found
 
 
-def _plates(draft: Draft, labels: list[str], numbers: np.ndarray) -> None:
+def _plates(draft: RecordingDraft, labels: list[str], numbers: np.ndarray) -> None:
     groups: dict[tuple[str, int], dict[str, int]] = {}
     for i, label in enumerate(labels[1:], start=1):
         match = _GROUND.match(label)
@@ -158,7 +158,7 @@ _LENGTH = 1e-3  # Cortex writes positions in mm, moments in N mm
 _COLUMNS = ("FX", "FY", "FZ", "X", "Y", "Z", "MZ")
 
 
-def read_cortex_forces(draft: Draft) -> Trial:
+def read_cortex_forces(draft: RecordingDraft) -> Trial:
     """Return the plates of a Cortex .forces file as a trial.
 
     The forces are those on the foot in laboratory axes. The vertical axis is the one that
@@ -200,7 +200,7 @@ def read_cortex_forces(draft: Draft) -> Trial:
 _CENTRE = ("AX", "AY")
 
 
-def read_bioware(draft: Draft) -> Trial:
+def read_bioware(draft: RecordingDraft) -> Trial:
     """Return the plates of a BioWare text export as a trial.
 
     BioWare writes the force **on the plate** in Kistler's axes (z into the floor). On the foot
@@ -249,7 +249,7 @@ def read_bioware(draft: Draft) -> Trial:
 _CORNERS = ("POSX_POSY", "NEGX_POSY", "NEGX_NEGY", "POSX_NEGY")
 
 
-def read_qualisys(draft: Draft) -> Trial:
+def read_qualisys(draft: RecordingDraft) -> Trial:
     """Return the markers or the force plate of a Qualisys TSV file as a trial.
 
     Lengths are mm. Forces are taken as exported, in laboratory axes (QTM can also export plate
@@ -315,7 +315,7 @@ BLOCKS = ("devices", "trajectories", "model outputs", "joints", "segments")
 _PLATE = re.compile(r"^(?P<device>.*?)\s*-\s*(?P<what>force|moment|cop)$", re.IGNORECASE)
 
 
-def read_vicon_csv(draft: Draft) -> Trial:
+def read_vicon_csv(draft: RecordingDraft) -> Trial:
     """Return devices (force plates, channels) and trajectories of a Nexus export as one trial."""
     lines = draft.lines()
     kinds = [line.strip(' ,;\t"').casefold() for line in lines]
@@ -339,7 +339,7 @@ def read_vicon_csv(draft: Draft) -> Trial:
 
 
 def _block(
-    draft: Draft, lines: list[str], start: int, delimiter: str
+    draft: RecordingDraft, lines: list[str], start: int, delimiter: str
 ) -> tuple[list[str], list[str], list[str], np.ndarray]:
     rate = split(lines[1], delimiter)[0].replace(",", ".") if len(lines) > 1 else ""
     if not is_number(rate) or not 0 < float(rate) < 1e6 or len(lines) < 6:
@@ -355,7 +355,7 @@ def _block(
 
 
 def _devices(
-    draft: Draft, names: list[str], axes: list[str], units: list[str], numbers: np.ndarray
+    draft: RecordingDraft, names: list[str], axes: list[str], units: list[str], numbers: np.ndarray
 ) -> None:
     whole = [f"{name} {axis}".strip() for name, axis in zip(names, axes, strict=True)]
     labels = draft.names(whole, "column")

@@ -6,10 +6,10 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..recording.trial import Trial, Vertical
-from .draft import Draft
+from .draft import RecordingDraft
 
 
-def read_mvnx(draft: Draft) -> Trial:
+def read_mvnx(draft: RecordingDraft) -> Trial:
     """Return the origins of segments and the points of both feet as markers (m, z up).
 
     A point of a foot is origin + R(q) p, with its place p in the segment and the quaternion q

@@ -5,11 +5,11 @@ import numpy as np
 from underfoot.core import DataError
 
 from ..recording.trial import Trial
-from .draft import Draft
+from .draft import RecordingDraft
 from .text import is_number, si_unit
 
 
-def read_xsensor(draft: Draft) -> Trial:
+def read_xsensor(draft: RecordingDraft) -> Trial:
     """Return force, largest pressure and its centre of each sensor as channels.
 
     Each frame is a block of "key:,value" lines (Frame, Time, Sensor, Rows, Columns, Units) and of
@@ -56,7 +56,7 @@ def read_xsensor(draft: Draft) -> Trial:
     return draft.trial("XSENSOR")
 
 
-def _seconds(header: dict[str, str], draft: Draft, line: int) -> float:
+def _seconds(header: dict[str, str], draft: RecordingDraft, line: int) -> float:
     text = header.get("time", header.get("frame time", ""))
     parts = text.split(":")
     try:

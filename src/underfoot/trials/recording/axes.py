@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 
 from underfoot.core import InputError, to_si, unknown_name
-from underfoot.core.deprecation import renamed
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import NOTHING, Message
 
 from .marker_names import heel_candidates, toe_candidates
@@ -78,7 +78,7 @@ class Ramp:
             return Message("{ramp}, walking up; {plates}", **values)
         return Message("{ramp}, walking down; {plates}", **values)
 
-    words = property(renamed("words", "description", gone="0.4"))
+    words = property(renamed_member("words", "description", gone="0.4"))
 
 
 LEVEL = Ramp()

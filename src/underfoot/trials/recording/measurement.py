@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from underfoot.core import InputError, display
-from underfoot.core.deprecation import renamed
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.presentation import Presentable, Table
 from underfoot.core.remark import NOTHING, Message
 
@@ -45,7 +45,7 @@ class Flag:
     def __str__(self) -> str:
         return self.message
 
-    words = property(renamed("words", "message", gone="0.4"))
+    words = property(renamed_member("words", "message", gone="0.4"))
 
 
 UNNAMED = "caution"

@@ -9,7 +9,15 @@ from underfoot.core import DataError
 from underfoot.core.remark import Message
 
 from .measurement import Flag, remark
-from .signals import CONTACT_FORCE, SHEAR_WARNING, along, contacts, enough, saturated, unloaded
+from .signals import (
+    CONTACT_FORCE,
+    SHEAR_WARNING,
+    along,
+    contacts,
+    enough,
+    is_saturated,
+    unloaded_samples,
+)
 from .trial import REVERSED, Plate, Trial, once_a_record
 
 KINDS = {
@@ -220,7 +228,7 @@ def finished_plate(
         words = Message("signs reversed: the file holds the force on the plate")
         seen.append(Flag(REVERSED, words, matters=False))
     baseline, samples = None, 0
-    empty = unloaded(vertical, rate)
+    empty = unloaded_samples(vertical, rate)
     if not subtract_baseline:
         seen.append(remark("baseline not subtracted: switched off"))
     elif enough(empty):
@@ -239,7 +247,7 @@ def finished_plate(
         seen.append(Flag("baseline", text))
     del with_load
     channels = (force if raw is None else raw).T  # one after the other is held once more
-    cut = any(saturated(np.ascontiguousarray(channel), rate) for channel in channels)
+    cut = any(is_saturated(np.ascontiguousarray(channel), rate) for channel in channels)
     if cut:
         seen.append(Flag("saturated", Message("saturated: a channel stays at its extreme value")))
     peak = float(np.nanmax(np.abs(along(force, up)), initial=0.0))

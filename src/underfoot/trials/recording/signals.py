@@ -29,7 +29,7 @@ def along(values: np.ndarray, axis: np.ndarray) -> np.ndarray:
     return parts
 
 
-def unloaded(vertical: np.ndarray, rate: float) -> np.ndarray:
+def unloaded_samples(vertical: np.ndarray, rate: float) -> np.ndarray:
     """Return a mask of the samples in which nothing stood on the plate, shape (n,).
 
     The lowest well-filled level of the vertical force is the unloaded one. A stretch of 10 ms
@@ -84,7 +84,7 @@ def enough(mask: np.ndarray) -> bool:
     return int(mask.sum()) >= _MINIMUM_SAMPLES
 
 
-def saturated(signal: np.ndarray, rate: float) -> bool:
+def is_saturated(signal: np.ndarray, rate: float) -> bool:
     """True when a raw signal (n,) is cut flat at its extreme value.
 
     Cut flat: it stays at the extreme for 20 ms and 16 samples or more, and comes within 5 ms from
@@ -281,7 +281,7 @@ def velocity(positions: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarra
     return np.gradient(low_passed(positions, rate, low_pass), 1.0 / rate, axis=0)
 
 
-def bridged(positions: np.ndarray, longest: int) -> tuple[np.ndarray, np.ndarray]:
+def bridge_gaps(positions: np.ndarray, longest: int) -> tuple[np.ndarray, np.ndarray]:
     """Return positions (n, k) with gaps of at most ``longest`` frames filled by cubic pieces.
 
     The second array (n,) is True where a value was filled in. Longer gaps stay NaN, and so do

@@ -297,7 +297,7 @@ class Trial(Presentable):
         return Table(self.name, ("kind", "name", "samples", "rate (Hz)", "remarks"), rows)
 
 
-def joined(first: Trial, second: Trial) -> Trial:
+def join_trials(first: Trial, second: Trial) -> Trial:
     """Return one trial from two files of the same recording, for example .trc and .forces.
 
     Both must count time from the same instant and be in the same axes. Names that both use get the

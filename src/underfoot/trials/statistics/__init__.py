@@ -1,5 +1,7 @@
 """Statistics of the field's studies, each test named with its convention."""
 
+from underfoot.core.deprecation import package_names
+
 from .agreement import bland_altman as bland_altman
 from .agreement import intraclass_correlation as intraclass_correlation
 from .confounding import Confounded as Confounded
@@ -16,14 +18,14 @@ from .fisher import fisher_exact as fisher_exact
 from .linear import AdjustedMean as AdjustedMean
 from .linear import AnovaRow as AnovaRow
 from .linear import AnovaTable as AnovaTable
-from .linear import Comparison as Comparison
+from .linear import LevelDifference as LevelDifference
+from .linear import LevelPair as LevelPair
 from .linear import LinearModel as LinearModel
-from .linear import Pair as Pair
 from .linear import Predictor as Predictor
 from .linear import Subset as Subset
 from .linear import all_subsets as all_subsets
 from .linear import analysis_of_variance as analysis_of_variance
-from .linear import crossed as crossed
+from .linear import crossed_terms as crossed_terms
 from .linear import least_squares_means as least_squares_means
 from .linear import letters as letters
 from .linear import linear_model as linear_model
@@ -59,12 +61,21 @@ from .samples import TTest as TTest
 from .samples import corrected_p as corrected_p
 from .samples import drift as drift
 from .samples import mean_interval as mean_interval
+from .samples import merge_equal_values as merge_equal_values
 from .samples import ordered_levels as ordered_levels
 from .samples import precision as precision
 from .samples import regression_line as regression_line
-from .samples import resolved as resolved
 from .samples import share_interval as share_interval
 from .samples import standard_deviation as standard_deviation
 from .samples import t_test as t_test
 from .shares import ShareDifference as ShareDifference
 from .shares import share_difference as share_difference
+
+__getattr__ = package_names(
+    __name__,
+    gone="0.5",
+    crossed="crossed_terms",
+    resolved="merge_equal_values",
+    Comparison="LevelDifference",
+    Pair="LevelPair",
+)

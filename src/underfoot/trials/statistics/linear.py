@@ -55,7 +55,7 @@ Columns = Mapping[str, Sequence[object] | np.ndarray | Predictor]
 
 
 @dataclass(frozen=True, slots=True)
-class Design:
+class ModelMatrix:
     """Model matrix with its terms.
 
     ``matrix``: shape (n, p), the intercept first. ``terms``: names such as ``"shoe"`` or
@@ -88,7 +88,7 @@ def parts(term: str) -> tuple[str, ...]:
     return tuple(term.split(":"))
 
 
-def crossed(*names: str, order: int | None = None) -> tuple[str, ...]:
+def crossed_terms(*names: str, order: int | None = None) -> tuple[str, ...]:
     """Return all terms of a crossed model: main effects, then interactions up to ``order``."""
     top = len(names) if order is None else min(order, len(names))
     return tuple(
@@ -140,7 +140,7 @@ def predictor(
     return Predictor(name, numbers)
 
 
-def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
+def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> ModelMatrix:
     """Return the model matrix of ``terms``, factors coded to sum to zero.
 
     InputError: a term names no predictor, or appears twice.
@@ -160,7 +160,7 @@ def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> Design:
         slices[term] = slice(at, at + block.shape[1])
         at += block.shape[1]
     used = {name: p for name, p in predictors.items() if any(name in parts(t) for t in terms)}
-    return Design(np.column_stack(matrices), tuple(terms), slices, used)
+    return ModelMatrix(np.column_stack(matrices), tuple(terms), slices, used)
 
 
 def empty_cells(predictors: Mapping[str, Predictor], term: str) -> list[Message]:
@@ -204,7 +204,7 @@ class FittedModel(ABC):
     """
 
     response_name: str
-    design: Design
+    design: ModelMatrix
     coefficients: np.ndarray
     covariance: np.ndarray
     warnings: tuple[Message, ...]
@@ -307,7 +307,7 @@ def linear_model(
 
 def model_data(
     response: ArrayLike, predictors: Columns, terms: Sequence[str] | None, name: str
-) -> tuple[np.ndarray, Design, list[Message]]:
+) -> tuple[np.ndarray, ModelMatrix, list[Message]]:
     """Return complete responses, the design and warnings of empty cells (``linear_model``)."""
     y = np.asarray(response, dtype=float)
     if not predictors:
@@ -322,7 +322,7 @@ def model_data(
         lost = int((~complete).sum())
         warnings.append(Message("{lost} rows without a response were left out", lost=lost))
     ready = {key: predictor(key, column, rows=complete) for key, column in predictors.items()}
-    terms = crossed(*ready) if terms is None else tuple(terms)
+    terms = crossed_terms(*ready) if terms is None else tuple(terms)
     built = design(ready, terms)
     for term in terms:
         cells = empty_cells(ready, term)
@@ -461,7 +461,7 @@ class AdjustedMean:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class LevelDifference:
     """Difference ``first`` - ``second`` with its simultaneous interval and adjusted p."""
 
     first: str
@@ -491,7 +491,9 @@ def least_squares_means(model: FittedModel, factor: str) -> list[AdjustedMean]:
     ]
 
 
-def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> list[Comparison]:
+def tukey_hsd(
+    model: FittedModel, factor: str, *, confidence: float = 0.95
+) -> list[LevelDifference]:
     """Return all pairwise differences of least-squares means, adjusted after Tukey and Kramer.
 
     p = P(Q > sqrt(2) |t|) with Q the studentized range of k means and the degrees of freedom of
@@ -524,7 +526,7 @@ def tukey_hsd(model: FittedModel, factor: str, *, confidence: float = 0.95) -> l
         t = difference / error
         p = beyond[df](np.sqrt(2.0) * abs(t))
         ends = float(difference - reach[df] * error), float(difference + reach[df] * error)
-        comparisons.append(Comparison(levels[i], levels[j], difference, error, t, p, *ends))
+        comparisons.append(LevelDifference(levels[i], levels[j], difference, error, t, p, *ends))
     return comparisons
 
 
@@ -552,7 +554,7 @@ def _studentized_range(k: int, df: float) -> Callable[[float], float]:
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class LevelPair:
     """Two levels compared: their difference, first - second, and p."""
 
     first: str
@@ -561,7 +563,9 @@ class Pair:
     p: float
 
 
-def letters(comparisons: Sequence[Comparison | Pair], *, alpha: float = 0.05) -> dict[str, str]:
+def letters(
+    comparisons: Sequence[LevelDifference | LevelPair], *, alpha: float = 0.05
+) -> dict[str, str]:
     """Return letters for the levels: levels that share one do not differ at ``alpha``.
 
     Insert-and-absorb of Piepho, J. Comput. Graph. Stat. 13 (2004) 456. The first letter goes to
@@ -592,7 +596,7 @@ def letters(comparisons: Sequence[Comparison | Pair], *, alpha: float = 0.05) ->
     }
 
 
-def _mean_rows(built: Design, factor: str) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+def _mean_rows(built: ModelMatrix, factor: str) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     factors = {name: p for name, p in built.predictors.items() if p.is_factor}
     if factor not in factors:
         raise unknown_name("factor", factor, factors, where="Tukey")

@@ -43,7 +43,7 @@ def objective(matrix: np.ndarray, eta: np.ndarray, y: np.ndarray, firth: bool) -
     return value + 0.5 * float(logdet) if sign > 0 else -np.inf
 
 
-def maximised(
+def maximise_likelihood(
     matrix: np.ndarray,
     y: np.ndarray,
     start: np.ndarray,
@@ -261,7 +261,9 @@ def logistic_regression(
     if not firth:
         start = _maximum_likelihood(y, centred)
     # From the maximum this only adds the value of the objective that profiles are measured from.
-    scaled, best, converged = maximised(centred, y, start, np.ones(len(names), dtype=bool), firth)
+    scaled, best, converged = maximise_likelihood(
+        centred, y, start, np.ones(len(names), dtype=bool), firth
+    )
     if not converged:
         raise ConvergenceError("the likelihood did not settle", where="logistic regression")
     beta = back @ scaled
@@ -333,7 +335,9 @@ def _profile(
     def drop(value: float) -> float:
         start = last[0] + tangent * (value - last[0][j])
         start[j] = value
-        beta, reached, converged = maximised(matrix, y, start, free, firth, tolerance=1e-12)
+        beta, reached, converged = maximise_likelihood(
+            matrix, y, start, free, firth, tolerance=1e-12
+        )
         if not converged:
             raise ConvergenceError("a profile did not settle", where="logistic regression")
         last[0] = beta

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import DataError
 from underfoot.core.remark import Message
 
-from .linear import AnovaRow, FittedModel, crossed, model_data, parts
+from .linear import AnovaRow, FittedModel, crossed_terms, model_data, parts
 from .samples import ROUNDING
 from .variance_components import VarianceComponents, variance_components
 
@@ -222,7 +222,7 @@ def repeated_measures(
     columns = zip((means.person, *means.factors.values()), (people, *levels), strict=True)
     wide[tuple([names.index(one) for one in column] for column, names in columns)] = means.mean
     rows, epsilon, corrected = [], [], []
-    for term in crossed(*means.factors):
+    for term in crossed_terms(*means.factors):
         z = wide
         for axis, name in enumerate(means.factors, start=1):
             k = shape[axis]

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
 
-from .linear import Pair
+from .linear import LevelPair
 from .mixed import person_means
-from .samples import ROUNDING, corrected_p, ordered_levels, resolved
+from .samples import ROUNDING, corrected_p, merge_equal_values, ordered_levels
 
 EXACT_TABLES = 2000  # persons ** (levels - 1) up to which Friedman's p is counted (a second)
 EXACT_RANKS = 100  # persons up to which the orders of one or two groups are counted
@@ -37,7 +37,7 @@ class RankTest:
     persons: int
     how: str = "exact"
     p_error: float | None = None
-    pairs: tuple[Pair, ...] = ()
+    pairs: tuple[LevelPair, ...] = ()
 
 
 def rank_test(
@@ -65,7 +65,7 @@ def rank_test(
     of = means.factors["level"]
     names = list(ordered_levels(of))
     table: dict[str, dict[str, float]] = {}
-    for one, level, mean in zip(means.person, of, resolved(means.mean), strict=True):
+    for one, level, mean in zip(means.person, of, merge_equal_values(means.mean), strict=True):
         table.setdefault(one, {})[level] = float(mean)
     if len(names) < 2:
         raise DataError("a rank test needs two levels", where="rank test")
@@ -86,7 +86,7 @@ def rank_test(
     pairs = []
     for (i, j), p in zip(couples, corrected_p(single), strict=True):
         shift = columns[i] - columns[j] if several else np.subtract.outer(columns[i], columns[j])
-        pairs.append(Pair(names[i], names[j], float(np.median(shift)), p))
+        pairs.append(LevelPair(names[i], names[j], float(np.median(shift)), p))
     return replace(whole, persons=len(table), pairs=tuple(pairs))
 
 
@@ -101,7 +101,7 @@ def _of_two(a: np.ndarray, b: np.ndarray, several: bool) -> RankTest:
         if not len(difference):
             raise DataError("no person differs between the levels", where="rank test")
         # sizes are as exact as what they are differences of
-        sizes = resolved(np.append(np.abs(difference), largest))[:-1]
+        sizes = merge_equal_values(np.append(np.abs(difference), largest))[:-1]
         ranks, chosen = stats.rankdata(sizes), None
         up = float(ranks[difference > 0].sum())
         name, statistic, observed = "Wilcoxon signed ranks W", min(up, ranks.sum() - up), up

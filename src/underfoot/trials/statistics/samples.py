@@ -58,7 +58,7 @@ class TTest:
         return KINDS[self.kind]
 
 
-def resolved(values: ArrayLike) -> np.ndarray:
+def merge_equal_values(values: ArrayLike) -> np.ndarray:
     """Return the values, with those that differ by rounding alone made equal (0.3, 0.1 + 0.2)."""
     x = np.asarray(values, dtype=float)
     order = np.argsort(x, axis=None)
@@ -77,7 +77,7 @@ def standard_deviation(values: ArrayLike) -> float | None:
     A single value has none; values that are all alike scatter by less than their resolution, which
     is not the same as 0.
     """
-    x = resolved(values)
+    x = merge_equal_values(values)
     return float(x.std(ddof=1)) if len(x) > 1 and np.ptp(x) > 0 else None
 
 
@@ -131,7 +131,7 @@ def drift(values: ArrayLike, *, alpha: float = 0.01, least: float = 0.05) -> flo
 
     ``values``: shape (n,), in the order in which they were read; None from fewer than four.
     """
-    x = resolved(values)
+    x = merge_equal_values(values)
     if len(x) < 4 or x.mean() == 0 or np.ptp(x) == 0:
         return None
     line = regression_line(np.arange(len(x)), x)
@@ -295,7 +295,7 @@ def precision(readings: Mapping[str, ArrayLike]) -> Precision:
     reproduce the example of ASTM E691). Critical values are computed: Cochran's from F, Grubbs'
     from t.
     """
-    groups = {name: resolved(values) for name, values in readings.items()}
+    groups = {name: merge_equal_values(values) for name, values in readings.items()}
     if any(not len(v) or not np.isfinite(v).all() for v in groups.values()):
         raise DataError("missing readings", where="precision")
     p, total = len(groups), sum(map(len, groups.values()))

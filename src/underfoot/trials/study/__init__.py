@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from underfoot.core.deprecation import package_names
 
 if TYPE_CHECKING:
     from .file_result import ACCEPTED as ACCEPTED
@@ -13,10 +14,10 @@ if TYPE_CHECKING:
     from .folder import FolderAnalysis as FolderAnalysis
     from .folder import analyse_folder as analyse_folder
     from .folder import recording_results as recording_results
-    from .study import Study as Study
+    from .study import TrialStudy as TrialStudy
     from .study import study_of as study_of
     from .tables import Finding as Finding
-    from .tables import Table as Table
+    from .tables import TrialTable as TrialTable
 
 _HOMES = {
     "ACCEPTED": ".file_result",
@@ -25,8 +26,8 @@ _HOMES = {
     "FileResult": ".file_result",
     "Finding": ".tables",
     "FolderAnalysis": ".folder",
-    "Study": ".study",
-    "Table": ".tables",
+    "TrialStudy": ".study",
+    "TrialTable": ".tables",
     "analyse_folder": ".folder",
     "recording_results": ".folder",
     "study_of": ".study",
@@ -34,9 +35,4 @@ _HOMES = {
 
 __all__ = [*_HOMES]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    # statistics are loaded when they are used
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name], __name__), name)
+__getattr__ = package_names(__name__, _HOMES, gone="0.5", Study="TrialStudy", Table="TrialTable")

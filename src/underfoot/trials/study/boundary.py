@@ -81,7 +81,7 @@ class AlphaBeta:
     model: statistics.LinearModel
     type_two: statistics.AnovaTable
     type_three: statistics.AnovaTable
-    comparisons: tuple[statistics.Comparison, ...]
+    comparisons: tuple[statistics.LevelDifference, ...]
     mean_absolute_residual: float
 
     def __getitem__(self, fluid: str) -> FluidCoefficients:

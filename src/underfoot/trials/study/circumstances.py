@@ -10,7 +10,7 @@ from underfoot.core import DataError
 from ..statistics import ROUNDING, mixed_model, person_means
 from .conditions import ORDERS
 from .file_result import FileResult
-from .tables import Cell, Column, Table, grouped, mean_and_interval, plain_columns
+from .tables import Cell, TrialColumn, TrialTable, group_files, mean_and_interval, plain_columns
 
 _SURE, _SPEED, _SHARE = 0.01, 0.05, 0.25
 """p below which, relative difference of speed from which, and share of the variance of the places
@@ -34,7 +34,7 @@ def places_in_session(files: Sequence[FileResult], person: str) -> dict[str, flo
     the end of file names; nobody's where numbers repeat.
     """
     places: dict[str, float] = {}
-    for results in grouped(files, (person,)).values():
+    for results in group_files(files, (person,)).values():
         for key in (*ORDERS, ""):
             numbers = [_number(result, key) for result in results]
             known = [number for number in numbers if number is not None]
@@ -84,7 +84,7 @@ def circumstances(
 
 def circumstance_table(
     files: Sequence[FileResult], keys: Sequence[str], person: str
-) -> Table | None:
+) -> TrialTable | None:
     """Return speed and place in the session by level of each condition, persons as units."""
     found = circumstances(files, person)
     if not found or not keys:
@@ -108,7 +108,7 @@ def circumstance_table(
             ]  # fmt: skip
         rows.append(tuple(cells))
     heads = (
-        *(Column(name, always=True) for name in ("condition", "level")),
+        *(TrialColumn(name, always=True) for name in ("condition", "level")),
         *plain_columns("walking speed (m/s)", "SD", decimals=2),
         *plain_columns("mean place in the session (%)", decimals=0),
     )
@@ -117,7 +117,7 @@ def circumstance_table(
         "speed, habit or fatigue. Place: 0 % the first trial of a person, 100 % the last."
     )
     title = "Speed and order by condition"
-    return Table.of("speed_and_order", title, heads, rows, note).without_empty()
+    return TrialTable.of("speed_and_order", title, heads, rows, note).without_empty()
 
 
 def gone_with(files: Sequence[FileResult], key: str, person: str) -> dict[str, Mapping[str, float]]:

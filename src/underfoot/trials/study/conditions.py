@@ -14,9 +14,9 @@ from typing import Any
 
 from underfoot.core import DataError, InputError, nearest_match, units
 from underfoot.core.numbers_text import NumberForm, number_forms
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
-from ..readers import Profile, read_profile, trial_suffixes
+from ..readers import TrialsProfile, read_profile, trial_suffixes
 from ..readers.sheet import is_workbook, workbook_rows
 from ..readers.text import is_number, is_written_number, name_and_unit, si_unit
 from ..recording.tester_calibration import written_day
@@ -524,11 +524,11 @@ def _number(cell: str, form: NumberForm) -> float | None:
     return number if is_number(form.plain(cell)) and math.isfinite(number) else None
 
 
-def profile_of(folder: Path, given: Path | None) -> tuple[Profile, str]:
+def profile_of(folder: Path, given: Path | None) -> tuple[TrialsProfile, str]:
     """Return the given profile, else that of the folder, else the plain one; and its text."""
     path = given or folder / "profile.toml"
     if given is None and not path.is_file():
-        return Profile(), ""
+        return TrialsProfile(), ""
     return read_profile(path), path.read_text(encoding="utf-8-sig")
 
 
@@ -544,7 +544,7 @@ def table_rows(path: Path) -> list[list[str]]:
         except DataError as error:
             raise InputError(error.what, where=path.name) from error
     try:
-        text = decoded(data, path.name)
+        text = decode_text(data, path.name)
     except DataError as error:
         raise InputError(error.what, where=path.name) from error
     lines = csv.reader(io.StringIO(text), delimiter=table_delimiter(text))

@@ -8,19 +8,19 @@ import numpy as np
 
 from underfoot.core import Progress, UnderfootError, silent
 
-from ..readers import Profile, read_trials
-from ..recording.trial import Trial, joined
+from ..readers import TrialsProfile, read_trials
+from ..recording.trial import Trial, join_trials
 from ..walking.events import EditError
 from ..walking.gait import DEFINITIONS, required_friction, required_frictions
 from ..walking.walkway import walkway_of
 from .conditions import profile_of, study_folder
 from .edit_table import edits_of
-from .tables import Cell, Table, mean_and_interval, plain_columns
+from .tables import Cell, TrialTable, mean_and_interval, plain_columns
 
 
 def definition_tables(
     folder: Path, *, profile: Path | None = None, progress: Progress = silent
-) -> tuple[Table, Table]:
+) -> tuple[TrialTable, TrialTable]:
     """Return RCOF under all ``DEFINITIONS``: one row a definition, and one row a step.
 
     Files that can't be read are named in the notes; edits by hand are applied. A folder without
@@ -34,7 +34,7 @@ def definition_tables(
     notes = []
     for number, recording in enumerate(recordings, start=1):
         try:
-            trial = reduce(joined, (read_trials(file, read)[0] for file in recording.paths))
+            trial = reduce(join_trials, (read_trials(file, read)[0] for file in recording.paths))
             trial = trial.with_edits(*edits.get(recording.name, []))
             rows += [(recording.name, *row) for row in _steps(trial, read)]
         except EditError:
@@ -44,11 +44,11 @@ def definition_tables(
         progress("reading trials", number / len(recordings))
     title = "RCOF of every step under every definition"
     heads = ("file", "step", "verdict", *plain_columns(*DEFINITIONS, decimals=4))
-    steps = Table.of("definitions_steps", title, heads, rows, *notes)
+    steps = TrialTable.of("definitions_steps", title, heads, rows, *notes)
     return _summary(rows), steps
 
 
-def _steps(trial: Trial, profile: Profile) -> list[tuple[Cell, ...]]:
+def _steps(trial: Trial, profile: TrialsProfile) -> list[tuple[Cell, ...]]:
     walk = walkway_of(
         trial, vertical=profile.vertical, walking=profile.walking, landmarks=profile.landmarks
     )
@@ -64,7 +64,7 @@ def _steps(trial: Trial, profile: Profile) -> list[tuple[Cell, ...]]:
     return rows
 
 
-def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
+def _summary(rows: Sequence[tuple[Cell, ...]]) -> TrialTable:
     values = np.array([row[3:] for row in rows], dtype=float).reshape(len(rows), len(DEFINITIONS))
     out: list[tuple[Cell, ...]] = []
     for i, (name, definition) in enumerate(DEFINITIONS.items()):
@@ -80,4 +80,4 @@ def _summary(rows: Sequence[tuple[Cell, ...]]) -> Table:
     numbers = plain_columns("mean RCOF", "SD", "mean change", "largest change", decimals=4)
     note = "Change: step by step against the default. SD is the standard deviation between steps."
     heads = ("definition", "steps", *numbers, "choices")
-    return Table.of("definitions", "RCOF under every definition", heads, out, note)
+    return TrialTable.of("definitions", "RCOF under every definition", heads, out, note)

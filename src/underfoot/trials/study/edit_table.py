@@ -7,7 +7,7 @@ from pathlib import Path
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
-from underfoot.core.text import decoded
+from underfoot.core.text import decode_text
 
 from ..readers.text import name_and_unit
 from ..recording.trial import Edit
@@ -100,7 +100,7 @@ def edit_text(folder: Path) -> str:
     """
     path = folder / NAMES[0]
     if path.is_file():
-        return decoded(path.read_bytes(), path.name) if path.stat().st_size else ""
+        return decode_text(path.read_bytes(), path.name) if path.stat().st_size else ""
     if (folder / NAMES[1]).is_file():
         raise EditError(
             "the edits of this folder stand in a workbook, which is not written",

@@ -16,9 +16,9 @@ from .tables import (
     HOLM_P,
     P_VALUE,
     Cell,
-    Column,
     Finding,
     Role,
+    TrialColumn,
     decimals_of,
     finding,
     plain_columns,
@@ -39,7 +39,7 @@ def person_columns(
     return columns
 
 
-def paired(
+def pair_values(
     columns: Mapping[str, Mapping[str, float]], first: str, second: str
 ) -> tuple[list[float], list[float], bool]:
     """Return the values of two levels: of the persons who have both, else of all, and which."""
@@ -54,7 +54,7 @@ def effect_cells(
     columns: Mapping[str, Mapping[str, float]], first: str, second: str
 ) -> tuple[Cell, ...]:
     """Return Hedges' g of two levels with its interval; None where it can't be estimated."""
-    a, b, same = paired(columns, first, second)
+    a, b, same = pair_values(columns, first, second)
     try:
         effect = statistics.effect_size(a, b, paired=same)
     except DataError:
@@ -98,7 +98,7 @@ def reliability_findings(
     heads = (
         "condition", *plain_columns(*shares, decimals=3),
         *plain_columns("SEM", "MDC95", decimals=places),
-        "persons", Column("trials each", decimals=1),
+        "persons", TrialColumn("trials each", decimals=1),
     )  # fmt: skip
     return [finding(f"reliability_{response}", title, heads, rows, note)]
 
@@ -176,7 +176,7 @@ def equivalence_findings(
         columns_of = person_columns(values, levels, persons or range(len(values)))
         rows: list[list[Cell]] = []
         for first, second in combinations(columns_of, 2):
-            a, b, same = paired(columns_of, first, second)
+            a, b, same = pair_values(columns_of, first, second)
             try:
                 test = statistics.equivalence(a, b, margin, kind="paired" if same else "welch")
             except DataError:
@@ -193,7 +193,7 @@ def equivalence_findings(
         tests = ("p (lower by the margin)", "p (higher by the margin)", "p equivalent (Holm)")
         heads = (
             "first", "second", "difference", "90 % low", "90 % high",
-            *(Column(test, Role.CHANCE) for test in tests), "single verdict",
+            *(TrialColumn(test, Role.CHANCE) for test in tests), "single verdict",
         )  # fmt: skip
         title = f"Equivalence of {quantity_name(response)} by {factor} within {margin:g}"
         note = (
@@ -247,7 +247,7 @@ def rank_findings(
     if not rows:
         return []
     title = f"Rank tests of {quantity_name(response)}: the scatter is not normal"
-    normality = Column("p of normality (Shapiro-Wilk)", Role.CHANCE)
+    normality = TrialColumn("p of normality (Shapiro-Wilk)", Role.CHANCE)
     heads = ("factor", "test", "statistic", P_VALUE, "p by", "persons", normality)
     note = "Read beside the tests above, which assume a normal scatter of persons' means."
     return [finding(f"ranks_{response}", title, heads, rows, note), *findings]
@@ -256,7 +256,7 @@ def rank_findings(
 _HOW = {"exact": "all orders", "drawn": "100 000 random orders", "large sample": "large samples"}
 
 
-def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.Pair]) -> Finding:
+def _ranked_pairs(response: str, factor: str, pairs: Sequence[statistics.LevelPair]) -> Finding:
     marks = statistics.letters(pairs)
     listed = ", ".join(f"{level} {mark}" for level, mark in marks.items())
     title = f"Pairs of {quantity_name(response)} by {factor}: rank tests"
@@ -310,7 +310,7 @@ def multiplicity_findings(findings: Sequence[Finding]) -> list[Finding]:
     p = [float(value) for *_, value in named if isinstance(value, float)]
     both = statistics.corrected_p(p), statistics.corrected_p(p, "fdr_bh")
     rows = [(*row, a, b) for row, a, b in zip(named, *both, strict=True)]
-    heads = ("outcome", "term", P_VALUE, HOLM_P, Column("p (Benjamini-Hochberg)", Role.CHANCE))
+    heads = ("outcome", "term", P_VALUE, HOLM_P, TrialColumn("p (Benjamini-Hochberg)", Role.CHANCE))
     note = f"{len(rows)} tests of one study: Holm holds the chance of any false one at 5 %."
     title = "Several outcomes: p corrected for their number"
     return [finding("multiplicity", title, heads, rows, note)]
@@ -391,8 +391,8 @@ def curve_findings(
         for row, p in zip(rows, statistics.corrected_p(wholes), strict=True):
             row[-2] = p
         heads = (
-            "first", "second", "persons", Column("t beyond chance", decimals=2),
-            "differs at (stance)", Column("p of the curve", Role.CHANCE), HOLM_P,
+            "first", "second", "persons", TrialColumn("t beyond chance", decimals=2),
+            "differs at (stance)", TrialColumn("p of the curve", Role.CHANCE), HOLM_P,
             "left out: no scatter at",
         )  # fmt: skip
         title = f"Shear / normal force over stance by {factor}: paired curves (SPM)"

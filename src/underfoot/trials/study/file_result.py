@@ -190,7 +190,7 @@ def _values(numbers: Iterable[Number], role: Literal["main", "fact"]) -> dict[st
     return {name: value for name, value in names if name and value is not None}
 
 
-class Draft:
+class FileResultDraft:
     """Collects what one file gives while it is analysed."""
 
     def __init__(self, file: str, conditions: Mapping[str, Any], checksum: str = "") -> None:
@@ -265,7 +265,7 @@ class Draft:
         )
 
 
-def rates(trial: Trial, draft: Draft) -> None:
+def rates(trial: Trial, draft: FileResultDraft) -> None:
     """Note the sampling rates of forces and markers, which rules are about."""
     found = [plate.rate for plate in trial.plates if plate.usable]
     if found:
@@ -274,7 +274,7 @@ def rates(trial: Trial, draft: Draft) -> None:
         draft.note(next(iter(trial.markers.values())).rate, "Hz", fact="marker_rate")
 
 
-def refer_to(record: TesterCalibration | None, draft: Draft) -> None:
+def refer_to(record: TesterCalibration | None, draft: FileResultDraft) -> None:
     """Note what the calibration record says of the day a file was made; a failed check refuses."""
     for flag in () if record is None else record.flags(draft.conditions.get("date")):
         (draft.refusals if flag.name == FAILED else draft.cautions).append(flag.message)

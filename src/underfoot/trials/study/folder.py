@@ -13,22 +13,22 @@ from underfoot.core.pool import available_processors, in_processes
 from underfoot.core.provenance import version
 from underfoot.core.remark import Message, from_stored, stored_form
 
-from ..readers import Profile, read_trials, with_channels
+from ..readers import TrialsProfile, read_trials, with_channels
 from ..recording.protocols import Protocol
 from ..recording.tester_calibration import FILE as CALIBRATION
 from ..recording.tester_calibration import read_calibration
-from ..recording.trial import Edit, Trial, file_checksum, joined
+from ..recording.trial import Edit, Trial, file_checksum, join_trials
 from ..walking.body_weight import body_mass
 from ..walking.events import EditError
 from .conditions import body_mass_noted, person_condition, profile_of, study_folder
 from .edit_table import edits_of
-from .file_result import REFUSED, Draft, FileResult
+from .file_result import REFUSED, FileResult, FileResultDraft
 from .methods import methods_paragraphs
 from .readings import reading_results
 from .steps import STEP_KINDS, analysed_trial, check_ramp
-from .study import Study, study_of
+from .study import TrialStudy, study_of
 from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
-from .tables import Table, curve_table, edit_table, file_table, measurement_table, step_tables
+from .tables import TrialTable, curve_table, edit_table, file_table, measurement_table, step_tables
 
 _CODE = "8"  # raised when what a file gives changes, so that stored results are made again
 _OTHER_MASS = 0.1  # relative; shoes and clothes weigh less
@@ -46,7 +46,7 @@ class FolderAnalysis:
 
     protocol: Protocol
     files: tuple[FileResult, ...]
-    study: Study
+    study: TrialStudy
     methods: tuple[str, ...]
     notes: tuple[str, ...]
     doubts: tuple[Doubt, ...] = ()
@@ -57,7 +57,7 @@ class FolderAnalysis:
         return person_condition(self.files, self.protocol.text("subject"))
 
     @property
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[TrialTable, ...]:
         """All tables: files, study, tests, edits, steps, curves over stance, measurements."""
         files = self.files
         tests = (finding.table for finding in self.study.findings)
@@ -207,7 +207,7 @@ def _analysed(
     files: tuple[Path, ...],
     noted: dict[str, Any],
     edits: list[Edit],
-    profile: Profile,
+    profile: TrialsProfile,
     protocol: Protocol,
 ) -> list[FileResult]:
     if protocol.kind == "readings":
@@ -238,7 +238,7 @@ def _analysed(
         steps = protocol.kind in STEP_KINDS
         trial = trial.with_edits(*(edit for edit in edits if steps or edit.step == number))
         label = name if len(trials) == 1 else f"{name} #{number}"
-        draft = Draft(label, noted, checksum)
+        draft = FileResultDraft(label, noted, checksum)
         draft.cautions += notes
         try:
             analysed_trial(trial, draft, protocol, profile)
@@ -261,7 +261,7 @@ def _analysed(
 
 
 def recording_trials(
-    files: Sequence[Path], profile: Profile
+    files: Sequence[Path], profile: TrialsProfile
 ) -> tuple[list[Trial], list[str], list[Message]]:
     """Return the trials in the files of one recording, why files can't be read, and notes."""
     notes: list[Message] = []
@@ -276,7 +276,7 @@ def recording_trials(
         if not trials:
             trials = list(read)
         elif len(trials) == len(read) == 1:
-            trials = [joined(trials[0], read[0])]
+            trials = [join_trials(trials[0], read[0])]
         else:
             notes.append(
                 Message("{file} holds {count} trials: not joined", file=file.name, count=len(read))

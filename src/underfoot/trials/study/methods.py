@@ -10,7 +10,7 @@ from ..recording.protocols import KINDS, Protocol
 from ..recording.signals import CONTACT_FORCE
 from .file_result import CAUTION, REFUSED, FileResult
 from .steps import protocol_ramp
-from .study import Study
+from .study import TrialStudy
 
 _PLUS_MINUS = (
     "On screen ± is the standard uncertainty of a number (of a mean: its standard error). Tables "
@@ -19,7 +19,7 @@ _PLUS_MINUS = (
 
 
 def methods_paragraphs(
-    files: Sequence[FileResult], protocol: Protocol, study: Study, version: str
+    files: Sequence[FileResult], protocol: Protocol, study: TrialStudy, version: str
 ) -> list[str]:
     """Return paragraphs that say which files were used, how numbers were taken, which tests."""
     counts = Counter(file.verdict for file in files)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError
-from underfoot.core.remark import NOTHING, Message, joined
+from underfoot.core.remark import NOTHING, Message, join_lines
 
 from ..recording.measurement import Measurement, caution
 from ..recording.protocols import Protocol
@@ -25,7 +25,7 @@ from .conditions import (
     one_spelling,
     table_columns,
 )
-from .file_result import Draft, FileResult, Sample, refer_to
+from .file_result import FileResult, FileResultDraft, Sample, refer_to
 from .floor_classes import class_scheme
 
 NOTED = {
@@ -197,11 +197,11 @@ def reading_results(
         label = ", ".join(part for part in key if part)
         conditions = {k: v for k, v in zip(texts, key, strict=True) if v}
         file = f"{name}: {label}" if label and len(rows) > 1 else name
-        draft = Draft(file, {**noted, **conditions}, checksum)
+        draft = FileResultDraft(file, {**noted, **conditions}, checksum)
         refer_to(record, draft)
         used = [c for c in checked if _slider(conditions) in ("", c.slider)]
         draft.refusals += [c.description for c in used if c.failed]
-        check_surfaces = joined(c.description for c in used) if used else NO_CHECKS
+        check_surfaces = join_lines(c.description for c in used) if used else NO_CHECKS
         kinds = [runs[i] for i in members]
         _one_sample(draft, values[members], kinds, quantity, protocol, check_surfaces)
         if boards is not None:
@@ -323,7 +323,7 @@ def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
 
 
 def _one_sample(
-    draft: Draft,
+    draft: FileResultDraft,
     values: np.ndarray,
     runs: Sequence[str],
     quantity: str,

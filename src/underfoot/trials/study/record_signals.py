@@ -7,7 +7,7 @@ import numpy as np
 
 from underfoot.core import UnderfootError
 
-from ..readers import Profile
+from ..readers import TrialsProfile
 from ..recording.protocols import Protocol
 from ..recording.trial import Trial
 from ..walking.slips import heel_motion
@@ -64,7 +64,7 @@ class RecordSignals:
     heel_speed: Mapping[str, Signal]
 
 
-def record_signals(trial: Trial, protocol: Protocol, profile: Profile) -> RecordSignals:
+def record_signals(trial: Trial, protocol: Protocol, profile: TrialsProfile) -> RecordSignals:
     """Return the signals that steps and slips are found in, in the axes of the analysis.
 
     A heel whose speed can't be had (frames not equally spaced) is left out.

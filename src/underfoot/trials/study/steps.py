@@ -18,7 +18,7 @@ from ..machines.pressures import sensor_array_reading
 from ..machines.relaxation_test import RelaxationReading, relaxation_reading
 from ..machines.slip_friction import slide_friction, slide_plate
 from ..machines.tester_checks import log_kind, scan_flags, slide_flags
-from ..readers import Profile
+from ..readers import TrialsProfile
 from ..recording.axes import Ramp, axes_of
 from ..recording.measurement import MEAN_OF_STEPS, Measurement, mean_of
 from ..recording.protocols import KINDS, QUANTITIES, Protocol
@@ -31,11 +31,13 @@ from ..walking.plausibility import unseen
 from ..walking.slips import OutcomeLimits, Slip, SlipDefinition, slip_of
 from ..walking.walkway import Walkway, walkway_of
 from .edit_table import edit_log
-from .file_result import Draft, LoggedEdit, StepResult, rates, refer_to
+from .file_result import FileResultDraft, LoggedEdit, StepResult, rates, refer_to
 from .person_measures import person_measures
 
 
-def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+def analysed_trial(
+    trial: Trial, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+) -> None:
     """Analyse one trial into ``draft`` by the kind of the protocol.
 
     An `UnderfootError` says what makes the whole file useless; single numbers that can't be
@@ -51,7 +53,7 @@ def analysed_trial(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     _KINDS[protocol.kind](trial, draft, protocol, profile)
 
 
-def _check_kind(trial: Trial, protocol: Protocol, profile: Profile) -> None:
+def _check_kind(trial: Trial, protocol: Protocol, profile: TrialsProfile) -> None:
     """Refuse a tester's slide as a walk, and a walk as a slide."""
     steps = protocol.kind in STEP_KINDS
     if not steps and protocol.kind != "slip_tester":
@@ -68,7 +70,9 @@ def _check_kind(trial: Trial, protocol: Protocol, profile: Profile) -> None:
         )
 
 
-def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+def _slip_tester(
+    trial: Trial, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+) -> None:
     axes, record = axes_of(trial, vertical=profile.vertical), profile.calibration
     slide = slide_friction(trial, protocol, axes, record)
     rates(trial, draft)
@@ -109,7 +113,9 @@ def _slip_tester(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     draft.curves["scan"] = stored
 
 
-def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+def _pin_on_disk(
+    trial: Trial, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+) -> None:
     point, noted = friction_point(trial), draft.conditions.get("speed")
     speed = point.speed
     if isinstance(noted, float):
@@ -136,7 +142,9 @@ def _pin_on_disk(trial: Trial, draft: Draft, protocol: Protocol, profile: Profil
     draft.curve("run", time=point.time, ratio=point.ratio, begin=begin, end=end, cof=cof)
 
 
-def _relaxation(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+def _relaxation(
+    trial: Trial, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+) -> None:
     thickness = draft.conditions.get("thickness")
     if not isinstance(thickness, float):
         raise DataError(
@@ -193,7 +201,7 @@ def _moduli(
         )
 
 
-_KINDS: Mapping[str, Callable[[Trial, Draft, Protocol, Profile], None]] = {
+_KINDS: Mapping[str, Callable[[Trial, FileResultDraft, Protocol, TrialsProfile], None]] = {
     "slip_tester": _slip_tester,
     "pin_on_disk": _pin_on_disk,
     "boundary": _pin_on_disk,
@@ -260,7 +268,7 @@ def protocol_ramp(protocol: Protocol) -> Ramp:
     return Ramp(protocol.number("ramp", "rad", 0.0), protocol.text("plate_frame"))
 
 
-def walkway(trial: Trial, protocol: Protocol, profile: Profile) -> Walkway:
+def walkway(trial: Trial, protocol: Protocol, profile: TrialsProfile) -> Walkway:
     """Return a trial on its walkway: what the profile gives, the protocol's ramp."""
     given = {key: getattr(profile, key) for key in ("vertical", "walking", "landmarks")}
     return walkway_of(trial, **given, ramp=protocol_ramp(protocol))
@@ -278,7 +286,9 @@ def check_ramp(protocol: Protocol) -> None:
         )
 
 
-def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+def analysed_steps(
+    trial: Trial, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+) -> None:
     """Analyse a walk or a slip into ``draft``; edits are applied and logged.
 
     A recording without contact is a `DataError` with the cause, an edit by hand that can't be
@@ -288,7 +298,7 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
     walk = walkway(trial, protocol, profile)
     analysis(_Walk(walk, draft, protocol, profile))
     if trial.edits:
-        before = Draft(draft.file, draft.conditions)
+        before = FileResultDraft(draft.file, draft.conditions)
         unedited = replace(walk, trial=replace(trial, edits=()))
         analysis(_Walk(unedited, before, protocol, profile))
         draft.edits += edit_log(trial.edits, before.steps, draft.steps)
@@ -297,7 +307,9 @@ def analysed_steps(trial: Trial, draft: Draft, protocol: Protocol, profile: Prof
 class _Walk:
     """A recording with its contacts, analysed into a draft."""
 
-    def __init__(self, way: Walkway, draft: Draft, protocol: Protocol, profile: Profile) -> None:
+    def __init__(
+        self, way: Walkway, draft: FileResultDraft, protocol: Protocol, profile: TrialsProfile
+    ) -> None:
         self.way, self.trial, self.draft, self.axes = way, way.trial, draft, way.axes
         self.protocol, self.profile = protocol, profile
         self.stances = stances(way)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.core.remark import Message, joined
+from underfoot.core.remark import Message, join_lines
 
 from ..machines.pressure_map import PressureScan, pressure_map
 from ..machines.stribeck_fit import METHODS as FIT_METHODS
@@ -24,10 +24,10 @@ from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
 from .readings import NOTED, board_correction
 from .study_tests import columns_of, comparison_findings, persons_of, slip_findings, varying
 from .tables import (
-    Column,
     Finding,
     Role,
-    Table,
+    TrialColumn,
+    TrialTable,
     condition_columns,
     condition_table,
     plain_columns,
@@ -36,28 +36,28 @@ from .tables import (
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class TrialStudy:
     """Results over the folder: ``tables``, ``findings`` (tests), and ``curves`` for figures."""
 
-    tables: tuple[Table, ...] = ()
+    tables: tuple[TrialTable, ...] = ()
     findings: tuple[Finding, ...] = ()
     curves: Mapping[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
 
-def study_of(files: Sequence[FileResult], protocol: Protocol) -> Study:
+def study_of(files: Sequence[FileResult], protocol: Protocol) -> TrialStudy:
     """Return what the usable files say together, by the kind of the protocol.
 
     A fit, map or test that can't be done is a note with its reason, never an end.
     """
     usable = [file for file in files if file.usable]
     if not usable:
-        return Study(notes=("no usable file",))
+        return TrialStudy(notes=("no usable file",))
     try:
         return _STUDIES[protocol.kind](usable, protocol)
     except UnderfootError as error:
         # The numbers of the files are worth having even when they don't fit together.
-        return Study(notes=(f"no result over all files: {error.what}",))
+        return TrialStudy(notes=(f"no result over all files: {error.what}",))
 
 
 def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]:
@@ -65,11 +65,11 @@ def _keys(files: Sequence[FileResult], wanted: Sequence[str]) -> tuple[str, ...]
     return tuple(key for key in wanted if any(key in f.conditions for f in files))
 
 
-def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
+def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("group"))
     rows, notes, fits = [], [], []
     parameters: dict[str, list[Any]] = {"cof_bl": [], "tau_hydro": [], "cof_asymptote": []}
-    for group, members in tables.grouped(files, keys).items():
+    for group, members in tables.group_files(files, keys).items():
         label = ", ".join(group) or "all files"
         speed, cof = _speed_and_cof(members)
         try:
@@ -93,7 +93,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             keep = parameter.value is not None and parameter.identified
             parameters[parameter.name].append((levels, parameter.value) if keep else None)
     intervals = (
-        (name, "95 % low", "95 % high", Column("remark", Role.LONG))
+        (name, "95 % low", "95 % high", TrialColumn("remark", Role.LONG))
         for name in ("COF_BL", "tau_hydro (m/s)", "COF_asymptote")
     )
     heads = (
@@ -107,7 +107,7 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
         "Intervals are profile likelihoods; a dash means that the profile does not close.",
         "Verdict: good above R^2 0.8, moderate above 0.5, else COF_BL is the mean COF.",
     )
-    made = [Table.of("stribeck", title, heads, rows, *explained)]
+    made = [TrialTable.of("stribeck", title, heads, rows, *explained)]
     findings: list[Finding] = []
     compared = protocol.texts("compare") or keys[:1]
     for name, values in parameters.items():
@@ -144,10 +144,10 @@ def _pin_on_disk(files: list[FileResult], protocol: Protocol) -> Study:
             heads = ("R^2", "residual sd", "points")
             note = "Isotonic regression: nothing is assumed but the fall."
             row = (*numbers.values(), len(cof))
-            made.append(Table.of("master_curve", title, heads, [row], note))
+            made.append(TrialTable.of("master_curve", title, heads, [row], note))
         except UnderfootError as error:
             notes.append(f"no master curve: {error.what}")
-    return Study(tuple(made), tuple(findings), curves, tuple(notes))
+    return TrialStudy(tuple(made), tuple(findings), curves, tuple(notes))
 
 
 def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float]]:
@@ -155,7 +155,7 @@ def _speed_and_cof(files: Sequence[FileResult]) -> tuple[list[float], list[float
     return [speed for speed, _ in both], [cof for _, cof in both]
 
 
-def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
+def _boundary(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     dry, blocked = protocol.text("dry", "dry"), protocol.text("blocked", "sae_75w140")
     keys = protocol.texts("pair")
     rows, notes, fluids, dry_adhesions, wet = [], [], [], [], []
@@ -164,7 +164,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         "hysteresis": [],
         "lubricated_adhesion": [],
     }
-    for pair, members in tables.grouped(files, keys).items():
+    for pair, members in tables.group_files(files, keys).items():
         by_fluid: dict[str, list[float]] = {}
         for f in members:
             if "friction_force" in f.main:
@@ -190,16 +190,16 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             ("adhesion", split.adhesion),
             *((f"adhesion with {k}", m) for k, m in split.lubricated_adhesion.items()),
         ):
-            rows.append((*pair, name, m.value, m.uncertainty, m.n, joined(m.flags)))
+            rows.append((*pair, name, m.value, m.uncertainty, m.n, join_lines(m.flags)))
         for fluid, m in split.lubricated_adhesion.items():
             fluids.append(fluid)
             dry_adhesions.append(split.adhesion.value or 0.0)
             wet.append(m.value or 0.0)
     title = "Adhesion and hysteresis, Eq. 22 to 25"
-    flags = Column("flags", Role.LONG)
+    flags = TrialColumn("flags", Role.LONG)
     heads = (*condition_columns(keys), "part", "force (N)", "standard error (N)", "n", flags)
     note = f"Hysteresis is the friction with {blocked}: all adhesion is taken as blocked."
-    made = [Table.of("friction_split", title, heads, rows, note)]
+    made = [TrialTable.of("friction_split", title, heads, rows, note)]
     findings: list[Finding] = []
     curves: dict[str, Any] = {}
     try:
@@ -211,7 +211,7 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
             f"mean absolute residual {fit.mean_absolute_residual:.3g} N."
         )
         title = "Adhesion a fluid leaves, Eq. 26"
-        made.append(Table.of("alpha_beta", title, heads, lines, note))
+        made.append(TrialTable.of("alpha_beta", title, heads, lines, note))
         findings += [Finding.of_anova(fit.type_two), Finding.of_anova(fit.type_three)]
         drawn = [(r.fluid, r.alpha, r.beta) for r in fit.fluids]
         curves["alpha_beta"] = {"fluid": fluids, "dry": dry_adhesions, "wet": wet, "lines": drawn}
@@ -221,10 +221,10 @@ def _boundary(files: list[FileResult], protocol: Protocol) -> Study:
         made.append(_range_over_fluids(keys[0], parts["lubricated_adhesion"]))
     for name, readings in parts.items():
         findings += _crossed_findings(name, readings)
-    return Study(tuple(made), tuple(findings), curves, tuple(notes))
+    return TrialStudy(tuple(made), tuple(findings), curves, tuple(notes))
 
 
-def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, str]]]) -> Table:
+def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, str]]]) -> TrialTable:
     """Return how far apart the fluids are on each sole, of means over floors and repeats."""
     rows = []
     for sole in ordered_levels(own[key] for _, own in readings):
@@ -238,7 +238,7 @@ def _range_over_fluids(key: str, readings: Sequence[tuple[float, Mapping[str, st
     title = "Range of adhesion over the fluids: a small one is a polymer that no fluid blocks more"
     heads = (*condition_columns([key]), "lowest (N)", "under", "highest (N)", "under", "range (N)")
     note = "The report: polyurethane 0.89 N, soft rubber 3.88 N, hard rubber 4.61 N."
-    return Table.of("fluid_range", title, heads, rows, note)
+    return TrialTable.of("fluid_range", title, heads, rows, note)
 
 
 def _crossed_findings(
@@ -254,11 +254,11 @@ def _crossed_findings(
     return comparison_findings(response, values, factors)
 
 
-def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
+def _slip_tester(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("group"))
     notes, maps, rows = [], [], []
     wanted = next((r for r in protocol.rules if r.quantity == "repeats"), None)
-    for group, members in tables.grouped(files, keys).items():
+    for group, members in tables.group_files(files, keys).items():
         label = ", ".join(group) or "all files"
         broken = wanted.broken_by(float(len(members))) if wanted is not None else None
         if broken:
@@ -278,8 +278,9 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         place = (1e3 * (p.value or 0.0) for p in (mapped.peak_along, mapped.peak_lateral))
         rows.append(
             (label, len(scans), load.value, load.uncertainty,
-             tables.scaled("peak_pressure", mapped.peak.value), *place, 100 * mapped.outer_share,
-             None if change is None else 100 * change, joined(load.flags),
+             tables.scale_to_heading("peak_pressure", mapped.peak.value), *place,
+             100 * mapped.outer_share,
+             None if change is None else 100 * change, join_lines(load.flags),
              load.conventions.get("inlet", ""))
         )  # fmt: skip
         thin = max(1, len(mapped.along) // 200)
@@ -295,21 +296,21 @@ def _slip_tester(files: list[FileResult], protocol: Protocol) -> Study:
         heads = (
             "map", "scans", "fluid load (N)", "of it sensor noise (N)", "peak (kPa)",
             "peak from heel's back (mm)", "peak left of middle (mm)", "share of outer scans (%)",
-            "change at double spacing (%)", Column("flags", Role.LONG), "sensor inlet",
+            "change at double spacing (%)", TrialColumn("flags", Role.LONG), "sensor inlet",
         )  # fmt: skip
         note = "The load is what the scans cover; pressure beyond them is not in it."
         title = "Load carried by the fluid, Eq. 27"
-        made.append(Table.of("maps", title, heads, rows, note))
+        made.append(TrialTable.of("maps", title, heads, rows, note))
     labelled = [f for f in files if "cof" in f.main and all(k in f.conditions for k in keys)]
     values, margin = [f.main["cof"] for f in labelled], protocol.number("equivalence", "1", 0.0)
     findings = comparison_findings("cof", values, columns_of(labelled, keys), margin=margin)
     shown = tuple(table for table in made if table)
-    return Study(shown, tuple(findings), {"maps": maps}, tuple(notes))
+    return TrialStudy(shown, tuple(findings), {"maps": maps}, tuple(notes))
 
 
 def _condition_tables(
     files: list[FileResult], keys: Sequence[str], numbers: tuple[str, ...], person: str
-) -> list[Table]:
+) -> list[TrialTable]:
     """Return the table of each condition alone, without those that have nothing to show."""
     made = (
         condition_table(files, (key,), numbers, person=person, name=f"conditions_{key}")
@@ -318,7 +319,7 @@ def _condition_tables(
     return [table for table in made if table]
 
 
-def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
+def _human_slip(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("compare"))
     numbers = ("slip", "rcof", "acof", "peak_slipping_speed", "slip_distance", "peak_pressure")
     person = person_condition(files, protocol.text("subject"))
@@ -330,10 +331,10 @@ def _human_slip(files: list[FileResult], protocol: Protocol) -> Study:
     walked = circumstance_table(files, keys, person)
     made += [walked] if walked else []
     findings, curves = slip_findings(files, protocol, keys)
-    return Study((*made, tables.steps_table(files)), tuple(findings), curves)
+    return TrialStudy((*made, tables.steps_table(files)), tuple(findings), curves)
 
 
-def _gait(files: list[FileResult], protocol: Protocol) -> Study:
+def _gait(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     with_rcof = [f for f in files if "rcof" in f.main]
     person = person_condition(files, protocol.text("subject"))
     keys = protocol.texts("compare") or tuple(
@@ -369,10 +370,10 @@ def _gait(files: list[FileResult], protocol: Protocol) -> Study:
     made += [walked] if walked else []
     if person:
         made.append(_person_table(with_rcof, tuple(factors), person))
-    return Study((*made, tables.steps_table(files)), tuple(findings))
+    return TrialStudy((*made, tables.steps_table(files)), tuple(findings))
 
 
-def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> Table:
+def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person: str) -> TrialTable:
     groups: dict[tuple[str, ...], list[FileResult]] = {}
     for who, f in zip(persons_of(files, person), files, strict=True):
         groups.setdefault((who, *(str(f.conditions[k]) for k in factors)), []).append(f)
@@ -381,9 +382,14 @@ def _person_table(files: Sequence[FileResult], factors: tuple[str, ...], person:
          sum(map(tables.counted_steps, results)))
         for key, results in tables.in_order(dict(sorted(groups.items()))).items()
     )  # fmt: skip
-    heads = (*condition_columns([person, *factors]), Column("RCOF", decimals=4), "trials", "steps")
+    heads = (
+        *condition_columns([person, *factors]),
+        TrialColumn("RCOF", decimals=4),
+        "trials",
+        "steps",
+    )
     note = "Mean of the trials' means; these are the values that the tests compare."
-    return Table.of("persons", "Persons", heads, rows, note)
+    return TrialTable.of("persons", "Persons", heads, rows, note)
 
 
 MODULI = tuple(
@@ -393,14 +399,14 @@ MODULI = tuple(
 )
 
 
-def _relaxation(files: list[FileResult], protocol: Protocol) -> Study:
+def _relaxation(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, (protocol.text("compare", "material"),))
     numbers = ("force_2_percent", "peak_force", "final_force", *MODULI)
     table = condition_table(files, keys, numbers, person=_sample(files))
-    return Study((table,) if table else ())
+    return TrialStudy((table,) if table else ())
 
 
-def _readings(files: list[FileResult], protocol: Protocol) -> Study:
+def _readings(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     """Return means by sample with their classes, and the precision over operators or machines."""
     quantity = next(q for q in ("ptv", "angle", "cof") if any(q in f.main for f in files))
     keys = _keys(files, protocol.texts("group")) or tuple(
@@ -437,11 +443,11 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         )
     notes += [f"Classes: {s.title}. {s.standing()}." for s in schemes.values()]
     places = max((tables.decimals_of(m.uncertainty) for m in samples if m.uncertainty), default=2)
-    numbers = (*tables.number_columns(quantity, places), Column("u", decimals=places))
-    heads: list[Column | str] = ["file", *condition_columns(keys), "readings", *numbers]
+    numbers = (*tables.number_columns(quantity, places), TrialColumn("u", decimals=places))
+    heads: list[TrialColumn | str] = ["file", *condition_columns(keys), "readings", *numbers]
     heads += plain_columns("COF from PTV", "u of COF", decimals=3) if quantity == "ptv" else ()
     heads += ("class", "2 u reaches") if schemes else ()
-    made = [Table.of("samples", f"Samples, {quantity_name(quantity)}", heads, rows, *notes)]
+    made = [TrialTable.of("samples", f"Samples, {quantity_name(quantity)}", heads, rows, *notes)]
     if quantity == "angle":
         made += _walkers(files, keys, places, protocol.number("board_share", "1", 1.0))
     made += _lowest(files, quantity, keys, places, int(protocol.number("directions", "1", 1.0)))
@@ -450,7 +456,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> Study:
         groups = _readings_by(files, by, keys)
         made += _precision(groups, by, quantity, keys)
         findings += agreement_findings(groups, by, quantity)
-    return Study(tuple(made), tuple(findings))
+    return TrialStudy(tuple(made), tuple(findings))
 
 
 def _readings_by(
@@ -475,11 +481,11 @@ def _classes(scheme: ClassScheme, value: float, u: float | None) -> tuple[str, s
 
 def _walkers(
     files: Sequence[FileResult], keys: tuple[str, ...], places: int, share: float
-) -> list[Table]:
+) -> list[TrialTable]:
     """Return each sample with the angle of all who walked on it, which gives its class."""
     others = tuple(k for k in keys if k != "operator")
     rows, corrected = [], False
-    for level, members in tables.grouped(files, others).items() if "operator" in keys else ():
+    for level, members in tables.group_files(files, others).items() if "operator" in keys else ():
         boards = [f.sample.boards for f in members]
         changes = [
             board_correction(f.main["angle"], own, share)
@@ -516,7 +522,7 @@ def _walkers(
         if corrected
         else "Angles are as read: no calibration boards of all walkers (a column standard angle).",
     )
-    return [Table.of("walkers", "Samples, all walkers, angle", heads, rows, *notes)]
+    return [TrialTable.of("walkers", "Samples, all walkers, angle", heads, rows, *notes)]
 
 
 def _lowest(
@@ -525,12 +531,12 @@ def _lowest(
     keys: tuple[str, ...],
     places: int,
     directions: int,
-) -> list[Table]:
+) -> list[TrialTable]:
     """Return each sample with all its directions and the lowest, which gives the class."""
     heading = next((k for k in keys if k in NOTED["direction"]), "")
     others = tuple(k for k in keys if k != heading)
     rows = []
-    for level, members in tables.grouped(files, others).items() if heading else ():
+    for level, members in tables.group_files(files, others).items() if heading else ():
         values = {str(f.conditions.get(heading, "")): f.main[quantity] for f in members}
         low = min(members, key=lambda f: f.main[quantity])
         scheme, u = low.sample.scheme, low.measurements[0].uncertainty
@@ -546,7 +552,7 @@ def _lowest(
     classes = ("class", "2 u reaches", "directions measured")
     heads = (*condition_columns(others), "directions", "lowest", *numbers, *classes)
     note = "The class of a sample is that of its lowest direction."
-    return [Table.of("lowest", f"Samples, lowest direction, {name}", heads, rows, note)]
+    return [TrialTable.of("lowest", f"Samples, lowest direction, {name}", heads, rows, note)]
 
 
 _UNRESOLVED = (
@@ -560,7 +566,7 @@ def _precision(
     by: str,
     quantity: str,
     keys: tuple[str, ...],
-) -> list[Table]:
+) -> list[TrialTable]:
     """Return repeatability and reproducibility of each floor over laboratories or operators."""
     others = [k for k in keys if k != by]
     rows, tests, tried = [], [], False
@@ -597,7 +603,7 @@ def _precision(
         *((_UNRESOLVED,) if any(None in row[-4:] for row in rows) else ()),
     )
     title = f"Repeatability and reproducibility by {by}"
-    return [Table.of(f"precision_{by}", title, heads, rows, *notes)]
+    return [TrialTable.of(f"precision_{by}", title, heads, rows, *notes)]
 
 
 def _sample(files: Sequence[FileResult]) -> str:
@@ -610,7 +616,7 @@ def _scan(result: FileResult) -> dict[str, Any]:
     return {**stored, **{key: np.array(stored[key]) for key in ("along", "pressure")}}
 
 
-_STUDIES: Mapping[str, Callable[[list[FileResult], Protocol], Study]] = {
+_STUDIES: Mapping[str, Callable[[list[FileResult], Protocol], TrialStudy]] = {
     "pin_on_disk": _pin_on_disk,
     "boundary": _boundary,
     "slip_tester": _slip_tester,

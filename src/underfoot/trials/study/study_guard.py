@@ -21,7 +21,7 @@ from .conditions import MASS, NUMBERS, ORDERS, PERSON, person_condition, plain_s
 from .file_result import REFUSED, FileResult
 from .person_measures import FORCE, HEIGHT
 from .readings import NO_CHECKS, NO_ZERO
-from .tables import Table, grouped
+from .tables import TrialTable, group_files
 
 _BODY = {
     **dict.fromkeys(MASS, 0.05), "height": 0.02, "body height": 0.02, "sex": 0.0, "gender": 0.0
@@ -198,7 +198,7 @@ def study_doubts(files: Sequence[FileResult], protocol: Protocol) -> list[Doubt]
     return doubts
 
 
-def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
+def doubt_table(doubts: Sequence[Doubt]) -> TrialTable | None:
     """Return the doubts as a table, a row each, or None where there is none."""
     if not doubts:
         return None
@@ -206,7 +206,7 @@ def doubt_table(doubts: Sequence[Doubt]) -> Table | None:
         (d.message, "yes" if d.out else "", len(d.files), ", ".join(d.files)) for d in doubts
     )
     heads = ("doubt", "left out of means and tests", "number", "files")
-    return Table.of("doubts", "Read this first: doubts about the study's files", heads, rows)
+    return TrialTable.of("doubts", "Read this first: doubts about the study's files", heads, rows)
 
 
 def _noted(result: FileResult) -> dict[str, Any]:
@@ -271,7 +271,7 @@ def _crowded_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]
     for key, having in _factors([file for file in files if person in file.conditions]).items():
         counts = {
             who: Counter(str(result.conditions[key]) for result in results)
-            for (who,), results in grouped(having, (person,)).items()
+            for (who,), results in group_files(having, (person,)).items()
         }
         usual = {
             level: float(np.median([count[level] for count in counts.values()]))
@@ -447,7 +447,7 @@ def _circumstances(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 def _sides_as_persons(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Left and right of persons noted as two: S01L, S01R; of most where these may be initials."""
-    own = grouped(files, (person,))
+    own = group_files(files, (person,))
     sides: dict[str, set[str]] = defaultdict(set)
     sure: dict[str, bool] = {}
     for (who,) in own:
@@ -479,7 +479,7 @@ def _one_body(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
     """Two persons with one body: weight, height and distances of markers agree as repeats do."""
     bodies: dict[str, list[Mapping[str, float]]] = {
         who: [result.body for result in results if result.body]
-        for (who,), results in grouped(files, (person,)).items()
+        for (who,), results in group_files(files, (person,)).items()
     }
     usual = {who: {name: median([b[name] for b in results if name in b]) for name in results[0]}
              for who, results in bodies.items() if results}  # fmt: skip
@@ -570,7 +570,7 @@ def _trials_mislabelled(files: Sequence[FileResult], person: str) -> Iterator[Do
     """A trial far from its person's others with the same label, and as those with another."""
     for key, having in _compared(files, person).items():
         having = [o for o in having if person in o.conditions and o.main.get("rcof", 0.0) > 0.0]
-        cells = grouped(having, (person, key))
+        cells = group_files(having, (person, key))
         left = [
             np.log(result.main["rcof"]) - np.median([np.log(o.main["rcof"]) for o in results])
             for results in cells.values() if len(results) > 2 for result in results
@@ -616,7 +616,7 @@ def _single_levels(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
 
 
 def _bodies_noted(files: Sequence[FileResult], person: str) -> Iterator[Doubt]:
-    for (who,), results in grouped(files, (person,)).items():
+    for (who,), results in group_files(files, (person,)).items():
         for key, limit in _BODY.items():
             noted = {result.conditions[key] for result in results if key in result.conditions}
             numbers = [value for value in noted if isinstance(value, float)]
@@ -633,7 +633,7 @@ def _bodies_measured(files: Sequence[FileResult], person: str) -> Iterator[Doubt
     """A recording that shows another body than the person's other recordings."""
     measured = {
         who: [(result.file, result.body) for result in results if result.body]
-        for (who,), results in grouped(files, (person,)).items()
+        for (who,), results in group_files(files, (person,)).items()
     }
     away: dict[tuple[str, str], dict[str, float]] = {}
     for who, results in measured.items():
@@ -731,7 +731,7 @@ def _plates_apart(files: Sequence[FileResult]) -> Iterator[Doubt]:
 def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """A COF far from the other repeats of the same shoe, floor and fluid."""
     keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
-    for level, results in grouped(files, keys).items() if keys else ():
+    for level, results in group_files(files, keys).items() if keys else ():
         values = np.array([result.main["cof"] for result in results if "cof" in result.main])
         if len(values) < 4:
             continue
@@ -753,7 +753,7 @@ def _repeats(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]
 def _drifts(files: Sequence[FileResult], protocol: Protocol) -> Iterator[Doubt]:
     """Repeats of one shoe, floor and fluid that rise or fall from the first to the last."""
     keys = tuple(k for k in protocol.texts("group") if any(k in f.conditions for f in files))
-    for level, results in grouped([f for f in files if "cof" in f.main], keys).items():
+    for level, results in group_files([f for f in files if "cof" in f.main], keys).items():
         places = run_numbers(results)
         rise = drift(
             [result.main["cof"] for result in sorted(results, key=lambda f: places[f.file])]

@@ -32,10 +32,10 @@ from .tables import (
     HOLM_P,
     P_VALUE,
     Cell,
-    Column,
     Finding,
     Role,
-    Table,
+    TrialColumn,
+    TrialTable,
     condition_columns,
     decimals_of,
     finding,
@@ -123,7 +123,7 @@ def _crossed(
     """Return a crossed model; without the interactions that there are too few values for."""
     for order in (None, 2):
         try:
-            return fit(statistics.crossed(*factors, order=order))
+            return fit(statistics.crossed_terms(*factors, order=order))
         except DataError:
             continue
     return fit(tuple(factors))
@@ -166,7 +166,7 @@ def _mixed(
     except UnderfootError:
         return [mixed], model
     title = f"Repeated-measures analysis of variance of {name}, means of persons"
-    heads = (*heads, "epsilon", Column("p (Greenhouse-Geisser)", Role.CHANCE))
+    heads = (*heads, "epsilon", TrialColumn("p (Greenhouse-Geisser)", Role.CHANCE))
     corrected = zip(repeated.rows, repeated.epsilon, repeated.p_corrected, strict=True)
     rows = [(row.term, row.df, row.error_df, row.f, row.p, *more) for row, *more in corrected]
     note = (
@@ -235,10 +235,10 @@ def _tukey(
         heads = (
             "first", "second",
             *plain_columns("difference", "SE", "95 % low", "95 % high", decimals=places),
-            Column("p adjusted", Role.CHANCE),
+            TrialColumn("p adjusted", Role.CHANCE),
             *plain_columns("Hedges' g", "g 95 % low", "g 95 % high", decimals=2),
         )  # fmt: skip
-        table = Table.of(name, title, heads, rows, note)
+        table = TrialTable.of(name, title, heads, rows, note)
         findings.append(
             Finding(name, title, table, (), response, factor, marks, drawn, by_person=bool(persons))
         )

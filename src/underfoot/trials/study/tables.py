@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from underfoot.core import UnderfootError
-from underfoot.core.remark import Message, joined
+from underfoot.core.remark import Message, join_lines
 
 from .. import statistics
 from ..recording.measurement import MEAN_OF_STEPS
@@ -39,7 +39,7 @@ class Role(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class TrialColumn:
     """A column of a table: heading, what its cells are, and of which quantity.
 
     ``decimals``: those that a reader should see, None for as many as the value needs; files keep
@@ -53,27 +53,27 @@ class Column:
     always: bool = False
 
 
-P_VALUE = Column("p", Role.CHANCE)
-HOLM_P = Column("p (Holm)", Role.CHANCE)
+P_VALUE = TrialColumn("p", Role.CHANCE)
+HOLM_P = TrialColumn("p (Holm)", Role.CHANCE)
 
 
-def plain_columns(*names: str, decimals: int | None = None) -> tuple[Column, ...]:
+def plain_columns(*names: str, decimals: int | None = None) -> tuple[TrialColumn, ...]:
     """Return plain columns that share their decimals."""
-    return tuple(Column(name, decimals=decimals) for name in names)
+    return tuple(TrialColumn(name, decimals=decimals) for name in names)
 
 
-def condition_columns(names: Iterable[str]) -> tuple[Column, ...]:
+def condition_columns(names: Iterable[str]) -> tuple[TrialColumn, ...]:
     """Return the columns of conditions."""
-    return tuple(Column(name, Role.CONDITION, always=True) for name in names)
+    return tuple(TrialColumn(name, Role.CONDITION, always=True) for name in names)
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TrialTable:
     """Rows under columns; ``notes`` stand below. ``name`` is a file name without ending."""
 
     name: str
     title: str
-    heads: tuple[Column, ...]
+    heads: tuple[TrialColumn, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...] = ()
 
@@ -82,12 +82,12 @@ class Table:
         cls,
         name: str,
         title: str,
-        heads: Iterable[Column | str],
+        heads: Iterable[TrialColumn | str],
         rows: Iterable[Iterable[Cell]],
         *notes: str,
     ) -> Self:
         """Return the table; a heading alone stands for a plain column."""
-        columns = (head if isinstance(head, Column) else Column(head) for head in heads)
+        columns = (head if isinstance(head, TrialColumn) else TrialColumn(head) for head in heads)
         return cls(name, title, tuple(columns), tuple(map(tuple, rows)), notes)
 
     @property
@@ -129,7 +129,7 @@ class Finding:
 
     name: str
     title: str
-    table: Table
+    table: TrialTable
     cautions: tuple[Message, ...] = ()
     response: str = ""
     factor: str = ""
@@ -147,20 +147,22 @@ class Finding:
         rows = tuple((r.term, r.sum_of_squares, r.df, r.f, r.p) for r in anova.rows)
         plain = "".join(c if c.isalnum() else "_" for c in anova.model.response_name.casefold())
         name = f"anova_{plain}_type_{anova.ss_type}"
-        table = Table.of(name, anova.title, ("term", "sum of squares", "df", "F", P_VALUE), rows)
+        table = TrialTable.of(
+            name, anova.title, ("term", "sum of squares", "df", "F", P_VALUE), rows
+        )
         return cls(name, anova.title, table, (*cautions, *anova.warnings), outcome=outcome)
 
 
 def finding(
     name: str,
     title: str,
-    heads: Iterable[Column | str],
+    heads: Iterable[TrialColumn | str],
     rows: Iterable[Iterable[Cell]],
     note: str = "",
     cautions: Sequence[Message] = (),
 ) -> Finding:
     """Return a finding from the rows of its table."""
-    table = Table.of(name, title, heads, rows, *filter(None, [note]))
+    table = TrialTable.of(name, title, heads, rows, *filter(None, [note]))
     return Finding(name, title, table, tuple(cautions))
 
 
@@ -203,12 +205,12 @@ def heading(name: str, what: str = "") -> str:
     return quantity_name(name) + (f" {what}" if what else "") + tail
 
 
-def scaled(name: str, value: float | None) -> float | None:
+def scale_to_heading(name: str, value: float | None) -> float | None:
     """Return an SI value in the unit of its heading."""
     return None if value is None else value * _FACTORS.get(_UNITS.get(name, ""), 1.0)
 
 
-def grouped(
+def group_files(
     files: Iterable[FileResult], keys: Sequence[str]
 ) -> dict[tuple[str, ...], list[FileResult]]:
     """Return the files that have all the conditions ``keys``, by their levels."""
@@ -235,7 +237,7 @@ def in_order(
     return {key: groups[key] for key in sorted(groups, key=place)}
 
 
-def file_table(files: Sequence[FileResult]) -> Table:
+def file_table(files: Sequence[FileResult]) -> TrialTable:
     """Return one row per file: verdict, main numbers, conditions, reasons."""
     numbers = list(dict.fromkeys(name for file in files for name in file.main))
     # A number that the analysis took over from the conditions is shown once.
@@ -249,21 +251,22 @@ def file_table(files: Sequence[FileResult]) -> Table:
         (
             file.file,
             file.verdict,
-            *(scaled(name, file.main.get(name)) for name in numbers),
+            *(scale_to_heading(name, file.main.get(name)) for name in numbers),
             *(file.conditions.get(name) for name in conditions),
-            joined(file.reasons),
+            join_lines(file.reasons),
         )
         for file in files
     )
     measured = (
-        Column(heading(name), Role.ANSWER if name in _ANSWERS else Role.PLAIN) for name in numbers
+        TrialColumn(heading(name), Role.ANSWER if name in _ANSWERS else Role.PLAIN)
+        for name in numbers
     )
-    reasons = Column("reasons", Role.LONG)
+    reasons = TrialColumn("reasons", Role.LONG)
     heads = ("file", "verdict", *measured, *condition_columns(conditions), reasons)
-    return Table.of("files", "Every file with its verdict", heads, rows)
+    return TrialTable.of("files", "Every file with its verdict", heads, rows)
 
 
-def measurement_table(files: Sequence[FileResult]) -> Table:
+def measurement_table(files: Sequence[FileResult]) -> TrialTable:
     """Return one row per number with uncertainty, reason, flags and conventions."""
     person = person_condition(files)
     rows = tuple(
@@ -272,7 +275,7 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
             str(file.conditions.get(person, "")),
             *(m.item, m.name, m.value, m.unit, m.uncertainty, m.reason, m.n),
             "yes" if m.caution_flags else "",
-            joined(flag.message for flag in m.flags),
+            join_lines(flag.message for flag in m.flags),
             "; ".join(f"{key}: {value}" for key, value in m.conventions.items()),
         )
         for file in files
@@ -280,12 +283,12 @@ def measurement_table(files: Sequence[FileResult]) -> Table:
     )
     heads = (
         "file", "person", "item", "quantity", "value", "unit", "standard uncertainty",
-        "not estimated because", "n", "caution", Column("flags", Role.LONG), "conventions",
+        "not estimated because", "n", "caution", TrialColumn("flags", Role.LONG), "conventions",
     )  # fmt: skip
-    return Table.of("measurements", "Every number with its conventions", heads, rows)
+    return TrialTable.of("measurements", "Every number with its conventions", heads, rows)
 
 
-def edit_table(files: Iterable[FileResult]) -> Table | None:
+def edit_table(files: Iterable[FileResult]) -> TrialTable | None:
     """Return the edit log: every edit by hand with event and number before and after, or None."""
     edits = [(result.file, edit) for result in files for edit in result.edits]
     if not edits:
@@ -308,32 +311,34 @@ def edit_table(files: Iterable[FileResult]) -> Table | None:
         "file", "step", "what", "before", "after", "quantity", "number before", "number after",
         "why",
     )  # fmt: skip
-    return Table.of("edits", "Edits by hand", heads, rows)
+    return TrialTable.of("edits", "Edits by hand", heads, rows)
 
 
 _STEP_COLUMNS = {
-    "item": Column("step", always=True), "side": Column("side"),
-    "contact": Column("contact (s)", decimals=3), "rcof": Column("RCOF", decimals=3, always=True),
-    "rcof_uncertainty": Column("RCOF standard uncertainty", decimals=3),
-    "walking_speed": Column("walking speed (m/s)", decimals=2), "outcome": Column("slip"),
-    "verdict": Column("verdict", always=True), "reason": Column("reason", Role.LONG, always=True),
-    "cautions": Column("cautions", Role.LONG, always=True), "by_hand": Column("by hand"),
+    "item": TrialColumn("step", always=True), "side": TrialColumn("side"),
+    "contact": TrialColumn("contact (s)", decimals=3),
+    "rcof": TrialColumn("RCOF", decimals=3, always=True),
+    "rcof_uncertainty": TrialColumn("RCOF standard uncertainty", decimals=3),
+    "walking_speed": TrialColumn("walking speed (m/s)", decimals=2), "outcome": TrialColumn("slip"),
+    "verdict": TrialColumn("verdict", always=True),
+    "reason": TrialColumn("reason", Role.LONG, always=True),
+    "cautions": TrialColumn("cautions", Role.LONG, always=True), "by_hand": TrialColumn("by hand"),
 }  # fmt: skip
 """Columns of the table of steps by the field of a step."""
 
 
-def steps_table(files: Iterable[FileResult]) -> Table:
+def steps_table(files: Iterable[FileResult]) -> TrialTable:
     """Return one row for each contact with a plate, rejected ones with the reason."""
     rows = []
     for file in files:
         for step in file.steps:
             values = [getattr(step, name) for name in _STEP_COLUMNS]
-            texts = [joined(v) if isinstance(v, tuple) else v for v in values]
+            texts = [join_lines(v) if isinstance(v, tuple) else v for v in values]
             rows.append((file.file, *texts))
-    heads = (Column("file", always=True), *_STEP_COLUMNS.values())
+    heads = (TrialColumn("file", always=True), *_STEP_COLUMNS.values())
     note = "All that is known of a step is in tables/steps_wide.csv and steps_long.csv."
     title = "Every contact, rejected ones with the reason"
-    return Table.of("steps", title, heads, rows, note).without_empty()
+    return TrialTable.of("steps", title, heads, rows, note).without_empty()
 
 
 def condition_table(
@@ -343,7 +348,7 @@ def condition_table(
     *,
     person: str = "",
     name: str = "conditions",
-) -> Table | None:
+) -> TrialTable | None:
     """Return mean, SD and 95 % interval of numbers by conditions, persons counted once in each.
 
     Trials of a person are averaged first, so that SD and interval are those between persons (the
@@ -354,7 +359,7 @@ def condition_table(
     numbers = tuple(n for n in numbers if any(n in f.main for f in usable))
     if not usable or not numbers:
         return None
-    groups = grouped(usable, keys)
+    groups = group_files(usable, keys)
     if len(groups) > 1:
         groups[("all", *("" for _ in keys[1:]))] = usable
     unit = "persons" if person else "files"
@@ -369,7 +374,7 @@ def condition_table(
             for member, who in zip(members, people, strict=True):
                 if number in member.main:
                     values.setdefault(who, []).append(
-                        float(scaled(number, member.main[number]) or 0)
+                        float(scale_to_heading(number, member.main[number]) or 0)
                     )
             if number == "slip":
                 trials = [x for v in values.values() for x in v]
@@ -402,21 +407,21 @@ def condition_table(
             'repeat a person, note it ("subject" in conditions.csv, or a pattern of names).'
         )
     shares = ("share of trials with a slip", "95 % from", "95 % to", f"{unit} who slipped")
-    heads: list[Column | str] = [*condition_columns(keys)]
-    heads += [Column(things, Role.COUNT) for things in (unit, trials, "steps")]
+    heads: list[TrialColumn | str] = [*condition_columns(keys)]
+    heads += [TrialColumn(things, Role.COUNT) for things in (unit, trials, "steps")]
     for number in numbers:
         places = decimals_of(float(np.median(errors[number]))) if number in errors else None
         heads += shares if number == "slip" else number_columns(number, places)
     title = "By " + ", ".join(keys) if keys else "All trials"
-    return Table.of(name, title, heads, rows, *notes).without_empty()
+    return TrialTable.of(name, title, heads, rows, *notes).without_empty()
 
 
-def number_columns(name: str, decimals: int | None = None) -> list[Column]:
+def number_columns(name: str, decimals: int | None = None) -> list[TrialColumn]:
     """Return the columns of mean, SD and interval of a quantity."""
     ends = [f"{quantity_name(name)} 95 % {end}" for end in ("low", "high")]
     heads = (heading(name), heading(name, "SD"), *ends)
     roles = (Role.MEAN, Role.SD, Role.LOW, Role.HIGH)
-    return [Column(*both, name, decimals) for both in zip(heads, roles, strict=True)]
+    return [TrialColumn(*both, name, decimals) for both in zip(heads, roles, strict=True)]
 
 
 INTERVALS = (
@@ -468,7 +473,7 @@ _TEXTS = ("plate", "side", "verdict", "reason", "outcome", "slip_direction", "re
 _CURVES = ("vertical", "braking", "to the left", "ratio")
 
 
-def step_tables(files: Iterable[FileResult]) -> list[Table]:
+def step_tables(files: Iterable[FileResult]) -> list[TrialTable]:
     """Return one row a step (``steps_wide``) and one row a number (``steps_long``).
 
     Conditions stand beside. Refused files and rejected steps are in both, with their verdict.
@@ -484,7 +489,7 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
         for step in file.steps:
             head = (file.file, file.verdict, *own, step.number)
             texts = [getattr(step, name) or "" for name in _TEXTS]
-            cautions = joined(step.cautions)
+            cautions = join_lines(step.cautions)
             wide.append((*head, *texts, cautions, *(getattr(step, name) for name in STEP_NUMBERS)))
             long += [
                 (*head, step.side, step.verdict, name, getattr(step, name), unit)
@@ -496,12 +501,12 @@ def step_tables(files: Iterable[FileResult]) -> list[Table]:
     heads = (*first, *_TEXTS, "cautions", *units)
     tidy = (*first, "side", "step verdict", "quantity", "value", "unit")
     return [
-        Table.of("steps_wide", "Every step with its numbers", heads, wide),
-        Table.of("steps_long", "Every number of every step", tidy, long),
+        TrialTable.of("steps_wide", "Every step with its numbers", heads, wide),
+        TrialTable.of("steps_long", "Every number of every step", tidy, long),
     ]
 
 
-def curve_table(files: Iterable[FileResult]) -> Table | None:
+def curve_table(files: Iterable[FileResult]) -> TrialTable | None:
     """Return mean and SD of the forces over 0 to 100 % of stance, by condition, or None.
 
     The steps of a person (of a file, where no person is named) are averaged first; SD is that
@@ -539,4 +544,4 @@ def curve_table(files: Iterable[FileResult]) -> Table | None:
     names = [f"{n} (N)" if n != "ratio" else n for n in _CURVES]
     both = [column for name in names for column in (f"mean {name}", f"SD {name}")]
     heads = (*condition_columns(keys), "percent of stance", "persons" if person else "files", *both)
-    return Table.of("stance_curves", "Forces over stance", heads, rows)
+    return TrialTable.of("stance_curves", "Forces over stance", heads, rows)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from underfoot.core.deprecation import renamed
+from underfoot.core.deprecation import renamed_member
 from underfoot.core.remark import Message
 
 from ..recording.axes import Direction, DirectionSource, walking_direction
@@ -47,7 +47,7 @@ class Belt:
         values = {"speed": self.speed(time), "u": self.uncertainty, "source": self.source}
         return Message("{speed:.2f} m/s (u {u:.2f} m/s, {source})", **values)
 
-    words = renamed("words", "speed_text", gone="0.4")
+    words = renamed_member("words", "speed_text", gone="0.4")
 
     def carry_back(self, marker: Marker, time: float) -> Marker:
         """Return a marker as seen from the surface, in laboratory axes at ``time`` (s).

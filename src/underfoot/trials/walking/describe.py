@@ -10,11 +10,11 @@ import numpy as np
 
 from underfoot.core import InputError, unknown_name
 
-from ..readers import Profile, read_profile, read_trials
+from ..readers import TrialsProfile, read_profile, read_trials
 from ..recording.axes import LEVEL, Axes, DirectionSource, Ramp, axis_name
 from ..recording.marker_names import heel_candidates
 from ..recording.measurement import mean_of
-from ..recording.trial import Edit, Plate, Trial, joined
+from ..recording.trial import Edit, Plate, Trial, join_trials
 from .gait import DEFINITIONS, RcofDefinition, RequiredFriction, required_frictions
 from .walkway import walkway_of
 
@@ -155,13 +155,13 @@ class Description:
         return lines
 
 
-def described(
+def describe_trial(
     trial: Trial,
     *,
     definition: RcofDefinition | None = None,
     vertical: str | None = None,
     walking: str | None = None,
-    profile: Profile | None = None,
+    profile: TrialsProfile | None = None,
     ramp: Ramp = LEVEL,
 ) -> Description:
     """Return the description of a trial.
@@ -169,7 +169,7 @@ def described(
     ``vertical`` and ``walking`` are overrides such as ``"z"``, ``"+x"``; a profile's are used when
     these are not given.
     """
-    profile = profile or Profile()
+    profile = profile or TrialsProfile()
     definition = definition or DEFINITIONS["default"]
     walk = walkway_of(
         trial,
@@ -189,7 +189,7 @@ def described_file(
     path: Path | str,
     *,
     companion: Path | str | None = None,
-    profile: Profile | Path | str | None = None,
+    profile: TrialsProfile | Path | str | None = None,
     definition: str = "default",
     vertical: str | None = None,
     walking: str | None = None,
@@ -205,18 +205,18 @@ def described_file(
     """
     if definition not in DEFINITIONS:
         raise unknown_name("RCOF definition", definition, DEFINITIONS, where="definition")
-    if profile is not None and not isinstance(profile, Profile):
+    if profile is not None and not isinstance(profile, TrialsProfile):
         profile = read_profile(Path(profile))
     if vertical:
-        profile = replace(profile or Profile(), vertical=vertical)
+        profile = replace(profile or TrialsProfile(), vertical=vertical)
     trials = read_trials(path, profile, subtract_baseline=subtract_baseline)
     if companion is not None:
         others = read_trials(companion, profile, subtract_baseline=subtract_baseline)
         if len(trials) != 1 or len(others) != 1:
             raise InputError("only files that hold one trial each can be joined", where="--with")
-        trials = (joined(trials[0], others[0]),)
+        trials = (join_trials(trials[0], others[0]),)
     chosen: Any = {"definition": DEFINITIONS[definition], "profile": profile, "ramp": ramp}
-    return tuple(described(t, vertical=vertical, walking=walking, **chosen) for t in trials)
+    return tuple(describe_trial(t, vertical=vertical, walking=walking, **chosen) for t in trials)
 
 
 def _baseline(plate: Plate) -> str:

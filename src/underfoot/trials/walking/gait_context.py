@@ -10,7 +10,7 @@ import numpy as np
 from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag
-from ..recording.signals import MARKER_FILTER, LowPass, bridged, frames_between, low_passed
+from ..recording.signals import MARKER_FILTER, LowPass, bridge_gaps, frames_between, low_passed
 from ..recording.trial import Marker
 from .events import Stance
 from .slips import OutcomeLimits, Slip, heel_motion
@@ -315,7 +315,7 @@ def _bridged_between(
     path = marker.positions[near] - (0.0 if base is None else base.positions[near])
     time = marker.time[near]
     inside = (time > begin) & (time < end)
-    return time[inside], bridged(path, gap)[0][inside]
+    return time[inside], bridge_gaps(path, gap)[0][inside]
 
 
 def _misstep(step: Step) -> Message:

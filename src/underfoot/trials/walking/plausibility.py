@@ -28,7 +28,7 @@ from ..recording.trial import Marker, Plate, once_a_record
 from .body_weight import BodyWeight
 from .events import Stance
 from .likelihood import unlikely_flags
-from .processed import averaged, dead_time
+from .processed import comb_depths, dead_time
 from .slips import contact_from_heel, heel_motion, marker_jumps
 from .step import Step
 from .step_features import BUMP, FASTEST, USUAL_DURATION, USUAL_SPEED, VERTICAL
@@ -400,7 +400,7 @@ def _sample_flags(plate: Plate, stance: Stance, up: np.ndarray) -> Iterator[Flag
     if held >= 4 and held / rate >= HELD.value:
         text = Message("all forces stand still for {held} samples: held values", held=held)
         yield HELD.flag(held / rate, text)
-    depth, window = averaged(plate.force, rate, stance.start, stance.stop, up)
+    depth, window = comb_depths(plate.force, rate, stance.start, stance.stop, up)
     text = Message(
         "the forces lack every multiple of {rate:.0f} Hz: a moving average of {time:.0f} ms",
         rate=1.0 / max(window, 1e-3),

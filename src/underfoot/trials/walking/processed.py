@@ -48,7 +48,7 @@ def _combs(rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return windows, orders, np.concatenate(at) if at else np.empty(0)
 
 
-def averaged(
+def comb_depths(
     force: np.ndarray, rate: float, start: int, stop: int, up: np.ndarray
 ) -> tuple[float, float]:
     """Return ``comb_depth`` of a stance in its surroundings: of all forces (n, 3), or of the shear.

@@ -11,7 +11,7 @@ from underfoot.core import InputError, unknown_name
 from underfoot.core.remark import NOTHING, Message
 
 from ..recording.measurement import Flag, Measurement, caution
-from ..recording.signals import MARKER_FILTER, LowPass, bridged, low_passed, runs
+from ..recording.signals import MARKER_FILTER, LowPass, bridge_gaps, low_passed, runs
 from ..recording.trial import Marker, once_a_record
 from .events import Stance
 from .step import Step
@@ -138,7 +138,7 @@ def _motion(marker: Marker, up: tuple[float, ...], definition: SlipDefinition) -
         raise InputError("frames are not equally spaced", where="marker")
     jumps = marker_jumps(marker.positions)
     seen_path = np.where(jumps[:, None], np.nan, marker.positions)
-    path, filled = bridged(seen_path, round(definition.longest_gap * marker.rate))
+    path, filled = bridge_gaps(seen_path, round(definition.longest_gap * marker.rate))
     position = np.full(path.shape, np.nan)
     velocity = np.full(path.shape, np.nan)
     residuals: list[np.ndarray] = []

@@ -122,7 +122,7 @@ def _solved_speed(v, share, push, h, load, lean, c, viscosity, table_speed, tabl
 
 
 @njit(cache=True)
-def carried(
+def carry_slip(
     times, normals, drives, leans, dry_speed, transfer, given_speed, mass, c, viscosity, pool,
     table_speed, table_cof, over,
 ):  # fmt: skip
