@@ -548,7 +548,7 @@ def test_the_address_of_the_app_is_told_and_its_processes_end_with_it(
     fakes: dict[str, Any] = {
         "_socket": lambda *_: listening, "_token": lambda: "secret",
         "own_name": lambda _: "underfoot",
-        "Jobs": lambda *_: SimpleNamespace(close=lambda: ended.append("jobs")),
+        "JobQueue": lambda *_: SimpleNamespace(close=lambda: ended.append("jobs")),
         "Servers": lambda: SimpleNamespace(close=lambda: ended.append("servers")),
         "_application": lambda *given: given, "remember": lambda _: None,
         "_server": lambda app, *given: SimpleNamespace(

@@ -347,7 +347,7 @@ def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, proc
 
     for name, made in (
         ("tread_positions", positions_of), ("_numbers_at", numbers_at), ("in_processes", several),
-        ("place_numbers", lambda *_: "own"), ("treaded", lambda _: True),
+        ("place_numbers", lambda *_: "own"), ("has_lugs", lambda _: True),
         ("_turned", lambda *_: {"turned": 1}), ("position_count", lambda *_, **__: 2),
     ):  # fmt: skip
         monkeypatch.setattr(solve, name, made)
@@ -393,10 +393,10 @@ def test_squares_have_the_mean_of_their_cells_and_the_viscous_part_of_the_wet_on
 def test_a_film_is_warmed_by_the_laboratory_and_thins_by_it():
     cells = fake(total_pressure=np.ones((4, 5)), spacing=1e-3)
     context = fake(viscosity_value=None)
-    assert film_warmth(CASE, context, 0.2, cells, samples=10) is None
+    assert film_warmth(CASE, context, 0.2, cells, film_share=0.5, samples=10) is None
     context = fake(viscosity_value=0.2)
-    cold = film_warmth(CASE, context, 0.0, cells, samples=4000)
-    warm = film_warmth(CASE, context, 0.5, cells, samples=4000)
+    cold = film_warmth(CASE, context, 0.0, cells, film_share=0.5, samples=4000)
+    warm = film_warmth(CASE, context, 0.5, cells, film_share=0.5, samples=4000)
     assert cold is not None
     assert warm is not None
     assert cold.mean() == pytest.approx(0, abs=0.05 * cold.std() + 1e-3)
