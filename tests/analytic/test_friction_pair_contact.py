@@ -19,6 +19,7 @@ from underfoot.friction.pair_contact import (
 )
 from underfoot.studies.corpus import readings
 from underfoot.studies.pair_law import (
+    FEATURE_RIVALS,
     _covariance,
     features,
     fit_law,
@@ -224,6 +225,25 @@ def test_one_reading_moves_the_rest_of_its_source_by_what_they_share():
     assert second[4] - second[3] == pytest.approx(2 * 1.96 * sd, rel=0.05)
     curve = [replace(row, id="one curve") for row in rows]
     assert len(one_reading(curve, latent, noise)) == 0
+
+
+@pytest.mark.parametrize(("rival", "off"), [*zip(FEATURE_RIVALS, (1e-9, 0.4, 0.1), strict=True)])
+def test_a_regression_foretells_a_laboratory_that_lies_on_its_line(rival, off):
+    """Seven laboratories on one power law of the drag; other features are noise."""
+    generator = np.random.default_rng(2)
+    rows = []
+    for source in range(7):
+        for drag in np.geomspace(1e-4, 1e-1, 8):
+            row = made_up(f"lab {source}", drag, 0.05 * drag**-0.2)
+            for name in ("sole_rq", "floor_rq", "shore_a"):
+                middle_value = row.numbers[name].low * float(np.exp(generator.normal(0, 0.1)))
+                row.numbers[name] = Span(middle_value, middle_value)
+            row.labels["fluid"] = "oil" if generator.random() < 0.5 else "aqueous"
+            rows.append(row)
+    left = laboratory_left_out(rival, rows, "lab 3")
+    assert left.expected == pytest.approx(middle(left.conditions), abs=off)
+    # the error is that of the six others, each left out in turn: as small as this one's
+    assert left.draws.std(axis=0).max() < max(off, 1e-6)
 
 
 def test_the_priors_alone_hold_no_answer():

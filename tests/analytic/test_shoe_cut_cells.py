@@ -141,7 +141,9 @@ ROW = 1 / 7.6
 
 @pytest.mark.slow
 @pytest.mark.xfail(
-    strict=True, reason="uneven by 7.2 % of the mean, below 6.6 % asked; the cause is not known"
+    strict=True,
+    reason="uneven by 7.2 % of the mean, below 6.6 % asked; by 2.6 % with rubber 100 times as "
+    "stiff: a partly covered cell presses on rubber as a whole one",
 )
 def test_film_load_is_smooth_in_the_width_of_a_lug():
     cut, counted = (

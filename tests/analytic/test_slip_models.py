@@ -245,6 +245,7 @@ def test_draws_beyond_the_friction_that_a_sole_can_have_count_as_the_most_of_it(
     draws = np.array([0.1, 0.2, 0.3, 9.0])
     most = slip_risk(SourcedValue(0.3, "1"), samples=np.minimum(draws, 5.0))
     assert slip_risk(SourcedValue(0.3, "1"), samples=draws).probability == most.probability
+    assert slip_risk(9.0).probability == slip_risk(5.0).probability
     wide = slip_risk(SourcedValue(0.3, "1", uncertainty=4.0))
     assert wide.low == pytest.approx(0.0, abs=1e-6)
     assert wide.high == pytest.approx(1.0, abs=1e-2)

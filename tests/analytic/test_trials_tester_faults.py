@@ -4,12 +4,14 @@
 """
 
 import numpy as np
+import openpyxl
 import pytest
 
 from trial_testers import (
     DATE,
     FAULTS,
     NOTICED,
+    PROFILE,
     RIGHT,
     SILENT,
     faulty_outcome,
@@ -151,3 +153,51 @@ reading = "{error * 196.133} N"
         flags = record(tmp_path, RECORD + check).flags(DATE)
         assert [flag.name for flag in flags] == ([FAILED] if failed else [])
         assert record(tmp_path, RECORD + check).flags("12.03.2026") == flags
+
+
+@pytest.mark.parametrize(
+    ("heading", "factor"),
+    [
+        ("speed (mm/s)", 1e3),
+        ("Geschwindigkeit (m/min)", 60.0),
+        ("velocity (in/s)", 1 / 0.0254),
+        ("Speed (ft/min)", 60 / 0.3048),
+    ],
+)
+@pytest.mark.parametrize(("share", "verdict"), [(1.0, "accepted"), (1 / 3, "refused")])
+def test_a_speed_is_judged_in_the_units_of_testers(tmp_path, heading, factor, share, verdict):
+    """A shoe that slid at 0.1 m/s was accepted where the log was in feet a minute or German."""
+    log = next(log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns)
+    speed = log.columns.pop("speed (m/s)")
+    log.columns[heading] = share * factor * speed
+    write_log(log, tmp_path)
+    (one,) = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    assert one.verdict == verdict
+    assert one.facts["sliding_speed"] == pytest.approx(0.3 * share, rel=0.02)
+
+
+def test_a_speed_in_no_known_unit_is_said(tmp_path):
+    log = next(log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns)
+    log.columns["speed (knots)"] = log.columns.pop("speed (m/s)")
+    write_log(log, tmp_path)
+    (one,) = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    assert one.verdict == "caution"
+    assert "no known unit of speed" in str(one.reasons)
+
+
+def test_every_sheet_of_a_workbook_is_a_slide(tmp_path):
+    """The second of two slides was lost; only `describe` named its sheet."""
+    logs = [log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns]
+    logs = [log for log in logs if "normal force (N)" in log.columns][:2]
+    book = openpyxl.Workbook(write_only=True)
+    book.create_sheet("Info").append(["operator", "A"])
+    for number, log in enumerate(logs, start=1):
+        sheet = book.create_sheet(f"Run {number}")
+        sheet.append(list(log.columns))
+        for row in zip(*log.columns.values(), strict=True):
+            sheet.append([float(value) for value in row])
+    book.save(tmp_path / "runs.xlsx")
+    (tmp_path / "profile.toml").write_text(PROFILE, encoding="utf-8")
+    files = analyse_folder(tmp_path, protocol("en_iso_13287"), processes=1).files
+    found = [file.main["cof"] for file in files]
+    assert found == pytest.approx([log.cof for log in logs], rel=0.01)

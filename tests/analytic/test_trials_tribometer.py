@@ -55,6 +55,18 @@ def test_lifted_pin_is_left_out():
     assert any("20 samples" in flag.message for flag in point.cof.flags)
 
 
+@pytest.mark.parametrize(
+    ("factor", "told"), [(1.0, False), (1.05, False), (1.3, True), (9.8, True)]
+)
+def test_a_cof_in_the_log_that_its_forces_contradict_is_told(factor, told):
+    """A load in kilograms under a heading in newtons made 0.05 of 0.5, beside a COF of 0.5."""
+    trial = _run(0.5 + np.random.default_rng(3).normal(0, 0.01, 1000))
+    own = factor * np.abs(trial.channels["Fx"].values / trial.channels["Fz"].values)
+    trial.channels["COF"] = Channel(own, "1", 100.0)
+    flags = [flag.message for flag in friction_point(trial).cof.flags]
+    assert any("the log's own COF" in message for message in flags) == told
+
+
 def test_correlated_noise_widens_the_error():
     rng = np.random.default_rng(2)
     phi, n, repeats = 0.95, 4000, 300

@@ -210,6 +210,9 @@ def test_one_walker_has_a_probability_of_his_own(tmp_path):
     path.write_text("\n".join([heads, "a,,step 1,rcof,0.20,", ""]))
     with pytest.raises(InputError, match="RCOF of one step"):
         measured_rcof(path)
+    path.write_text("\n".join([heads, "a,A,step 1,rcof,0.1,", "b,B,step 1,rcof,0.1,", ""]))
+    with pytest.raises(InputError, match="RCOF of 2 persons, all alike: there is no spread"):
+        measured_rcof(path)
 
 
 def test_json_of_a_compound_is_complete(folder):

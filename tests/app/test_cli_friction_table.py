@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pytest
 from typer.testing import CliRunner
 
@@ -50,6 +51,25 @@ def test_a_complete_case_holds_the_readings_and_needs_no_file(folder):
     assert len(alone.friction.readings) == 3
     (folder / "law.csv").write_text(TABLE.replace("0.5,0.03", "0.4,0.03"))
     assert loaded(folder) != case  # the hash follows what the file holds
+
+
+@pytest.mark.parametrize(("head", "cof"), [(("speed", "cof"), None), (("fluid", "amount"), 0.5)])
+def test_of_two_tables_in_a_workbook_none_is_taken_without_a_word(folder, head, cof):
+    """The readings on the dry floor, on the first sheet, were taken for those of the wet one."""
+    book = openpyxl.Workbook(write_only=True)
+    for name, heads, first in (("wet", head, 0.1), ("dry", ("speed", "cof"), 0.5)):
+        sheet = book.create_sheet(name)
+        for row in (heads, (0.1, first), (0.3, first), (1.0, first)):
+            sheet.append(row)
+    book.save(folder / "law.xlsx")
+    given = {"interface.friction_table": "law.xlsx"}
+    if cof is None:
+        with pytest.raises(InputError, match="wet, dry"):
+            loaded(folder, **given)
+    else:
+        case = loaded(folder, **given)
+        law = case.friction.build(resolve_context(case))
+        assert float(law(1.0, 0.3, 1.0).adhesion) == pytest.approx(cof)
 
 
 def test_a_table_read_under_another_fluid_counts_at_equal_viscosity_times_speed(folder):

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from underfoot.core import InputError
+from underfoot.core import InputError, to_si
 from underfoot.explore import Study, posterior
 from underfoot.explore.record import Ending, Record
 from underfoot.explore.store import Store
@@ -83,3 +83,36 @@ def test_a_study_without_readings_is_no_calibration(tmp_path):
 def test_a_reading_without_its_spread_is_refused():
     with pytest.raises(InputError, match=r"with its sd"):
         read_plan(TEXT.replace('sd = "2 N"\n', "", 1), EXAMPLES)
+
+
+def told(value, sd="1 N", apart=()):
+    """Return the cautions of a reading of a load that is predicted as 300 N (280 to 320)."""
+    draws, ends = np.linspace(-0.5, 0.5, 101), np.array([[280.0, 300.0, 320.0]])
+    reading = ("wet", value, to_si(sd, "N", where=""), "N")
+    made = posterior.Posterior(
+        *("made up", ("motion.speed",), draws[:, None], 2 * draws[:, None], 0.1 + 0 * draws),
+        *([reading], ends, ends, 100.0, [], apart),
+    )
+    return made.cautions()
+
+
+@pytest.mark.parametrize(
+    ("value", "sd", "outside"),
+    [
+        (300.0, "1 N", False),
+        (405.0, "1 N", False),  # the model misses by 15 %
+        (415.0, "1 N", True),
+        (195.0, "1 N", False),
+        (185.0, "1 N", True),
+        (415.0, "60 N", False),
+    ],
+)
+def test_a_reading_that_the_model_can_not_reach_is_a_caution(value, sd, outside):
+    cautions = told(value, sd)
+    assert len(cautions) == outside
+    assert all("280 N to 320 N" in text for text in cautions)
+
+
+def test_readings_of_one_condition_that_contradict_each_other_are_a_caution():
+    (caution,) = told(300.0, apart=[("wet", "wet again")])
+    assert "wet and wet again are of one condition" in caution

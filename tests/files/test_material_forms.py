@@ -421,3 +421,17 @@ def test_a_sweep_gives_its_numbers_in_every_form(tmp_path_factory, sweep):
     np.testing.assert_allclose(found.angular_frequency, w, rtol=1e-5)
     np.testing.assert_allclose(found.storage_modulus, g.real, rtol=1e-4)
     np.testing.assert_allclose(found.loss_modulus, g.imag, rtol=1e-4)
+
+
+@pytest.mark.parametrize(("unit", "stops"), [("MPa", False), ("kPa", True)])
+def test_a_loss_factor_that_contradicts_the_moduli_stops(tmp_path, unit, stops):
+    """The loss modulus won in silence; with a wrong unit nothing was lost at any frequency."""
+    path = tmp_path / "sweep.csv"
+    rows = "".join(f"{f},5.0,{0.1 * f},{0.02 * f:.2f}\n" for f in (1, 2, 3, 5, 8))
+    path.write_text(f"f (Hz),E' (MPa),E'' ({unit}),tan delta\n{rows}", encoding="utf-8")
+    if stops:
+        with pytest.raises(DataError, match="6e-05 in the middle"):
+            read_rubber(path)
+    else:
+        (sweep,) = read_rubber(path).sweeps
+        np.testing.assert_allclose(sweep.loss_modulus, 1e5 * np.array([1, 2, 3, 5, 8]))

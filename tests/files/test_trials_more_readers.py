@@ -78,10 +78,10 @@ def test_points_in_pixels_are_refused(tmp_path):
 
 def test_xls_is_read_as_xlsx(tmp_path):
     # The smallest BIFF workbook: written by hand, as no kept package writes XLS.
-    from underfoot.trials.readers.sheet import workbook_rows
+    from underfoot.trials.readers.sheet import workbook_sheets
 
     with pytest.raises(DataError, match="workbook is damaged"):
-        workbook_rows(b"\xd0\xcf\x11\xe0" + bytes(600), "old.xls")
+        workbook_sheets(b"\xd0\xcf\x11\xe0" + bytes(600), "old.xls")
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-8-sig"])

@@ -7,7 +7,6 @@ import re
 import tomllib
 from contextlib import nullcontext
 from functools import partial
-from importlib import import_module
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
@@ -16,8 +15,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from nicegui import ui
-from nicegui.testing.user_simulation import user_simulation
 
+from page_session import RUN, computed, keydown, session_of, shown, until, words_of
 from underfoot.app import trials_plots, work, work_sole, work_studies
 from underfoot.app.frame import MOST_SHOWN, _jobs_button
 from underfoot.app.jobs import (
@@ -44,9 +43,8 @@ from underfoot.app.pages import (
 )
 from underfoot.app.pages.trials_trial import TrialView
 from underfoot.app.project import Project
-from underfoot.app.projects import Servers
-from underfoot.app.session import Exchange, Session, problem_parts
-from underfoot.app.text import LANGUAGES, Text
+from underfoot.app.session import Session, problem_parts
+from underfoot.app.text import LANGUAGES
 from underfoot.app.trials_study import STANDARD, TrialsFolder
 from underfoot.app.variant_bar import _rename, new_variant
 from underfoot.core import SourcedValue, silent
@@ -55,48 +53,7 @@ from underfoot.core.page import PageSection
 from underfoot.trials.study.file_result import StepResult
 from underfoot.trials.study.record_signals import Envelope
 
-RUN = "underfoot.app.work:computed"
 HEADINGS = {f"h{level}" for level in range(1, 7)}
-
-
-class Here:
-    """Answers in this process what a page asks."""
-
-    async def ask(self, function, *args, units, language, **options):
-        module, _, name = function.partition(":")
-        return getattr(import_module(module), name)(*args, progress=lambda *_: None, **options)
-
-
-def session_of(folder, language="en", **query):
-    jobs, text = JobQueue(folder), Text(language)
-    jobs.live = jobs.reading = cast(Any, Here())
-    project, elsewhere = Project(folder), Servers()
-    return Session(project, jobs, text, query, Exchange(), PAGES, elsewhere=elsewhere)
-
-
-def shown(build, look):
-    """Return what ``look`` finds on a page that ``build`` fills."""
-
-    async def run():
-        async with user_simulation(root=build) as user:
-            await user.open("/")
-            await asyncio.sleep(0.05)  # timers that begin at once
-            found = look(cast(Any, user.client).elements.values())
-            return await found if asyncio.iscoroutine(found) else found
-
-    return asyncio.run(run())
-
-
-async def until(holds):
-    """Wait until something holds, for 20 s at most."""
-    for _ in range(400):
-        if holds():
-            return
-        await asyncio.sleep(0.05)
-
-
-def words_of(elements):
-    return [each.text for each in elements if isinstance(each, ui.label | ui.button)]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.route)
@@ -645,23 +602,6 @@ def test_looks_at_a_study_are_put_off_by_their_own_work_not_by_their_waiting(mon
     # of 3, 10 and 17 s that have gone looks took 0.4, 0.8 and 1.2 s: 5 % of 8, 16 and 24 s
     assert intervals == pytest.approx([5.0, 6.0, 7.0])
     assert shows == [1, 2]
-
-
-def keydown(element, key):
-    """Return what a key does in an element."""
-    (pressed,) = (
-        each for each in element._event_listeners.values() if each.type == f"keydown.{key}"
-    )
-    return cast(Any, pressed.handler)
-
-
-def computed(session, name):
-    """Write what a page reads of a result in short."""
-    result = session.project.result_folder(name)
-    result.mkdir(parents=True)
-    stored = {"status": {"value": "converged"}, "cof": {"value": 0.3},
-              "provenance": {"case_hash": "a", "created": "now"}}  # fmt: skip
-    (result / "result.json").write_text(json.dumps(stored), encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from underfoot.case import load
+from underfoot.case import Case, load
 from underfoot.case.describe import assumptions
 from underfoot.case.explanation import FIRST_SCREEN, _documented, _equation_text, _summary
 from underfoot.case.friction import range_95
@@ -222,3 +222,40 @@ def test_a_worn_patch_is_no_larger_than_its_heel(length, width, refused):
             case.replace(changes)
     else:
         assert case.replace(changes).shoe.wear.patch_length == pytest.approx(0.02)
+
+
+def test_numbers_of_numpy_are_those_of_python_in_a_case_and_in_its_file(heel):
+    given = {
+        "motion.speed": np.float64(0.3),
+        "contaminant.viscosity": np.float32(0.25),
+        "shoe.material.shore_a": np.int64(62),
+        "motion.shoe_angle": np.array(0.125),
+        "numerics.tread_positions": np.int32(3),
+        "motion.steady": np.bool_(True),
+    }
+    case = heel.replace(given)
+    plain = heel.replace({path: value.item() for path, value in given.items()})
+    assert case == plain
+    assert case.to_toml() == plain.to_toml()
+    assert 'speed = "0.3 m/s"' in case.to_toml()
+    read = Case.from_text(case.to_toml(complete=True))
+    assert read.hash == plain.hash
+    with pytest.raises(InputError, match=r"motion.speed: \[0.3, 0.4\] is not a quantity"):
+        heel.replace("motion.speed", np.array([0.3, 0.4]))
+
+
+def test_a_spread_beside_an_si_number_is_one_too(heel):
+    told = {"value": "50 cP", "uncertainty": "3 cP"}
+    plain = {"value": 0.05, "uncertainty": np.float64(0.003)}
+    case, same = (heel.replace("contaminant.viscosity", each) for each in (told, plain))
+    assert same.sourced("contaminant.viscosity").uncertainty == pytest.approx(0.003)
+    assert same == case
+    assert Case.from_text(same.to_toml()) == case
+    warm = {"value": 293.15, "uncertainty": 2.0}
+    glycerol = {"glycerol_fraction": 0.9, "fraction_basis": "volume", "temperature": warm}
+    spread = heel.replace("contaminant", glycerol)
+    assert spread.sourced("contaminant.temperature").uncertainty == pytest.approx(2.0)
+    assert Case.from_text(spread.to_toml()) == spread
+    for mixed in ({"value": "50 cP", "uncertainty": 0.003}, {"value": 0.05, "uncertainty": True}):
+        with pytest.raises(InputError, match="uncertainty"):
+            heel.replace("contaminant.viscosity", mixed)

@@ -94,6 +94,20 @@ def test_no_command_replaces_what_exists_unless_it_is_asked_to():
         assert [path for path in asked if options[path][name] not in (value, None)] == []
 
 
+def test_few_flags_are_on_where_nothing_is_said():
+    """Coarse grids of questions that ask for many runs, bands, solids, and what a heading needs."""
+    on = {
+        (*path, each.name)
+        for path, command in commands_of(get_command(app))
+        for each in command.params
+        if getattr(each, "is_flag", False) and each.default
+    }
+    many_runs = {("slip",), ("sensitivity",), ("risk",), ("wear",), ("choose",)}
+    assert on == {(*path, "quick") for path in (*many_runs, ("calibrate", "pair"))} | {
+        ("wear", "band"), ("study", "export", "step"), ("trials", "describe", "baseline"),
+    }  # fmt: skip
+
+
 def test_no_words_of_an_option_hide_two_defaults():
     """Where nothing is the default the words say what is done then: in every command the same."""
     defaults = defaultdict(set)

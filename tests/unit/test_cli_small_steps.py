@@ -84,6 +84,17 @@ def test_a_table_that_fits_has_a_row_on_a_line_with_every_cell(capsys, monkeypat
     assert row.split() == ["first", "1.5", "m/s", "a", "remark"]
 
 
+def test_a_label_stands_on_one_line_since_its_indent_is_its_level(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    label, value = "  as a floor sensor reads it", "257 ± 121 kPa (0 to above 99.9 %)"
+    rows = [[label, value, "95 %: 53 kPa to 548 kPa at the sensor"], ["Contact area", "2", ""]]
+    print_table(Table("", ("Quantity", "Value", "Remark"), rows), everything=False)
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert any(line.startswith(label) for line in lines)
+    assert all(line.startswith((label, "Quantity", "Contact area", " " * 20)) for line in lines)
+
+
 @pytest.mark.parametrize("long", [1, 2])
 def test_one_column_of_sentences_is_wrapped_and_of_two_each_row_is_a_record(
     capsys, monkeypatch, long

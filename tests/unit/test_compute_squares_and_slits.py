@@ -82,16 +82,23 @@ def test_a_slip_class_was_tested_on_the_new_sole(monkeypatch, wear):
     assert cast(Any, found)[:3] == (law, known, (0.0, new if wear else worn))
 
 
+@pytest.mark.parametrize("film_share", [0.0, 0.6, 1.0])
 @pytest.mark.parametrize("rows", [2, 6])
-def test_a_film_is_warmed_by_the_pressure_over_the_length_that_is_loaded(rows):
-    """Two columns of cells of 2 mm; more of them bear the same load for longer, less warm."""
+def test_a_film_is_warmed_by_the_pressure_over_the_length_that_is_loaded(rows, film_share):
+    """Two columns of cells of 2 mm; more of them bear the same load for longer, less warm.
+
+    What the film itself heats falls as it thins.
+    """
     case = load(EXAMPLE)
     loaded = np.zeros((9, 5))
     loaded[1 : 1 + rows, 1:3] = 1e5
     contact = SimpleNamespace(total_pressure=loaded, spacing=2e-3)
     context = SimpleNamespace(viscosity_value=0.2)
     heat, samples = 0.05, 200
-    found = module.film_warmth(case, cast(Any, context), heat, cast(Any, contact), samples=samples)
+    found = module.film_warmth(
+        case, cast(Any, context), heat, cast(Any, contact), film_share=film_share, samples=samples
+    )
+    assert found is not None
     force, speed, seed = case.motion.normal_force, abs(case.motion.speed), case.numerics.seed
     warmer = sliding_heat(heat, force / (2 * rows * 4e-6), speed, 2e-3 * rows)
     room = module.ROOM_DEVIATION * module.normal_draws(
@@ -99,7 +106,9 @@ def test_a_film_is_warmed_by_the_pressure_over_the_length_that_is_loaded(rows):
     )
     share = module.named_shares(seed, "share of the heat of sliding", samples)
     slope = viscosity_slope(0.2, oil=case.contaminant.chemistry == "oil")
-    assert found == pytest.approx(-slope * (room + warmer * share))
+    warmed = found + slope * room  # ln of what heat leaves of the shear stress
+    left = 1 - film_share + film_share * np.exp(warmed)
+    assert warmed == pytest.approx(-slope * warmer * share * left)
     assert np.std(warmer * share) > 0.01 * np.std(room)
 
 

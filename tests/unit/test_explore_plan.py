@@ -100,6 +100,13 @@ def test_jobs_are_the_same_whenever_the_file_is_read():
         ('from = "2.5 mm"', 'from = "0.05 mm"', ["line 5", "needs a finer grid", "low end"]),
         ('minimise = ["rubber_volume"]', 'minimise = ["mass"]', ["density", "rubber_volume"]),
         ("draws = 2", "draw = 2", ["line 20", 'Did you mean "draws"']),
+        ('"rubber_volume <', '"sd(cof) < 10 %", "rubber_volume <', ["line 16", "of the value"]),
+        ("wear_life(cof > 0.1)", "wear_life(cof in 0 mm > 0.1)", ["line 14", "two states of wear"]),
+        (
+            '"rubber_volume <',
+            '"sd(fluid_load) in canola_oil, 0 mm over conditions < 5 N", "rubber_volume <',
+            ["line 13", "sd(fluid_load)", "of one number"],
+        ),
         ("budget = 160", "budget = 3", ["less than one design", "from 8"]),
         ('kind = "robust"', 'kind = "robots"', ["line 18", 'Did you mean "robust"']),
         ("file_version = 1", "file_version = 9", ["line 1", "Update underfoot"]),
@@ -120,6 +127,15 @@ def test_what_is_wrong_is_said_with_its_place_and_the_remedy(old, new, words):
     text = str(caught.value)
     for word in words:
         assert word in text, text
+
+
+def test_a_condition_that_stands_twice_is_asked():
+    pools = '"contaminant.pool_depth" = ["0.5 mm", "1 mm"]\nwear = ['
+    text = GOOD.replace("wear = [", pools)
+    assert len(plan(text.replace("budget = 160", "budget = 320")).states) == 8
+    with pytest.raises(CaseError, match="mm stands under several conditions") as caught:
+        plan(text.replace("in canola_oil", "in canola_oil, 0.5 mm"))
+    assert "line 17" in str(caught.value)
 
 
 def test_all_errors_come_at_once():
@@ -243,6 +259,8 @@ def records(*values, draws=None):
         ("wear_life(cof > 0.25)", 1e-3),
         ("wear_life(cof > 0.4)", 0.0),
         ("wear_life(cof > 0.1)", 2e-3),  # to the last wear: a lower bound
+        ("wear_life(min(cof) over conditions > 0.25)", 1e-3),  # of each wear the mean over draws
+        ("wear_life(min(cof) > 0.15)", 1e-3),
     ],
 )
 def test_goals_are_statistics_over_conditions_and_draws(text, value):

@@ -243,6 +243,21 @@ def test_a_public_class_has_its_name_alone():
     assert {name: where for name, where in homes.items() if len(where) > 1} == {}
 
 
+def test_no_public_function_is_a_lone_participle():
+    """Jobs of a project on disk name those of the app's work; plug-ins import ``required``."""
+    lone = [
+        f"{name}.{node.name}"
+        for name, path in files().items()
+        if not name.startswith("underfoot.app.work")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef)
+        and re.fullmatch(
+            r"[a-z]+ed|told|made|drawn|found|shown|given|chosen|read|written", node.name
+        )
+    ]
+    assert lone == ["underfoot.case.quantity.required"]
+
+
 def test_names_of_functions_parameters_and_fields_say_what_they_are():
     empty = [
         f"{path.relative_to(REPOSITORY)}:{line} {name}"

@@ -681,7 +681,7 @@ def _as_text(item: Any, path: str) -> Any:
     if isinstance(item, Mapping):
         leaf = "value" in item
         return {
-            k: _as_text(v, path if leaf and k == "value" else f"{path}.{k}")
+            k: _as_text(v, path if leaf and k in ("value", "uncertainty") else f"{path}.{k}")
             for k, v in item.items()
         }
     if isinstance(item, list | tuple):
@@ -710,7 +710,8 @@ def _unit_in(path: str) -> str:
 def _origin_toml(origin: Origin, path: str) -> Any:
     leaf = origin.leaf
     given = _as_text(leaf.given, path)
-    marks: dict[str, Any] = {"uncertainty": leaf.uncertainty, "source": leaf.source or None}
+    spread = _as_text(leaf.uncertainty, path)
+    marks: dict[str, Any] = {"uncertainty": spread, "source": leaf.source or None}
     if origin.kind != DEFAULT or not isinstance(origin.value, str) or origin.value != given:
         marks |= {
             "assumed": True if leaf.assumed else None,

@@ -27,6 +27,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from underfoot.core import InputError, SourcedValue, unknown_name
+from underfoot.core.arrays import of_python
 from underfoot.core.leaves import INHERITED, Leaf
 from underfoot.core.registry import all_offers, find_offer, load_address, offers
 from underfoot.core.units import spread_to_si
@@ -95,7 +96,8 @@ class Section(BaseModel):
         given = cls.in_own_terms(given)
         origins = {key: origin for key, item in given.items() if (origin := origin_of(item))}
         plain = {
-            key: origins[key].leaf.given if key in origins else item for key, item in given.items()
+            key: of_python(origins[key].leaf.given) if key in origins else of_python(item)
+            for key, item in given.items()
         }
         if issubclass(cls, Option):
             plain.pop(cls.key, None)
@@ -146,8 +148,11 @@ class Section(BaseModel):
                 raise refused_at(cls, (key, "uncertainty"), error, written)
             assert field is not None
             unit = unit_of(field)
+            given, plain = of_python(origin.leaf.given), of_python(written)
+            if all(type(each) in (int, float) for each in (given, plain)):  # both are SI
+                plain = plain_text(plain, unit)
             try:
-                uncertainty = spread_to_si(written, origin.leaf.given, unit, where="")
+                uncertainty = spread_to_si(plain, given, unit, where="")
                 if uncertainty < 0:
                     raise InputError(f"{written} is negative", allowed="0 or more")
             except InputError as error:
@@ -445,6 +450,7 @@ def leaf_of(item: Any) -> Leaf:
 
 def plain_text(value: Any, unit: str) -> Any:
     """Return an SI value as a file writes it: exact, with its unit."""
+    value = of_python(value)
     if isinstance(value, bool) or not isinstance(value, float | int) or unit == "1":
         return value
     return f"{value!r} {unit}"

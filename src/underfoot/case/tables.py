@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -105,13 +105,12 @@ def table_columns(
 
     Raises:
         InputError: No file, no table, a column of ``needed`` missing, a value missing or below
-            ``lowest``.
+            ``lowest``; a workbook with several such tables.
     """
-    from underfoot.trials.readers.sheet import read_sheet
-
     existing_file(path, where, "*.csv")
+    headings = [columns[name][1] for name in needed]
     try:
-        sheet = read_sheet(path)
+        sheet = _one_sheet(path, headings, where)
     except DataError as error:
         raise InputError(f"{path.name}: {error}", where=where) from error
     optional = [name for name in columns if name not in needed]
@@ -139,6 +138,29 @@ def table_columns(
                 allowed="a number" if lowest is None else f"a number, {lowest:g} or more",
             )
     return read
+
+
+def _one_sheet(path: Path, headings: Sequence[tuple[str, ...]], where: str) -> Sheet:
+    """Return the table of a file; of a workbook the one sheet that has all ``headings``."""
+    from underfoot.trials.readers.sheet import is_workbook, read_sheet, workbook_sheets
+
+    usual, data = read_sheet(path), path.read_bytes()
+    names = workbook_sheets(data, path.name) if is_workbook(data) else {}
+    fitting = []
+    for name in names if len(names) > 1 else ():
+        with suppress(DataError):  # a sheet without a table
+            sheet = read_sheet(path, sheet=name)
+            known = {_plain(head) for head in sheet.numbers}
+            if all(known.intersection(each) for each in headings):
+                fitting.append((name, sheet))
+    if len(fitting) > 1:
+        raise InputError(
+            f"several sheets of {path.name} hold such a table: "
+            f"{', '.join(name for name, _ in fitting)}",
+            where=where,
+            remedy="Keep the one that is meant in a file of its own",
+        )
+    return fitting[0][1] if fitting else usual
 
 
 def as_written(read: Mapping[str, Array], columns: Columns) -> list[dict[str, str | float]]:

@@ -34,9 +34,9 @@ def guard_command(command: Callable[..., None]) -> Callable[..., None]:
         except typer.Exit:
             raise
         except Terminated as stop:
-            text, code = f"terminated; {stop or KEPT}", TERMINATED
+            text, code = f"terminated; {str(stop) or KEPT}", TERMINATED
         except KeyboardInterrupt as stop:
-            text, code = f"stopped; {stop or KEPT}", INTERRUPTED
+            text, code = f"stopped; {str(stop) or KEPT}", INTERRUPTED
         except Cancelled as stop:
             text, code = f"stopped; {stop.remedy or KEPT}", INTERRUPTED
         except (UnderfootError, MemoryError) as error:

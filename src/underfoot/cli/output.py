@@ -165,11 +165,12 @@ def print_table(table: Table, *, everything: bool = True) -> None:
             _print_blocks(console, table, cells, widths, everything=everything)
             return
     roomy = sum(widths[:last]) + NARROWEST <= console.width
+    short = widths[0] <= LONGEST_VALUE  # a row's level is its indent, which a second line lacks
     drawn = RichTable(box=None, pad_edge=False, show_header=any(table.columns))
     for number, name in enumerate(table.columns):
         drawn.add_column(
             escape_markup(name),
-            no_wrap=(roomy or last == 1) and number != last,
+            no_wrap=number != last and (roomy or last == 1 or (number == 0 and short)),
             overflow="fold",
             style="dim" if number == last > 1 and name in REMARKS else None,
         )

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import lambertw
 
 from underfoot.case import Case
 from underfoot.case.context import Context
@@ -105,8 +106,11 @@ def contact_friction(
     pressures = at.contact_pressure, at.fluid_pressure
     on_cells = {"spacing": sole.spacing, "wet": at.wet, **at.areas}
     source = f"{plain.name} law: {plain.source}"
-    exact = cof(parts, *pressures, **on_cells, source=source).cof.value or 0.0
-    film_shear = film_warmth(case, context, exact, contact, samples=samples)
+    exact = cof(parts, *pressures, **on_cells, source=source)
+    of_film, whole = (number.value or 0.0 for number in (exact.cof_viscous, exact.cof))
+    film_shear = film_warmth(
+        case, context, whole, contact, film_share=of_film / (whole or 1.0), samples=samples
+    )
     of_case = (stated or StatedEffects()).draws(lambda name: normal_draws(seed, name, samples))
     fluid = {"viscosity": context.viscosity} if context.viscosity is not None else {}
     if VISCOSITY in of_case:
@@ -136,13 +140,21 @@ def contact_friction(
 
 
 def film_warmth(
-    case: Case, context: Context, cof: float, contact: SoleContact, *, samples: int
+    case: Case,
+    context: Context,
+    cof: float,
+    contact: SoleContact,
+    *,
+    film_share: float,
+    samples: int,
 ) -> Array | None:
     """Return draws (samples,) of ln of a film's shear stress over that computed; None when dry.
 
-    -b (T + u dT): b how fast the fluid thins, T the laboratory beside 22.5 C, dT what all heat of
-    sliding at the ``cof`` warms the faces by, u a share of it between 0 and 1. The fluid's own
-    spread is drawn with its viscosity. All cases share one draw of the laboratory's temperature.
+    ln y = -b T - x (1 - s + s y), x = b u dT: b how fast the fluid thins, T the laboratory beside
+    22.5 C, dT what all heat of sliding at the ``cof`` warms the faces by, u a share of it between 0
+    and 1, s the ``film_share`` of the COF, whose heat falls with the film's own shear. The fluid's
+    own spread is drawn with its viscosity. All cases share one draw of the laboratory's
+    temperature.
     """
     viscosity = context.viscosity_value
     if viscosity is None or case.contaminant is None:
@@ -153,7 +165,9 @@ def film_warmth(
     slope = viscosity_slope(viscosity, oil=case.contaminant.chemistry == "oil")
     warm = ROOM_DEVIATION * normal_draws(seed, "temperature of the laboratory", samples)
     heat = sliding_heat(cof, pressure, abs(case.motion.speed), length)
-    return -slope * (warm + heat * named_shares(seed, "share of the heat of sliding", samples))
+    hot = slope * heat * named_shares(seed, "share of the heat of sliding", samples)
+    own = film_share * hot
+    return -slope * warm - (hot - own) - lambertw(own * np.exp(own - hot)).real
 
 
 def place_of_tread(case: Case, sole: SoleMap) -> Array:

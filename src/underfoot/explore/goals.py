@@ -9,6 +9,7 @@ A bare output is its mean. Over conditions and draws, where nothing is said.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,6 +21,7 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import quantity_text
+from underfoot.core.units import refuse_percent
 
 from .record import Record
 
@@ -102,6 +104,11 @@ class Goal:
             flat, axis=1
         )
 
+    def numbers(self, states: Sequence[Condition], draws: int) -> int:
+        """Return how many numbers of a design the statistic is of, the law's draws left out."""
+        each = {"conditions": len(_chosen(states, self.within)), "draws": draws}
+        return math.prod(each[name] for name in self.over.split(" and "))
+
     def error(
         self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
     ) -> float:
@@ -166,8 +173,7 @@ class WearLife:
 
     @property
     def _bounded(self) -> Goal:
-        goal = self.requirement.goal
-        return Goal(goal.output, goal.unit, goal.statistic, goal.share)
+        return replace(self.requirement.goal, within=())
 
     def value(
         self, records: Mapping[tuple[int, int], Record], states: Sequence[Condition]
@@ -280,6 +286,11 @@ def read_goal(
     for word in within:
         if word not in words:
             raise unknown_name("condition", word, words)
+        meant = {k for state in states for k, part in enumerate(state.parts) if part == word}
+        if len(meant) > 1:
+            raise InputError(
+                f"{word} stands under several conditions", remedy="Write one in another unit"
+            )
     if not _chosen(states, within):
         raise InputError(f"no condition is {' and '.join(within)}")
     return Goal(output, units[output], statistic, share, over, within)
@@ -307,6 +318,8 @@ def read_requirement(
     goal = read_goal(whole, units, states)
     if not isinstance(goal, Goal):
         raise InputError(f"{goal} can't be required", allowed="an output")
+    if goal.statistic == "sd":
+        refuse_percent(match[3], where="")
     return Requirement(goal, 1 if ">" in match[2] else -1, to_si(match[3], goal.unit, where=""))
 
 
@@ -325,6 +338,7 @@ def check_agreement(require: Sequence[Requirement]) -> None:
 
 
 def _life(requirement: Requirement, states: Sequence[Condition]) -> WearLife:
+    states = [states[k] for k in _chosen(states, requirement.goal.within)]
     wears = {state.changes.get(WEAR) for state in states}
     if None in wears or len(wears) < 2:
         raise InputError(

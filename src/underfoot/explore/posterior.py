@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import combinations
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -44,6 +45,10 @@ PART = 50
 """Steps between two words of progress."""
 KEPT = 1000
 """Draws that are written."""
+WIDE = 2.0
+"""Standard deviations of a reading and of ``DISCREPANCY`` that a reading may lie outside."""
+APART = 3.0
+"""Standard deviations by which two readings of one condition may differ."""
 LONG_ENOUGH = 20
 """Autocorrelation times that a chain must last."""
 
@@ -58,6 +63,7 @@ class Posterior(Presentable):
         before, after: (readings, 3) predictions at 2.5, 50 and 97.5 %.
         lengths: Autocorrelation times that the chain lasted.
         models: The surrogate of each reading, with its error.
+        apart: Names of two readings of one condition that differ by more than their spreads.
     """
 
     kind: ClassVar[str] = "posterior"
@@ -72,6 +78,7 @@ class Posterior(Presentable):
     after: Array
     lengths: float
     models: Sequence[Surrogate]
+    apart: Sequence[tuple[str, str]] = ()
 
     @property
     def usable(self) -> bool:
@@ -85,20 +92,33 @@ class Posterior(Presentable):
         ratios = self.draws.std(axis=0) / self.prior.std(axis=0)
         best = int(np.argmin(ratios))
         return (
-            f"{len(self.readings)} readings narrow {self.paths[best]} most: its standard deviation "
-            f"is {ratios[best]:.0%} of the prior's.",
+            f"Readings used: {len(self.readings)}. They narrow {self.paths[best]} most: its "
+            f"standard deviation is {ratios[best]:.0%} of the prior's.",
             f"Discrepancy of the model {np.median(self.discrepancy):.0%} (median).",
         )
 
     def cautions(self) -> tuple[str, ...]:
-        """Return where the surrogate is the weak part, and posteriors at the end of a prior."""
+        """Return what contradicts, weak surrogates, and posteriors at the end of a prior."""
+        outside = [
+            f"{label} reads {quantity_text(value, unit)}, outside what the model with these priors "
+            f"reaches ({quantity_text(low, unit)} to {quantity_text(high, unit)}): check reading, "
+            "condition and priors."
+            for (label, value, sd, unit), (low, middle, high) in zip(
+                self.readings, self.after, strict=True
+            )
+            if not -WIDE < (value - np.clip(value, low, high)) / _off(sd, middle) < WIDE
+        ]
+        apart = [
+            f"{first} and {second} are of one condition and differ by more than their sd allow."
+            for first, second in self.apart
+        ]
         weak = [f"{model.name}: {model.reliability}" for model in self.models if model.q2 < 0.9]
         edge = [
             f"The posterior of {path} lies at the end of its prior: widen that."
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
             if not then.min() * 1.0001 < np.median(now) < then.max() * 0.9999
         ]
-        return (*weak, *edge)
+        return (*outside, *apart, *weak, *edge)
 
     def table(self) -> Table:
         """Return each parameter before and after, at 2.5, 50 and 97.5 %."""
@@ -227,7 +247,20 @@ def posterior(
         predicted(kept[:, :size]),
         lengths,
         models,
+        [
+            (one.label, other.label)
+            for (one, first), (other, second) in combinations(
+                zip(plan.states, plan.readings, strict=True), 2
+            )
+            if (one.changes, first.output) == (other.changes, second.output)
+            and abs(first.value - second.value) > APART * np.hypot(first.sd, second.sd)
+        ],
     )
+
+
+def _off(sd: float, predicted: float) -> float:
+    """Return the standard deviation by which a reading misses what is predicted of it."""
+    return float(np.hypot(sd, DISCREPANCY * predicted))
 
 
 def _half_normal(share: Array) -> Array:

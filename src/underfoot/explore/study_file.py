@@ -153,6 +153,14 @@ def read_plan(
         text=text,
         readings=readings,
     )
+    for goal in (*plan.goals, *(one.goal for one in require)):
+        if isinstance(goal, Goal) and goal.statistic != "mean" and not goal.of_draws:
+            reader.refuse_if(
+                goal.numbers(states, len(draws)) < 2,
+                "outputs",
+                f"{goal} is a statistic of one number",
+                remedy="Write several [conditions], or draws of what is [uncertain]",
+            )
     budget, grid = method.budget, method.design == "grid"
     takes = "the grid takes" if grid else "one design takes"
     least = plan.cases_per_design * (plan.designs if grid else 1)

@@ -22,6 +22,8 @@ FEWEST = 3
 """Frequencies of a sweep."""
 SAME = 0.5
 """K: tests within it, and far closer than others, are at one temperature."""
+OTHER_TANGENT = 1.2
+"""Ratio of a loss factor to loss over storage modulus that no rounding makes."""
 OTHER_STRAIN = 1.5
 """Ratio of two strains from which they are not one that the machine did not quite hold."""
 _LEVELS = 'the modulus at once (--at-once "8 MPa") or at rest (--at-rest "0.8 MPa")'
@@ -209,6 +211,8 @@ def _moduli(table: FileTable, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     angle = si("phase angle")
     if tangent is None and angle is not None:
         tangent = np.tan(angle)
+    if storage is not None and loss is not None and tangent is not None:
+        _refuse_other_tangent(loss / storage, tangent, table.where)
     if storage is not None and (loss is not None or tangent is not None):
         return storage, storage * tangent if loss is None else loss
     if loss is not None and tangent is not None:
@@ -228,6 +232,19 @@ def _moduli(table: FileTable, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         missing = ("phase angle", "loss factor")
     table.needed(*missing)
     raise AssertionError  # one of them would have been used
+
+
+def _refuse_other_tangent(ratio: np.ndarray, tangent: np.ndarray, where: str) -> None:
+    """Refuse a loss modulus over the storage modulus that is not the loss factor beside them."""
+    with np.errstate(divide="ignore", invalid="ignore"):  # zeros are refused as such, later
+        apart = float(np.median(np.abs(np.log(ratio / tangent))))
+    if apart > np.log(OTHER_TANGENT):
+        raise DataError(
+            f"loss over storage modulus is {np.median(ratio):.3g} in the middle, the loss factor "
+            f"beside them {np.median(tangent):.3g}",
+            where=where,
+            remedy="Correct the unit of the moduli or of the loss factor, or remove one column",
+        )
 
 
 def _curves(tables: Sequence[FileTable]) -> list[RelaxationCurve]:

@@ -388,6 +388,10 @@ def own_histories(path: Path) -> list[GaitHistory]:
     return recorded_histories(path)
 
 
+SAME_RCOF = 1e-6
+"""RCOF apart by less are written alike: their rounding is no spread of people."""
+
+
 @dataclass(frozen=True, slots=True)
 class MeasuredRcof:
     """Required friction of measured walkers.
@@ -459,7 +463,7 @@ def measured_rcof(path: Path) -> MeasuredRcof:
     nobody are left out: they may be of one of them. Of one person alone the steps count.
 
     Raises:
-        InputError: No such file, no RCOF in it, or one step only.
+        InputError: No such file, no RCOF in it, or one step only, or all alike.
     """
     from underfoot.trials.recording.measurement import MEAN_OF_STEPS
 
@@ -482,9 +486,12 @@ def measured_rcof(path: Path) -> MeasuredRcof:
             where=str(path),
             allowed='rows with quantity "rcof" and a value, as in measurements.csv',
         )
-    if [len(each) for each in steps.values()] == [1]:
+    values, several = [*steps.values()], len(steps) > 1
+    apart = [float(np.mean(each)) for each in values] if several else values[0]
+    if np.ptp(apart) < SAME_RCOF:
+        alike = f"{len(apart)} {'persons' if several else 'steps'}, all alike"
         raise InputError(
-            "RCOF of one step: there is no spread",
+            f"RCOF of {alike if len(apart) > 1 else 'one step'}: there is no spread",
             where=str(path),
             remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
         )

@@ -605,7 +605,7 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
         if not 0 < end < thickness:
             most = display(thickness, "m")
             raise InputError(
-                f"wear of {display(end, 'm')} is deeper than the sole",
+                f"wear of {display(end, 'm')} is none, or deeper than the sole",
                 where="deepest",
                 allowed=f"above 0 mm and below {most} (shoe.sole.outsole_thickness)",
             )

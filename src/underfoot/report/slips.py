@@ -94,7 +94,7 @@ def _draw_path(axes: Axes, study: SlipStudy, motion: SlipMotion) -> None:
         axes.annotate("", (side[0], end), (side[0], end - 12),
                       arrowprops={"arrowstyle": "-|>", "color": FLUID, "lw": 2})  # fmt: skip
     axes.set(
-        xlim=(1e3 * y.max() + 22, 1e3 * y.min() - 22) if y.size > 1 else (40, -40),
+        xlim=(1e3 * columns.max() + 22, 1e3 * columns.min() - 22) if y.size > 1 else (40, -40),
         ylim=(-35, end),
         xlabel="across (mm, left of the walk positive)",
         ylabel="along the walk (mm)",

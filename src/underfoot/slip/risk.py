@@ -140,7 +140,10 @@ def slip_risk(
     chosen: SlipModel = ReportG6() if model is None else model
     if acof.value is None:
         raise InputError(f"the available friction was not determined: {acof.reason}", where="acof")
-    middle = float(chosen.population(acof.value, rcof.mean, rcof.sd))
+    most = min(
+        float(acof.value), LARGEST_ACOF
+    )  # as of draws: what a stiff fluid shears with is more
+    middle = float(chosen.population(most, rcof.mean, rcof.sd))
     assumptions = list(chosen.assumptions)
     if rcof.assumed:
         assumptions.append(

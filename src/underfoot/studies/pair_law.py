@@ -685,8 +685,9 @@ def _regression(
 
     names = np.array([c.laboratory for c in training])
     rest = np.empty_like(y)
-    for name in dict.fromkeys(names):
-        rest[names == name] = y[names == name] - predicted(names != name, x[names == name])
+    for laboratory in dict.fromkeys(names):
+        left = names == laboratory
+        rest[left] = y[left] - predicted(~left, x[left])
     sd = np.sqrt(np.average(rest**2, weights=weight))
     mean = predicted(np.ones(y.size, dtype=bool), features(left_out))
     noise = np.random.default_rng(seed).normal(size=(2000, len(left_out)))

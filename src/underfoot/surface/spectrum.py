@@ -249,7 +249,7 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
 
 
 def rises_text(levelled: float) -> Message:
-    """Return by how much rises were levelled; ``level_surface`` is the largest relative change."""
+    """Return by how much rises were levelled; ``levelled`` is the largest relative change."""
     if levelled < 10.0:
         most = 100 * levelled
         return Message("rises of the profile spectrum levelled (by up to {most:.0f} %)", most=most)

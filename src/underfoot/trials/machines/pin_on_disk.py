@@ -12,6 +12,7 @@ from underfoot.core.remark import NOTHING, Message
 from ..recording.measurement import RATIOS, TOO_FEW, Flag, Measurement, caution
 from ..recording.signals import runs
 from ..recording.trial import Channel, Trial
+from .slip_friction import speed_channel
 
 BATCH = 5
 _LATEST = 0.5
@@ -86,7 +87,6 @@ SHEAR = (
     "friction force", "shear force", "shear", "friction", "ff", "fx", "force x", "ft", "daq.fx",
     "reibkraft", "reibungskraft",
 )  # fmt: skip
-SPEED = ("sliding speed", "speed", "velocity", "max linear speed")
 COF = (
     "cof", "friction coefficient", "traction coeff", "traction coefficient", "daq.cof", "µ", "mu",
     "reibwert", "reibungszahl",
@@ -98,6 +98,7 @@ _STROKE = 0.25, 0.75  # part of a stroke, away from where it turns
 _STROKES = Message("the middle half of each, in both directions")
 _FEWEST_TURNS = 4
 _LONGEST_REST = 0.45  # of the time: the middle half between rests slides
+_OTHER_COF = 0.1  # relative; a log's COF that no filter of the machine makes of its forces
 _REGULAR = 0.2  # relative scatter of the strokes of a machine
 
 
@@ -160,6 +161,14 @@ def friction_point(
     error = correlated_error(values)
     if values.mean() > 2.0:
         flags.append(caution("a COF above 2: are the force columns or units right?"))
+    if normal is not None and (apart := _other_cof(trial, used)) is not None:
+        flags.append(
+            caution(
+                "the log's own COF is {logged:.3g} where its forces give {forces:.3g}: which unit?",
+                logged=apart[0],
+                forces=apart[1],
+            )
+        )
     choices["average"] = RATIOS
     choices["uncertainty"] = Message("standard error of the mean from batch means")
     reason = TOO_FEW if error is None else NOTHING
@@ -418,8 +427,21 @@ def _channel(trial: Trial, names: tuple[str, ...]) -> Channel | None:
         return None
 
 
+def _other_cof(trial: Trial, used: np.ndarray) -> tuple[float, float] | None:
+    """Return the median COF that a log holds and that of its forces as read, where they differ."""
+    logged = _channel(trial, COF)
+    if logged is None or len(logged.values) <= used[-1]:
+        return None
+    normal, shear = (trial.channel(*names).values[used] for names in (NORMAL, SHEAR))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        both = np.abs(logged.values[used]), np.abs(shear / normal)
+    middle = [float(np.nanmedian(values)) for values in both]
+    differ = abs(middle[0] - middle[1]) > _OTHER_COF * max(middle)
+    return (middle[0], middle[1]) if differ else None
+
+
 def _speed(trial: Trial, used: np.ndarray) -> float | None:
-    channel = _channel(trial, SPEED)
+    channel = speed_channel(trial)
     if channel is None or channel.unit != "m/s":
         return None
     values = channel.values[used[used < len(channel.values)]]

@@ -136,7 +136,8 @@ def _standard_error(values: np.ndarray) -> float | None:
     return float(math.sqrt(power / (len(values) - 1) / independent))
 
 
-SPEED = ("sliding speed", "speed", "velocity")
+SPEED = ("sliding speed", "speed", "velocity", "max linear speed", "geschwindigkeit",
+         "gleitgeschwindigkeit")  # fmt: skip
 _MOVING = 0.05  # share of the top speed above which the shoe slides
 _TOUCHING = 50.0  # N
 _ONSET = 0.5  # share of the later friction at which sliding is taken to begin
@@ -220,6 +221,12 @@ def slide_friction(
     begin_after = protocol.number("window_begin", "s")
     length = protocol.number("window_end", "s") - begin_after
     onset, how, speed = _sliding(trial, plate, normal, shear)
+    logged = speed_channel(trial)
+    flags = (
+        (caution("the log's speed has no known unit of speed: it is not used"),)
+        if logged is not None and logged.unit != "m/s"
+        else ()
+    )
     kind = protocol.text("window_from", "sliding")
     if kind == "force":
         target = protocol.number("target_force", "N")
@@ -255,6 +262,7 @@ def slide_friction(
         cof = replace(cof, conventions={**cof.conventions, **choices})
     else:
         raise unknown_name("window", kind, ("force", "sliding"), where="method.window_from")
+    cof = replace(cof, flags=(*cof.flags, *flags))
     end = begin + length
     inside = (plate.time >= begin) & (plate.time <= end)
     if inside.any():
@@ -299,14 +307,19 @@ def _sliding(
     return plate.start + start / plate.rate, how, speed
 
 
+def speed_channel(trial: Trial) -> Channel | None:
+    """Return the sliding speed in a log, in whatever unit, or None."""
+    try:
+        return trial.channel(*SPEED)
+    except DataError:
+        return None
+
+
 def _speed(trial: Trial) -> tuple[Channel | None, Message]:
     share = 100 * _MOVING
-    try:
-        channel = trial.channel(*SPEED)
-        if channel.unit == "m/s":
-            return channel, Message("speed channel above {share:g} % of its top", share=share)
-    except DataError:
-        pass
+    channel = speed_channel(trial)
+    if channel is not None and channel.unit == "m/s":
+        return channel, Message("speed channel above {share:g} % of its top", share=share)
     for name, marker in trial.markers.items():
         if marker.missing.any() or marker.times is not None or len(marker.positions) < 40:
             continue

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..recording.trial import Trial
 from .draft import RecordingDraft
 from .formats import nearest_format
 from .profile import PlateColumns
-from .sheet import Sheet, sheet_from
+from .sheet import Sheet, is_workbook, sheet_from, workbook_sheets
 from .text import clock_time, force_unit, is_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
@@ -58,17 +59,24 @@ _PREAMBLE = 2  # lines above the names of columns, from which a text has a forma
 _RATE = re.compile(r"rate|frequency|hz", re.I)
 
 
-def read_columns(draft: RecordingDraft) -> Trial:
-    """Return the trial in a plain table.
+def read_columns(draft: RecordingDraft) -> tuple[Trial, ...]:
+    """Return the trial in a plain table, of a workbook one for each sheet with the same columns.
 
     With the profile its columns are used; what it does not name is recognised: time, force
     triples (Fx, Fy, Fz with any ending), marker triples (name_x, name_y, name_z).
     """
     profile = draft.profile
-    sheet = sheet_from(
-        draft.data, draft.name, profile.sheet, profile.delimiter, profile.header_line
-    )
-    sheet = _with_axes_behind(sheet)
+    form = profile.delimiter, profile.header_line
+    read = sheet_from(draft.data, draft.name, profile.sheet, *form)
+    alike = {}
+    if profile.sheet is None and is_workbook(draft.data):
+        names = workbook_sheets(draft.data, draft.name)
+        for name in names if len(names) > 1 else ():
+            with suppress(DataError):  # a sheet without a table
+                other = sheet_from(draft.data, f"{draft.name}, {name}", name, *form)
+                if other.columns == read.columns:
+                    alike[name] = other
+    sheet = _with_axes_behind(read)
     above = [line for line in sheet.header if line.strip()]
     named = profile.name or profile.plates or profile.channels or _is_known(sheet)
     if not named and len(above) > _PREAMBLE:
@@ -77,7 +85,17 @@ def read_columns(draft: RecordingDraft) -> Trial:
         nearest = nearest_format(above)
         raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
     kinds = {b"PK\x03\x04": "XLSX table", b"\xd0\xcf\x11\xe0": "XLS table"}
-    return trial_from_sheet(draft, sheet, kinds.get(draft.data[:4], "text table"))
+    kind = kinds.get(draft.data[:4], "text table")
+    if len(alike) < 2:
+        return (trial_from_sheet(draft, sheet, kind),)
+    return tuple(
+        trial_from_sheet(
+            RecordingDraft(b"", one.name, profile, draft.subtract_baseline),
+            _with_axes_behind(one),
+            kind,
+        )
+        for one in alike.values()
+    )
 
 
 def _with_axes_behind(sheet: Sheet) -> Sheet:

@@ -251,12 +251,26 @@ def is_workbook(data: bytes) -> bool:
     return data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
-def workbook_rows(
-    data: bytes, where: str, sheet: str | None = None, notes: list[str] | None = None
-) -> list[list[str]]:
-    """Return the cells of one sheet of an XLSX or XLS file as text, by default the first.
+def workbook_rows(data: bytes, where: str, sheet: str | None, notes: list[str]) -> list[list[str]]:
+    """Return the cells of one sheet of an XLSX or XLS file as text.
 
-    With ``notes`` the first one that holds half as many numbers as any other; which, is added.
+    By default the first one that holds half as many numbers as any other; which, is noted.
+    """
+    sheets = workbook_sheets(data, where, sheet)
+    counts = {name: sum(map(text.is_written_number, chain(*rows))) for name, rows in sheets.items()}
+    most = max(counts.values())
+    name = next(name for name, count in counts.items() if 2 * count >= most)
+    if len(sheets) > 1:
+        notes.append(f'sheet "{name}" of {", ".join(sheets)}')
+    return sheets[name]
+
+
+def workbook_sheets(
+    data: bytes, where: str, sheet: str | None = None
+) -> dict[str, list[list[str]]]:
+    """Return the cells of each sheet of an XLSX or XLS file, or of ``sheet`` alone, as text.
+
+    Empty rows at the end of a sheet are left out.
     """
     read = _xlsx if data[:4] == b"PK\x03\x04" else _xls
     try:
@@ -269,15 +283,10 @@ def workbook_rows(
         raise DataError(
             "the workbook is damaged", where=where, remedy="Save it again, or export it as CSV"
         ) from error
-    counts = {name: sum(map(text.is_written_number, chain(*rows))) for name, rows in sheets.items()}
-    most = 0 if notes is None else max(counts.values())
-    name = next(name for name, count in counts.items() if 2 * count >= most)
-    if len(sheets) > 1 and notes is not None:
-        notes.append(f'sheet "{name}" of {", ".join(sheets)}')
-    rows = sheets[name]
-    while rows and not any(rows[-1]):
-        rows.pop()
-    return rows
+    for rows in sheets.values():
+        while rows and not any(rows[-1]):
+            rows.pop()
+    return sheets
 
 
 def _xlsx(data: bytes, where: str, sheet: str | None) -> dict[str, list[list[str]]]:

@@ -319,6 +319,7 @@ _WORDS: dict[str, str] = {
         "s": "sec second sekunde", "ms": "msec millisec millisecond millisekunde",
         "us": "usec microsecond", "min": "minute", "h": "hr hour std stunde",
         "m/s": "m/sec meter/s meter/sec", "mm/s": "mm/sec", "cm/s": "cm/sec",
+        "in/s": "in/sec inch/s ips", "ft/s": "ft/sec fps", "ft/min": "fpm",
         "Pa": "pascal", "kPa": "kilopascal", "deg": "degree grad", "rad": "radian",
         "rpm": "r/min rev/min u/min 1/min", "Hz": "hertz", "V": "volt",
     }.items()
@@ -340,7 +341,8 @@ _FACTORS: dict[str, tuple[str, float]] = {
         "m": _LENGTHS,
         "N*m": _MOMENTS,
         "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
-        "m/s": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "um/s": 1e-6, "km/h": 1.0 / 3.6},
+        "m/s": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "um/s": 1e-6, "km/h": 1.0 / 3.6,
+                "m/min": 1.0 / 60.0, "in/s": 0.0254, "ft/s": 0.3048, "ft/min": 0.3048 / 60.0},
         "Pa": {
             "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "mPa": 1e-3, "GPa": 1e9, "hPa": 1e2, "bar": 1e5,
             "mbar": 1e2, "psi": 6894.757293168361, "N/mm2": 1e6, "N/cm2": 1e4, "N/m2": 1.0,

@@ -18,7 +18,7 @@ from underfoot.core.remark import Message
 from underfoot.core.text import decode_text
 
 from ..readers import TrialsProfile, read_profile, trial_suffixes
-from ..readers.sheet import is_workbook, workbook_rows
+from ..readers.sheet import is_workbook, workbook_sheets
 from ..readers.text import is_number, is_written_number, name_and_unit, si_unit
 from ..recording.tester_calibration import written_day
 from .file_result import FileResult
@@ -26,6 +26,7 @@ from .file_result import FileResult
 NAMES = ("conditions.csv", "conditions.xlsx")
 REPORT_MARK = "analysis.txt"  # stands in the folder of a report, which holds no trials
 PERSON = ("subject", "person", "participant", "proband", "volunteer", "vp", "id")
+SHEET = "sheet"
 FILE = ("file", "filename", "file name", "datei", "dateiname")
 MASS = ("mass", "body mass", "weight", "body weight", "masse", "körpermasse", "gewicht",
         "körpergewicht")  # fmt: skip
@@ -392,7 +393,7 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     path = table or next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return {}
-    found, lines = table_columns(path)
+    found, lines = table_columns(path, FILE)
     cells = {name.casefold(): (unit, own) for name, unit, own in found}
     files = next((name for name in FILE if name in cells), "")
     if not files:
@@ -428,40 +429,84 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
     return noted
 
 
-def table_columns(path: Path) -> tuple[list[tuple[str, str, list[str]]], list[int]]:
-    """Return (heading, unit, cells) of each column of a table, and the line number of each row.
+TableColumns = tuple[list[tuple[str, str, list[str]]], list[int]]
+"""(Heading, unit, cells) of each column of a table, and the line number of each row."""
 
-    Empty lines and columns without a heading are left out; the first line holds the headings; cells
-    such as "n.a.", "-" and "k.A." are empty. Days in a column that says so ("date", "Datum") are
-    written one way (2026-03-05). A row with more cells than headings, and two columns of one name,
-    are an `InputError`.
+
+def table_columns(path: Path, needed: Sequence[str]) -> TableColumns:
+    """Return the columns of the one table of a file that has a column ``needed``.
+
+    Where none has, those of the first of ``tables_of``. InputError: two of them have it.
     """
-    rows = [(line, row) for line, row in enumerate(table_rows(path), start=1) if any(row)]
-    heads = [name_and_unit(cell) for cell in rows[0][1]] if rows else []
-    for line, row in rows[1:]:
+    tables = tables_of(path)
+    wanted = [
+        name
+        for name, (columns, _) in tables.items()
+        if any(head.casefold() in needed for head, _, _ in columns)
+    ]
+    if len(wanted) > 1:
+        raise InputError(
+            f"several sheets hold such a table, with other headings: {', '.join(wanted)}",
+            where=path.name,
+            remedy="Write the same headings in each sheet, or keep one",
+        )
+    return tables[next(iter([*wanted, *tables]))]
+
+
+def tables_of(path: Path) -> dict[str, TableColumns]:
+    """Return the columns of each table of a file, by the first sheet that it stands in.
+
+    Sheets of a workbook with the same headings are one table, with a column "sheet". Empty lines
+    and columns without a heading are left out; the first line holds the headings; cells such as
+    "n.a.", "-" and "k.A." are empty. Days in a column that says so ("date", "Datum") are written
+    one way (2026-03-05). A row with more cells than headings, and two columns of one name, are an
+    `InputError`.
+    """
+    filled = {
+        sheet: [(line, row) for line, row in enumerate(rows, start=1) if any(row)]
+        for sheet, rows in _sheets(path).items()
+    }
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for sheet, lines in filled.items():
+        if lines or len(filled) == 1:
+            alike.setdefault(tuple(lines[0][1]) if lines else (), []).append(sheet)
+    return {
+        sheets[0]: _columns(list(heads), {sheet: filled[sheet][1:] for sheet in sheets}, path.name)
+        for heads, sheets in alike.items()
+    } or {"": ([], [])}
+
+
+def _columns(
+    headings: list[str], sheets: Mapping[str, list[tuple[int, list[str]]]], where: str
+) -> TableColumns:
+    heads = [name_and_unit(cell) for cell in headings]
+    lines = [pair for rows in sheets.values() for pair in rows]
+    for line, row in lines:
         if any(row[len(heads) :]):
             raise InputError(
                 f"line {line} has {len(row)} cells, the headings are {len(heads)}",
-                where=path.name,
+                where=where,
                 remedy='A comma within a cell ("0,45") needs quotes, or semicolons between cells',
             )
     folded = [name.casefold() for name, _ in heads if name]
     twice = next((name for name in folded if folded.count(name) > 1), "")
     if twice:
-        raise InputError(f'two columns are called "{twice}"', where=path.name)
+        raise InputError(f'two columns are called "{twice}"', where=where)
     columns = [
         (
             name,
             unit,
             [
                 _cell(row[i], days=bool(_DAYS.search(name))) if i < len(row) else ""
-                for _, row in rows[1:]
+                for _, row in lines
             ],
         )
         for i, (name, unit) in enumerate(heads)
         if name
     ]
-    return columns, [line for line, _ in rows[1:]]
+    if len(sheets) > 1 and SHEET not in folded:
+        columns.append((SHEET, "", [sheet for sheet, rows in sheets.items() for _ in rows]))
+    return columns, [line for line, _ in lines]
 
 
 def _cell(text: str, *, days: bool) -> str:
@@ -543,15 +588,15 @@ def profile_of(folder: Path, given: Path | None) -> tuple[TrialsProfile, str]:
     return read_profile(path), path.read_text(encoding="utf-8-sig")
 
 
-def table_rows(path: Path) -> list[list[str]]:
-    """Return the cells of a CSV or XLSX table, row by row; errors as `InputError`."""
+def _sheets(path: Path) -> dict[str, list[list[str]]]:
+    """Return the cells of each sheet of a CSV or XLSX file, row by row; errors as `InputError`."""
     try:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"can't be read: {error.strerror or error}", where=str(path)) from error
     if is_workbook(data):
         try:
-            return workbook_rows(data, path.name)
+            return workbook_sheets(data, path.name)
         except DataError as error:
             raise InputError(error.what, where=path.name) from error
     try:
@@ -559,7 +604,7 @@ def table_rows(path: Path) -> list[list[str]]:
     except DataError as error:
         raise InputError(error.what, where=path.name) from error
     lines = csv.reader(io.StringIO(text), delimiter=table_delimiter(text))
-    return [[cell.strip() for cell in row] for row in lines]
+    return {"": [[cell.strip() for cell in row] for row in lines]}
 
 
 def table_delimiter(text: str) -> str:

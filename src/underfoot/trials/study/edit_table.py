@@ -41,7 +41,7 @@ def edit_rows(
     path = next((folder / name for name in NAMES if (folder / name).is_file()), None)
     if path is None:
         return []
-    columns, lines = table_columns(path)
+    columns, lines = table_columns(path, ("file",))
     cells = {name.casefold(): (unit, own) for name, unit, own in columns}
     lacking = [name for name in COLUMNS if name not in cells]
     if lacking:

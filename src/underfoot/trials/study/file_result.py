@@ -101,11 +101,13 @@ class LoggedEdit:
 class Sample:
     """Readings of one sample of a table.
 
-    ``readings``: those that count, less that of zero. ``scheme``: name of the classes that they
+    ``source``: name of the table that it stands in. ``readings``: those that count, less that of
+    zero. ``scheme``: name of the classes that they
     belong to, or "". ``boards``: (standard angle, angle read, its u) in degrees of each calibration
     board that the walker of a ramp read.
     """
 
+    source: str = ""
     readings: tuple[float, ...] = ()
     scheme: str = ""
     boards: tuple[tuple[float, ...], ...] = ()

@@ -30,7 +30,7 @@ from .study import TrialStudy, study_of
 from .study_guard import Doubt, doubt_table, guarded_files, study_doubts
 from .tables import TrialTable, curve_table, edit_table, file_table, measurement_table, step_tables
 
-_CODE = "8"  # raised when what a file gives changes, so that stored results are made again
+_CODE = "9"  # raised when what a file gives changes, so that stored results are made again
 _OTHER_MASS = 0.1  # relative; shoes and clothes weigh less
 _DIED = "the process that analysed it ended without an answer"
 

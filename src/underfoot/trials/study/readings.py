@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,11 +19,12 @@ from ..statistics import drift, standard_deviation
 from .conditions import (
     LARGEST,
     QUANTITIES,
+    TableColumns,
     coded_levels,
     first_text,
     numbers_of_columns,
     one_spelling,
-    table_columns,
+    tables_of,
 )
 from .file_result import FileResult, FileResultDraft, Sample, refer_to
 from .floor_classes import class_scheme
@@ -53,6 +54,17 @@ _SUMMARY = re.compile(
     re.IGNORECASE,
 )
 """Labels of rows below a table that hold no reading but a number of those above."""
+_OUTCOME = re.compile(
+    rf"(?<![^\W_])({_SUMMARY.pattern}|results?|verdict|pass|potential|ergebnis|urteil|bewertung)"
+    r"(?![^\W_])",
+    re.IGNORECASE,
+)
+"""Headings of what is computed from readings: they tell no samples apart."""
+_REMARK = re.compile(
+    r"(?<![^\W_])(remarks?|comments?|notes?|bemerkung(en)?|kommentar|notiz(en)?)(?![^\W_])",
+    re.IGNORECASE,
+)
+"""Headings of what is said about single readings, where some have nothing."""
 _FEWEST_BESIDE = 3  # numbered columns of a record sheet
 _DRY = re.compile(r"dry|trocken", re.IGNORECASE)
 _WALKERS = (
@@ -70,8 +82,10 @@ _READ_BY = {
     "laboratory": ("laboratory", "lab", "labor", "prüflabor"),
 }
 """Headings of what reads a sample, by the name under which its readings are compared."""
-_LABELS = (*NOTED["slider"], *NOTED["direction"], *_WALKERS, "sample", "date",
-           *(name for names in _READ_BY.values() for name in names))  # fmt: skip
+HOW_READ = (*(h for heads in NOTED.values() for h in heads), *_WALKERS, "date",
+            *(name for names in _READ_BY.values() for name in names))  # fmt: skip
+"""Headings of how, when and by whom a sample was read: they do not name it."""
+_LABELS = (*HOW_READ, "sample")
 _UNITS = {
     "ptv": {"": 1.0, "1": 1.0, "ptv": 1.0, "srv": 1.0, "bpn": 1.0},
     "angle": {"": 1.0, "deg": 1.0, "°": 1.0, "grad": 1.0, "rad": 180.0 / math.pi},
@@ -110,18 +124,43 @@ def reading_results(
     protocol: Protocol,
     record: TesterCalibration | None = None,
 ) -> list[FileResult]:
-    """Return one result for each sample of a table of readings (one reading a row).
+    """Return one result for each sample of the tables of readings in a file (one reading a row).
 
-    Every text column is a condition; rows that agree in all of them are readings of one sample (of
-    one direction, with one slider). A column "run" may say "zero" (the mean of these readings is
-    taken off the sample's others), "conditioning" (left out) or "check" (a surface of known PTV: a
-    failed check refuses the readings of its slider). Of a ramp a row with a "standard angle" is a
-    calibration board, which shows how far its operator reads off. The protocol may leave out the
-    first readings (``conditioning``) where more than ``readings`` are given. A table in which no
-    column can be recognised as readings, impossible values and one condition in two spellings are a
-    `DataError` or `InputError`.
+    Sheets of a workbook with the same headings are one table. Every text column is a condition, but
+    for verdicts, means and remarks about some of the readings; rows that agree in all of them are
+    readings of one sample (of one direction, with one slider). A column "run" may say "zero" (the
+    mean of these readings is taken off the sample's others), "conditioning" (left out) or "check"
+    (a surface of known PTV: a failed check refuses the readings of its slider). Of a ramp a row
+    with a "standard angle" is a calibration board, which shows how far its operator reads off. The
+    protocol may leave out the first readings (``conditioning``) where more than ``readings`` are
+    given. A table in which no column can be recognised as readings, impossible values and one
+    condition in two spellings are a `DataError` or `InputError`.
     """
-    columns, lines = _one_a_row(*table_columns(path), protocol.text("quantity"))
+    tables = tables_of(path)
+    known = {protocol.text("column").casefold()}.union(*QUANTITIES.values())
+    wanted = [sheet for sheet, table in tables.items() if _holds_readings(table, known)]
+    results = []
+    for sheet in wanted or list(tables)[:1]:
+        label = f"{name}, {sheet}" if len(wanted) > 1 else name
+        results += _table_results(label, tables[sheet], checksum, noted, protocol, record)
+    return results
+
+
+def _holds_readings(table: TableColumns, known: Collection[str]) -> bool:
+    heads = [head.casefold() for head, _, _ in table[0]]
+    beside = sum(bool(_NTH.fullmatch(head)) for head in heads)
+    return beside >= _FEWEST_BESIDE or any(head in known for head in heads)
+
+
+def _table_results(
+    name: str,
+    table: TableColumns,
+    checksum: str,
+    noted: Mapping[str, Any],
+    protocol: Protocol,
+    record: TesterCalibration | None,
+) -> list[FileResult]:
+    columns, lines = _one_a_row(*table, protocol.text("quantity"))
     cells = {head: column for head, _, column in columns}
     units = {head: unit for head, unit, _ in columns}
     read = numbers_of_columns(cells, name)
@@ -147,13 +186,16 @@ def reading_results(
         for k, v in cells.items()
         if k.casefold() not in _RUN
         and k != column
+        and _names_samples(k, cells[k])
         and (k not in numbers or k.casefold() in _LABELS)
     }
     # floors 1, 2, 3 are samples, not one sample with a number beside its readings
     coded = {
         k.casefold(): coded_levels(k.casefold(), units[k], read[k], most=len(values) - 1, fewest=1)
         for k in numbers
-        if k != column and k.casefold() not in (*texts, *_RUN, *_BOARD)
+        if k != column
+        and k.casefold() not in (*texts, *_RUN, *_BOARD)
+        and _names_samples(k, cells[k])
     }
     texts |= {name: levels for name, levels in coded.items() if levels is not None}
     walker = next((k for k in texts if k in _WALKERS), "") if quantity == "angle" else ""
@@ -207,8 +249,14 @@ def reading_results(
         if boards is not None:
             on_boards = boards.read.get(conditions.get("operator", ""), ())
             draft.sample = replace(draft.sample, boards=on_boards)
+        draft.sample = replace(draft.sample, source=name)
         results.append(draft.finished(protocol))
     return results
+
+
+def _names_samples(head: str, cells: Sequence[str]) -> bool:
+    """Whether a column can tell samples apart: no outcome, and no remark about some readings."""
+    return not _OUTCOME.search(head) and (all(cells) or not _REMARK.search(head))
 
 
 def _one_a_row(

@@ -21,7 +21,7 @@ from .conditions import MASS, NUMBERS, ORDERS, person_condition
 from .field_statistics import agreement_findings, curve_findings
 from .file_result import FileResult
 from .floor_classes import ClassScheme, class_scheme, cof_of_pendulum
-from .readings import NOTED, board_correction
+from .readings import HOW_READ, NOTED, board_correction
 from .study_tests import columns_of, comparison_findings, persons_of, slip_findings, varying
 from .tables import (
     Finding,
@@ -429,6 +429,7 @@ def _readings(files: list[FileResult], protocol: Protocol) -> TrialStudy:
     keys = _keys(files, protocol.texts("group")) or tuple(
         dict.fromkeys(k for f in files for k, v in f.conditions.items() if isinstance(v, str))
     )
+    files, keys = _told_apart(files, keys)
     rows, schemes = [], {}
     for f in files:
         m = f.measurements[0]
@@ -485,6 +486,23 @@ def _readings(files: list[FileResult], protocol: Protocol) -> TrialStudy:
         made += _precision(groups, by, quantity, keys)
         findings += agreement_findings(groups, by, quantity)
     return TrialStudy(tuple(made), tuple(findings))
+
+
+def _told_apart(
+    files: list[FileResult], keys: tuple[str, ...]
+) -> tuple[list[FileResult], tuple[str, ...]]:
+    """Return files and keys, with the table as a condition where nothing else names the samples.
+
+    So it is where two tables agree in all conditions, and where a table has none but how it was
+    read.
+    """
+    levels = {(f.sample.source, *(f.conditions.get(key) for key in keys)) for f in files}
+    named = all(any(key in f.conditions for key in keys if key not in HOW_READ) for f in files)
+    alike = len({level[1:] for level in levels}) < len(levels)
+    if len({f.sample.source for f in files}) < 2 or (named and not alike):
+        return files, keys
+    told = [replace(f, conditions={"source": f.sample.source, **f.conditions}) for f in files]
+    return told, ("source", *keys)
 
 
 def _readings_by(
