@@ -24,6 +24,7 @@ from underfoot.core.page import PageSection, page, remark_sections
 from underfoot.core.pool import available_processors
 from underfoot.core.presentation import Table, quantity_text
 from underfoot.core.progress import time_text
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.explore.check import size_text
 from underfoot.explore.cost import StudyCost, study_cost
@@ -188,18 +189,22 @@ class LiveStudy(StudyStatus):
             last = max(last, end)
         return total
 
-    def cautions(self) -> tuple[str, ...]:
+    def cautions(self) -> tuple[Message, ...]:
         """Return what keeps the numbers from being taken as they are, the noise of a run first."""
-        texts = []
+        texts: list[Message] = []
         if self.plan.goals:
-            noises = [self._noise(goal) for goal in self.plan.goals]
-            known = f" (standard deviation: {', '.join(filter(None, noises))})" * any(noises)
+            noises = [noise for goal in self.plan.goals if (noise := self._noise(goal))]
+            known = Message(" (standard deviation: {noises:, })", noises=noises) if noises else ""
             texts.append(
-                f"Goals are as each design was run: a lucky run looks better than it is{known}. "
-                "The report ranks by means of all runs."
+                Message(
+                    "Goals are as each design was run: a lucky run looks better than it is{known}. "
+                    "The report ranks by means of all runs.",
+                    known=known,
+                )
             )
         if self.scan.every > 1:
-            texts.append(f"Of the draws of COF every {self.scan.every}th counts here.")
+            every = self.scan.every
+            texts.append(Message("Of the draws of COF every {every}th counts here.", every=every))
         return (*texts, *super().cautions())
 
     def _noise(self, goal: AnyGoal) -> str:
