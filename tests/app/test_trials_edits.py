@@ -150,7 +150,7 @@ def test_a_stored_result_is_what_it_was(walks):
     """Numbers, steps and edits come back as the rows that they were, whatever JSON knows."""
     one = _edited(walks, "HC030A05.c3d,2,exclude,,targeted the plate\n").files[0]
     boards = ((8.7, 9.1, 0.1), (17.3, 17.6, 0.0))
-    one = replace(one, curves={}, sample=Sample((14.1, 14.5), "ramp", boards))
+    one = replace(one, curves={}, sample=Sample("a table", (14.1, 14.5), "ramp", boards))
     again = FileResult.from_dict(json.loads(json.dumps(one.as_dict(), default=list)))
     assert again == one
     assert (again.main, again.facts) == (one.main, one.facts)

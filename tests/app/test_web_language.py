@@ -63,7 +63,13 @@ def words(text):
 @pytest.fixture(scope="module")
 def english():
     """Return words of the guide, the app and the package that are no German words too."""
-    package = tomllib.loads((text.FOLDER / "de.package.toml").read_text("utf-8"))
+    package = {
+        english: german
+        for name in ("package", "messages")
+        for english, german in tomllib.loads(
+            (text.FOLDER / f"de.{name}.toml").read_text("utf-8")
+        ).items()
+    }
     sources = [path.read_text("utf-8") for path in GUIDE.glob("*.md")]
     sources += [*text.catalogue("en").values(), *package]
     german = set().union(*map(words, (*text.catalogue("de").values(), *package.values())))

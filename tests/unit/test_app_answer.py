@@ -18,6 +18,7 @@ from underfoot.app.project import Project
 from underfoot.app.variant_bar import new_variant
 from underfoot.core import InputError
 from underfoot.core.files import checksum
+from underfoot.core.presentation import Part
 
 TABLE = {"title": "Numbers", "columns": ["", "value"], "rows": [["load", "5 N"], ["  film", "2 %"]],
          "shows": ""}  # fmt: skip
@@ -381,7 +382,7 @@ def test_a_groove_is_cut_into_the_file_and_the_answer_computed_anew(session, pag
 @pytest.mark.parametrize("title", ["", "Numbers"])
 def test_a_table_marks_parts_and_has_buttons_in_the_rows_that_are_said(title):
     pressed = []
-    given = {**TABLE, "title": title, "shows": "lug", "rows": [["a", "1 %"], ["  b", "2"]]}
+    given = {**TABLE, "title": title, "shows": "lug", "rows": [["a", "1 %"], [Part("b"), "2"]]}
 
     def look(elements):
         cells = {

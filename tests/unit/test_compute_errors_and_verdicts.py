@@ -24,6 +24,7 @@ from underfoot.compute.stated_spreads import odds_changes, sum_of_draws
 from underfoot.core import Breach, SourcedValue, Status, ValidityRange
 from underfoot.core.remark import Message, Remark
 from underfoot.friction import SampledCof
+from underfoot.shoe.lug_drainage import SIDES
 
 CASE = load(Path(__file__).parents[2] / "examples" / "work_shoe_full_tread_glycerol.toml")
 
@@ -462,9 +463,7 @@ def test_lugs_that_bear_most_of_the_film_are_listed_with_their_ways_out():
     fields: Any = {f"lug_{name}": fake(values=each) for name, each in values.items()}
     rows = summary.drainage_table(fields).rows
     assert len(rows) == summary.LUGS_SHOWN
-    assert [row[2].rpartition(" ")[2] for row in rows[:4]] == [
-        side.rpartition(" ")[2] for side in summary.SIDES[:4]
-    ]
+    assert [row[2].rpartition(" ")[2] for row in rows[:4]] == [*SIDES]
     assert rows[0][3].startswith("2 mm to the ")
     assert rows[0][3].endswith("25 % of it")
     assert rows[0][1] == "50 N, 50 %"

@@ -108,11 +108,13 @@ def table(
                     if shown.get("shows"):
                         line.props(f"data-{shown['shows']}={place} tabindex=0")
                     for number, cell in enumerate(row):
+                        part = isinstance(cell, Part)
                         with ui.element("td" if number else "th") as made_cell:
-                            whole = isinstance(cell, Message)  # no % alone on a line
-                            package_label(cell if whole else cell.replace(" %", "\u00a0%"))
+                            words = cell.label if part else cell
+                            whole = isinstance(words, Message)  # no % alone on a line
+                            package_label(words if whole else words.replace(" %", "\u00a0%"))
                         if not number:
-                            made_cell.props('scope="row"').classes("part" * isinstance(cell, Part))
+                            made_cell.props('scope="row"').classes("part" * part)
                         if action and place in rows and number == len(row) - 1:
                             with made_cell:
                                 button = ui.button(action[0], on_click=partial(action[1], place))

@@ -68,7 +68,7 @@ class Walked:
 
 
 @dataclass(frozen=True, slots=True)
-class WalkedDistance:
+class WearWalker:
     """What turns a volume lost into a distance.
 
     Parameters:

@@ -20,7 +20,7 @@ from underfoot.core.units import tread_unit
 
 from .outcomes import CaseOutcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
-from .walked import SOURCES, Walked, WalkedDistance, WornPair
+from .walked import SOURCES, Walked, WearWalker, WornPair
 from .wear_limit import Crossing, LimitCrossing, WearPoint, limit_crossing
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ class WearSeries(Presentable):
     untreaded: CaseOutcome | None = None
     soles: tuple[SoleSurface, ...] = ()
     maps: tuple[dict[str, np.ndarray], ...] = ()
-    walker: WalkedDistance | None = None
+    walker: WearWalker | None = None
 
     def __repr__(self) -> str:
         return f"<WearSeries of {self.name!r}, {self.mode}: {len(self.points)} states>"
@@ -511,7 +511,7 @@ def wear_series(
         assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced(case)),
         quick=quick,
         untreaded=results[-1] if bare else None,
-        walker=WalkedDistance(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
+        walker=WearWalker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
         soles=soles,
         maps=tuple(
             maps_on_sole(sole, outcome, angle) for sole, outcome in zip(soles, shown, strict=True)

@@ -35,6 +35,7 @@ MIDDLE = 1e-3
 TOP = 0.99
 """Of a lug's highest fluid pressure: it peaks in the middle of what bears more."""
 SIDES = ("front", "rear", "left", "right")
+"""Left and right as seen from above, looking forward."""
 TO_SIDES = (
     Message("to the front"),
     Message("to the rear"),
@@ -42,7 +43,6 @@ TO_SIDES = (
     Message("to the right"),
 )
 """Where fluid goes, by the number in ``SIDES``."""
-"""Left and right as seen from above, looking forward."""
 
 
 @dataclass(frozen=True, slots=True)
