@@ -70,7 +70,7 @@ class DesignRecords(Mapping[tuple[int, int], Record]):
         return len(self._keys)
 
 
-ENDED = {
+ENDED: dict[str, Message] = {
     Ending.COMPUTED: Message("computed"),
     Ending.NOT_CONVERGED: Message("not converged"),
     Ending.INFEASIBLE: Message("infeasible"),
@@ -404,7 +404,10 @@ class StudyResult(Presentable):
         """Return how many cases ended and how, where ``left`` are open; ``of`` names the cases."""
         ended = {name: n for name, n in self.endings.items() if name != Ending.OPEN}
         done = sum(ended.values())
-        parts = [Message("{count} {name}", count=n, name=ENDED[name]) for name, n in ended.items()]
+        parts = [
+            Message("{count} {name}", count=n, name=ENDED.get(name, name))
+            for name, n in ended.items()
+        ]
         return Message(
             "{done} of {all} {cases} ended: {parts}",
             done=done, all=done + left, cases=of or Message("cases"),
