@@ -171,6 +171,8 @@ def test_old_names_of_a_field_a_property_and_a_method_answer():
     ("package", "old", "new"),
     [
         ("core", "Range", "ValidityRange"),
+        ("core.page", "Section", "PageSection"),
+        ("trials.readers.draft", "Draft", "RecordingDraft"),
         ("calibrate", "calibrated", "calibrate_model"),
         ("friction", "propagated", "propagate_spread"),
         ("material", "reduced", "reduce_spectrum"),

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from underfoot.core.deprecation import package_names
+
 from .html import environment
 from .presentation import Part, Presentable, Table
 
@@ -106,3 +108,6 @@ def remark_sections(shown: Presentable) -> list[PageSection]:
 
 def _is_number(cell: str) -> bool:
     return len(cell) < LONGEST_NUMBER and _NUMERIC.fullmatch(cell) is not None
+
+
+__getattr__ = package_names(__name__, gone="0.5", Section="PageSection")  # plug-ins import it

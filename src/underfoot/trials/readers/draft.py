@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, nearest_match
+from underfoot.core.deprecation import package_names
 from underfoot.core.missing import mask_of_codes
 from underfoot.core.remark import NOTHING, Message, join_lines
 from underfoot.core.text import decode_text
@@ -345,3 +346,6 @@ def _fitting(number: float, least: float, most: float) -> str:
     usual = (least * most) ** 0.5
     misfit = {name: abs(np.log(number * unit / usual)) for name, unit in _NAMED.items()}
     return f"As {min(misfit, key=lambda name: float(misfit[name]))} it would fit"
+
+
+__getattr__ = package_names(__name__, gone="0.5", Draft="RecordingDraft")  # plug-ins import it
