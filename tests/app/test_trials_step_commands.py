@@ -118,3 +118,22 @@ def test_tidy_tables_hold_every_step_and_the_curves(tmp_path):
     ratio = [row[curves.columns.index("mean ratio")] for row in curves.rows]
     assert 0.15 < max(ratio[3:25]) < 0.35
     assert max(row[curves.columns.index("SD vertical (N)")] for row in curves.rows) > 50.0
+
+
+@pytest.mark.parametrize(
+    ("words", "answer"),
+    [
+        # Cohen 1988, table 2.3.5 and 2.4.1: d = 0.5 at 80 %: 64 in each group, 34 pairs
+        ("groups --difference 0.01 --sd 0.02", "64 persons in each group: power 0.80"),
+        ("paired --difference 0.01 --sd 0.02", "34 persons: power 0.80"),
+        ("repeated --difference 0.01 --sd 0.02 --conditions 3", ", 3 conditions: power 0.8"),
+        ("paired --difference 0.01", "--sd: is missing"),
+        ("groups --sd 0.02", "--difference: is missing"),
+        ("slips", "--shares: is missing"),
+        ("slips_equivalent --shares 0.1 0.1", "--difference: is missing"),
+    ],
+)
+def test_persons_of_a_study_hang_on_what_is_stated_alone(words, answer):
+    ended = CliRunner().invoke(trials_app, ["persons", *words.split()])
+    assert answer in ended.output + str(ended.exception or "")
+    assert (ended.exit_code == 0) == ("missing" not in answer)

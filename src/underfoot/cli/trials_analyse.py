@@ -118,44 +118,55 @@ def analyse(
         raise typer.Exit(3)
 
 
+NEEDED_OF = {
+    **dict.fromkeys(("paired", "groups", "repeated"), ("difference", "sd")),
+    "slips": ("shares",),
+    "slips_equivalent": ("shares", "difference"),
+}
+"""Options that the number of persons of a design hangs on."""
+
+
 def persons(
     design: Annotated[
         str, typer.Argument(help="paired, groups, repeated, slips or slips_equivalent.")
     ],
     difference: Annotated[
-        float,
+        float | None,
         typer.Option(
             parser=number, help="Difference of means to be found; margin (slips_equivalent)."
         ),
-    ] = 0.0,
+    ] = None,
     sd: Annotated[
-        float,
+        float | None,
         typer.Option(
             parser=number,
             help="SD of differences within persons (paired), of a person's mean in one condition "
             "(repeated), between persons (groups).",
         ),
-    ] = 1.0,
-    shares: Annotated[tuple[float, float], typer.Option(help="Shares of slips in both groups.")] = (
-        0.0,
-        0.0,
-    ),
+    ] = None,
+    shares: Annotated[
+        tuple[float, float] | None, typer.Option(help="Shares of slips in both groups.")
+    ] = None,
     conditions: Annotated[int, typer.Option(help="Number of conditions (repeated).")] = 2,
     power: Annotated[float, typer.Option(parser=number, help="Chance to find it.")] = 0.8,
 ) -> None:
     """Print how many persons a study needs (in each group, for groups and slips)."""
+    from underfoot.core import InputError
     from underfoot.trials import statistics
 
-    settings: dict[str, Any] = {
-        "difference": difference,
-        "sd": sd,
-        "shares": shares,
-        "conditions": conditions,
-    }
+    stated = {"difference": difference, "sd": sd, "shares": shares}
+    for name in NEEDED_OF.get(design, ()):
+        if stated[name] is None:
+            raise InputError(
+                "is missing", where=f"--{name}", remedy="See underfoot trials persons --help"
+            )
+    settings: dict[str, Any] = {k: v for k, v in stated.items() if v is not None}
+    settings["conditions"] = conditions
 
     def chance(count: int) -> float:
         return statistics.power(design, count, **settings)
 
     count = statistics.persons_needed(chance, power)
     each = " in each group" if design in ("groups", "slips", "slips_equivalent") else ""
-    print(f"{count} persons{each}: power {chance(count):.3f} at alpha 0.05, two-sided")
+    of = f", {conditions} conditions" if design == "repeated" else ""
+    print(f"{count} persons{each}{of}: power {chance(count):.3f} at alpha 0.05, two-sided")
