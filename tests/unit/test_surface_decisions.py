@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.surface.heights import profile_from_positions
+from underfoot.surface.filter import within_cutoffs
+from underfoot.surface.heights import HeightMap, profile_from_positions
 from underfoot.surface.read import _is_numbered, _plain_numbers, read_numbers
 from underfoot.surface.spectrum import ProfileSpectrum, isotropic_from_profile
 
@@ -69,3 +70,11 @@ def test_a_profile_goes_on_by_the_power_of_its_last_half_decade():
 )  # fmt: skip
 def test_plain_numbers_are_read_the_short_way_and_no_others(lines, separator, plain):
     assert (_plain_numbers(lines, separator) is not None) == plain
+
+
+@pytest.mark.parametrize("unit", [1 - 1e-12, 1.0, 1 + 1e-12])
+def test_a_side_of_one_and_a_half_cut_offs_is_cut_in_any_unit(unit):
+    """120 places of 10 um are 1.5 cut-offs of 0.8 mm, whatever their product is rounded to."""
+    heights = 1e-6 * np.random.default_rng(5).normal(size=(120, 120))
+    level = HeightMap(heights, (1e-5 * unit, 1e-5 * unit))
+    assert within_cutoffs(level, 2.5e-6, 0.8e-3).heights.shape == (40, 40)

@@ -59,7 +59,7 @@ def within_cutoffs(flat: HeightMap, short: float, cutoff: float) -> HeightMap:
         flat = long_waves(flat, short, "regression")
     rough = short_waves(flat, cutoff, "regression")
     rims = [
-        round(0.5 * cutoff / h) if n * h >= 1.5 * cutoff else 0
+        round(0.5 * cutoff / h) if holds(n * h, 1.5 * cutoff) else 0
         for n, h in zip(rough.shape, rough.spacings, strict=True)
     ]
     inner = tuple(slice(rim, n - rim) for n, rim in zip(rough.shape, rims, strict=True))
