@@ -76,5 +76,5 @@ def test_plain_numbers_are_read_the_short_way_and_no_others(lines, separator, pl
 def test_a_side_of_one_and_a_half_cut_offs_is_cut_in_any_unit(unit):
     """120 places of 10 um are 1.5 cut-offs of 0.8 mm, whatever their product is rounded to."""
     heights = 1e-6 * np.random.default_rng(5).normal(size=(120, 120))
-    level = HeightMap(heights, (1e-5 * unit, 1e-5 * unit))
+    level = HeightMap(heights, 1e-5 * unit)
     assert within_cutoffs(level, 2.5e-6, 0.8e-3).heights.shape == (40, 40)
