@@ -68,7 +68,11 @@ def handed_on(command):
                 yield value.id, defaults[value.id], function, takes[name].default
 
 
-OWN_DEFAULT = {("contact", "device"): "auto"}  # a command looks for a card; Python is told
+OWN_DEFAULT = {
+    ("contact", "device"): "auto",  # a command looks for a card; Python is told
+    # a command asks; in Python a difference without ``sd`` is one in standard deviations
+    **{("trials", "persons", name): None for name in ("difference", "sd", "shares")},
+}
 
 
 def test_a_command_has_the_defaults_of_the_functions_that_answer():

@@ -134,7 +134,7 @@ def power(
     ``difference``: between two means; in "repeated" that of the largest and the smallest mean, the
     others in the middle; in "slips_equivalent" the margin. ``sd``: of the differences within
     persons ("paired"), of a person's mean about its own in one condition ("repeated"), between
-    persons ("groups"). ``shares``: of slips.
+    persons ("groups"); 1 makes the difference one in standard deviations. ``shares``: of slips.
 
     InputError: an unknown design, numbers out of range.
     """
