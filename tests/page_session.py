@@ -92,3 +92,24 @@ def button(elements, text):
     """Return the button of a text."""
     (found,) = (each for each in elements if isinstance(each, ui.button) and each.text == text)
     return found
+
+
+def answering(monkeypatch, session, **answers):
+    """Let the session answer by the name of what it is asked; return what it was asked.
+
+    A list of (name, arguments, options); an answer that is an error is raised, one that can be
+    called is called with the arguments.
+    """
+    asked = []
+
+    async def ask(function, *args, **options):
+        options.pop("heard", None)
+        name = function.partition(":")[2]
+        asked.append((name, args, options))
+        made = answers[name]
+        if isinstance(made, Exception):
+            raise made
+        return made(*args) if callable(made) else made
+
+    monkeypatch.setattr(session, "ask", ask)
+    return asked

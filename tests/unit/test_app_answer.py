@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from nicegui import ui
 
-from page_session import button, computed, press, session_of, shown, until, words_of
+from page_session import answering, button, computed, press, session_of, shown, until, words_of
 from underfoot.app import components
 from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING, STOPPED, JobQueue
 from underfoot.app.pages import answer, repair, wear
@@ -41,21 +41,6 @@ def session(tmp_path):
 @pytest.fixture
 def page(session):
     return answer._Answer(session, "a", session.project.case("a"))
-
-
-def answering(monkeypatch, session, **answers):
-    """Let the session answer by the name of what it is asked; return what it was asked."""
-    asked = []
-
-    async def ask(function, *args, **_):
-        asked.append((function.partition(":")[2], *args))
-        made = answers[function.partition(":")[2]]
-        if isinstance(made, Exception):
-            raise made
-        return made
-
-    monkeypatch.setattr(session, "ask", ask)
-    return asked
 
 
 def classes_of(elements, kind):
@@ -353,7 +338,9 @@ def test_a_preview_tells_its_cof_or_that_there_is_none(session, page, monkeypatc
     asked = answering(monkeypatch, session, previewed=seen)
     change = {"motion.speed": "0.4 m/s"}
     told = asyncio.run(page._moved(change))
-    assert asked == [("previewed", str(session.project.path("a")), str(page.folder), change)]
+    assert [(name, *given) for name, given, _ in asked] == [
+        ("previewed", str(session.project.path("a")), str(page.folder), change)
+    ]
     wanted = page.text("answer.preview", cof="0.301", error="0.012", fluid_load="90 N")
     assert told == {"texts": {"preview": wanted, "preview_note": ""}, "html": "sole"}
     assert page.preview_cof == 0.3014
@@ -374,7 +361,9 @@ def test_a_groove_is_cut_into_the_file_and_the_answer_computed_anew(session, pag
     ran = []
     monkeypatch.setattr(page, "run", lambda: ran.append(1))
     asyncio.run(page._cut(3))
-    assert asked == [("advised_groove", str(session.project.path("a")), str(page.folder), 3)]
+    assert [(name, *given) for name, given, _ in asked] == [
+        ("advised_groove", str(session.project.path("a")), str(page.folder), 3)
+    ]
     assert session.project.case("a").value("motion.speed") == pytest.approx(0.5)
     assert ran == [1]
 

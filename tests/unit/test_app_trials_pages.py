@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from nicegui import ui
 
-from page_session import button, press, session_of, shown, until, words_of
+from page_session import answering, button, press, session_of, shown, until, words_of
 from underfoot.app import trials_plots, work_trials
 from underfoot.app.jobs import DONE
 from underfoot.app.pages import trials, trials_folder
@@ -46,21 +46,6 @@ def study(session):
     made = TrialsFolder(session.project, "walks")
     made.files = ["a.csv", "b.csv", "c.csv"]
     return made
-
-
-def answering(monkeypatch, session, **answers):
-    asked = []
-
-    async def ask(function, *args, **options):
-        options.pop("heard", None)
-        asked.append((function.partition(":")[2], args, options))
-        made = answers[function.partition(":")[2]]
-        if isinstance(made, Exception):
-            raise made
-        return made
-
-    monkeypatch.setattr(session, "ask", ask)
-    return asked
 
 
 def tool(elements, icon):

@@ -86,8 +86,8 @@ def touch_time(strike: Strike, contact_pressure: Callable[[ArrayLike], Any]) -> 
     def touched(_: float, state: Any) -> float:
         return float(contact(max(state[0], THINNEST))) - 0.5 * strike.load
 
-    # SciPy ends the solution where an event with this attribute is met; functions declare none
-    touched.terminal = True  # type: ignore[attr-defined]
+    # SciPy ends the solution where an event with this attribute is met
+    setattr(touched, "terminal", True)  # noqa: B010 - functions declare no such attribute
     start = [strike.pool, strike.speed]
     from scipy.integrate import solve_ivp  # heavy: it brings the optimisers along
 
