@@ -12,9 +12,10 @@ that fails, in a fork of a process that holds the tests (``mutants_warm.py``) or
 runs at import, in a kernel or in no test of this process, the libraries alone. First come those of
 its room (they import its module, themselves or by a helper, or are called ``test_<room>_``), then
 the others; those that import the module first, each test once before one comes again with other
-parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets the
-tests that run anything of its file or are of its room; one that no test runs in this process meets
-those of its room if it is compiled, else those that start a process. What survives is printed with
+parameters, the quickest first, ``--seconds`` of each at most. A line that runs at import meets
+the tests of the lines that read its name, else those that run anything of its file or are of its
+room; one that no test runs in this process meets those of its room if it is compiled, else those
+that start a process. What survives is printed with
 its place: mend the tests, or say in ``mutants_alive.toml`` why it may live. A test that fails
 without a fault kills nothing; a fault that its room's test killed counts as dead while that test
 and the source stand. Not part of ``make test``.
@@ -58,13 +59,14 @@ CACHE = "__pycache__"
 IMPORTED = re.compile(r"(?m)^(?:from|import) (\w+)")
 PROCESSES = ("subprocess", "multiprocessing", "Popen", "processes=", "workers=")
 LEAST_TIME = 60  # s of CPU, below which no fault is called endless
-MOST_TESTS, MOST_FILES = 400, 12  # that one fault meets in its room, and elsewhere
+MOST_TESTS, MOST_FILES = 400, 30  # that one fault meets in its room, and elsewhere
 # what a fork finds imported
 LIBRARIES = (
     "numpy scipy.linalg scipy.optimize scipy.sparse.linalg scipy.stats scipy.special "
     "scipy.ndimage scipy.interpolate scipy.integrate scipy.spatial scipy.fft scipy.signal pandas "
     "xarray pydantic pint tomlkit typer rich matplotlib.pyplot hypothesis h5py".split()
 )
+FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 GUARD = 1e-5  # a number below it keeps a division or a rounding safe: twice it changes nothing
 ALIKE = {"min", "max", "hypot", "minimum", "maximum", "gcd", "isinstance", "getattr"}
 OPERATORS: dict[type, tuple[str, str]] = {
@@ -190,9 +192,11 @@ class Faults(ast.NodeVisitor):
             self._change(start, end, f"not ({ast.unparse(node.test)})")
             self.generic_visit(node)
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+    def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         for part in (*node.args.defaults, *filter(None, node.args.kw_defaults), *node.body):
             self.visit(part)
+
+    visit_AsyncFunctionDef = visit_FunctionDef
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         if node.value:
@@ -328,7 +332,7 @@ class Lines:
         """Return whether tests run the line of a fault, inside a function."""
         begin = statement_lines(mutant.file, mutant.line)[0]
         met = self._lines.get(mutant.file, {})
-        return begin > 0 and bool(met.get(mutant.line) or met.get(begin))
+        return in_function(mutant) and bool(met.get(mutant.line) or met.get(begin))
 
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
@@ -338,6 +342,8 @@ class Lines:
         of_file, files = self._lines.get(mutant.file, {}), tests_of(mutant.file)
         begin, end = statement_lines(mutant.file, mutant.line)
         if begin < 0:  # runs at import, for whichever test comes first: what it makes is read later
+            if read := {one for file, at in uses(mutant) for one in self._lines[file].get(at, ())}:
+                return list(read)
             every = {one for tests in of_file.values() for one in tests}
             return list(every | {one for file in files for one in self.tests.get(file, ())})
         if met := of_file.get(mutant.line) or of_file.get(begin):
@@ -363,7 +369,7 @@ def statements(file: str) -> list[tuple[int, int]]:
     found = {
         (one.lineno, one.end_lineno or one.lineno)
         for function in ast.walk(tree)
-        if isinstance(function, ast.FunctionDef)
+        if isinstance(function, FUNCTION)
         for part in function.body
         for one in ast.walk(part)
         if isinstance(one, ast.stmt)
@@ -375,6 +381,50 @@ def statement_lines(file: str, line: int) -> tuple[int, int]:
     """Return the first and last line of the innermost statement in a function, else (-1, -1)."""
     around = [lines for lines in statements(file) if lines[0] <= line <= lines[1]]
     return around[-1] if around else (-1, -1)
+
+
+def in_function(mutant: Mutant) -> bool:
+    """Return whether the line of a fault stands in a function."""
+    return statement_lines(mutant.file, mutant.line)[0] > 0
+
+
+@cache
+def words_in_functions(file: str) -> dict[str, list[int]]:
+    """Return the lines inside functions of a file of the source at which each name stands."""
+    tree = ast.parse((REPOSITORY / SOURCE / file).read_text(encoding="utf-8"))
+    lines = defaultdict[str, list[int]](list)
+    for function in ast.walk(tree):
+        if isinstance(function, FUNCTION):
+            for part in (each for line in function.body for each in ast.walk(line)):
+                name = part.attr if isinstance(part, ast.Attribute) else getattr(part, "id", "")
+                if name:
+                    lines[name].append(part.lineno)
+    return lines
+
+
+@cache
+def uses(mutant: Mutant) -> list[tuple[str, int]]:
+    """Return the lines that read what a line at import names, where its module is imported."""
+    tree = ast.parse((REPOSITORY / SOURCE / mutant.file).read_text(encoding="utf-8"))
+    names = {
+        target.id
+        for part in ast.walk(tree)
+        if isinstance(part, ast.Assign | ast.AnnAssign)
+        and part.lineno <= mutant.line <= (part.end_lineno or part.lineno)
+        for target in (part.targets if isinstance(part, ast.Assign) else [part.target])
+        if isinstance(target, ast.Name)
+    }
+    module = Path(mutant.file).stem
+    return [
+        (file, line)
+        for path in sorted((REPOSITORY / SOURCE).rglob("*.py"))
+        if (file := path.relative_to(REPOSITORY / SOURCE).as_posix()) == mutant.file
+        or re.search(
+            rf"(?m)^ *from \S*\b{module} import|import {module}\b", path.read_text("utf-8")
+        )
+        for name in names
+        for line in words_in_functions(file).get(name, ())
+    ]
 
 
 def in_turn(tests: Iterable[Test], seconds: float, first: tuple[str, ...] = ()) -> list[Test]:
@@ -688,7 +738,9 @@ def main() -> None:
         of_rooms = {test for one in chosen for test in tests_of(one.file)}
         wanted = [test for test, _ in test_texts() if not given.own or test in of_rooms]
         record(wanted, sources, given.jobs)
-    lines = Lines(sources)
+    lines = Lines(
+        sources | {file for one in chosen if not in_function(one) for file, _ in uses(one)}
+    )
     if lines.red:
         print("These tests fail without a fault, and kill none:", *lines.red, sep="\n  ")
     for library in LIBRARIES:
