@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from underfoot.core import InputError, display, to_si
-from underfoot.core.units import metres, spread_to_si
+from underfoot.core.unit_text import metres
+from underfoot.core.units import spread_to_si
 
 
 @pytest.mark.parametrize(
@@ -114,7 +115,7 @@ def test_display_says_when_it_is_not_a_number():
 
 def test_inches_and_pounds_on_request(monkeypatch):
     from underfoot.core.presentation import quantity_text
-    from underfoot.core.units import UNITS_VARIABLE, tread_unit
+    from underfoot.core.unit_text import UNITS_VARIABLE, tread_unit
 
     values = ((3e-3, "m"), (25.4e-6, "m"), (6894.757, "Pa"), (444.822, "N"), (6.4516e-4, "m^2"))
     assert [quantity_text(*each) for each in values][:2] == ["3 mm", "25.4 µm"]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from underfoot.core import DataError
-from underfoot.core.units import plain_number
+from underfoot.core.unit_text import plain_number
 from underfoot.trials.pages.report import page_table
 from underfoot.trials.recording.protocols import protocol
 from underfoot.trials.statistics import effect_size

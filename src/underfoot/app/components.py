@@ -11,9 +11,10 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from underfoot.core.presentation import Part
-from underfoot.core.remark import MARK, Message
+from underfoot.core.remark import Message
 
 from .jobs import INTERRUPTED, QueuedTask
+from .labels import package_label
 from .session import Session
 from .text import as_json
 from .uploads import MOST_BYTES
@@ -126,14 +127,6 @@ def sentences(lines: Sequence[str], kind: str = "") -> None:
     """Show sentences, a paragraph each."""
     for line in lines:
         package_label(line).classes(kind)
-
-
-def package_label(text: str) -> ui.label:
-    """Return a label of a text of the package, which the page puts into its language."""
-    made = ui.label(text)
-    if isinstance(text, Message):
-        made.props[MARK] = text.page_mark()
-    return made
 
 
 def drop_zone(

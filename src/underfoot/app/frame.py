@@ -7,9 +7,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from fastapi import Request
 from nicegui import ui
 
-from underfoot.core.units import SYSTEMS
+from underfoot.core.unit_text import SYSTEMS
 
 from .jobs import RUNNING, JobQueue, QueuedTask
+from .labels import package_label
 from .project import Project
 from .projects import Servers
 from .session import Exchange, Page, Session
@@ -158,7 +159,7 @@ def _job_row(session: Session, task: QueuedTask) -> None:
         state = text(f"jobs.{task.state}")
         if task.state == "running":
             state = f"{task.stage or state}, {100 * task.fraction:.0f} %"
-        ui.label(task.problem or state).classes("soft")
+        package_label(task.problem or state).classes("soft")
         if task.open:
             stop = ui.button(text("jobs.stop"), on_click=lambda: session.jobs.cancel(task))
             stop.props("flat dense no-caps")

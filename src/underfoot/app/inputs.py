@@ -16,6 +16,7 @@ from nicegui.events import GenericEventArguments
 from underfoot.case import Case, unit_at
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
+from underfoot.core.remark import Message
 from underfoot.core.typed import split_quantity
 from underfoot.core.units import si_unit, to_si
 
@@ -201,7 +202,7 @@ def whole_number(text: str, *, comma: bool) -> int:
     """
     number = to_si(text, "1", where="", comma=comma)
     if number < 1 or number != int(number):
-        raise InputError(f"{text} is no count", allowed="1, 2, 3 ...")
+        raise InputError(Message("{given} is no count", given=text), allowed="1, 2, 3 ...")
     return int(number)
 
 

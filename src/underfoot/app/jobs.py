@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core.errors import Cancelled, error_text
-from underfoot.core.units import SYSTEMS, UNITS_VARIABLE
+from underfoot.core.unit_text import SYSTEMS, UNITS_VARIABLE
 from underfoot.core.worker import Job, Worker
 
 from .project import append_line, lines

@@ -27,6 +27,7 @@ from underfoot.case import Case
 from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
+from underfoot.core.remark import Message
 
 FOLDERS = ("variants", "soles", "measured", "results", "studies", "trials")
 NAME = re.compile(r"[^\W_][\w .,+()'-]{0,59}")
@@ -76,7 +77,11 @@ class Project:
                 (self.folder / name).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(
-                f"{self.folder} can't be used as a project: {(error.strerror or '').lower()}",
+                Message(
+                    "{folder} can't be used as a project: {strerror}",
+                    folder=self.folder,
+                    strerror=(error.strerror or "").lower(),
+                ),
                 where="project",
                 allowed="a folder that can be written",
             ) from error

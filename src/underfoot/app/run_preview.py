@@ -11,6 +11,7 @@ from underfoot.case import Case
 from underfoot.compute.continuation import Continuation, Preview, kept_continuation
 from underfoot.compute.positions import has_lugs
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, silent
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 
 SURE = 1.96
@@ -85,8 +86,14 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         errors[name] = math.hypot(share * seen.errors[name], repeated, drift)
     if max(errors["cof"] / values["cof"], errors["fluid_load"] / load) > MOST_UNSURE:
         raise ConvergenceError(
-            f"a preview would say COF {values['cof']:.3f} ± {errors['cof']:.3f}, film "
-            f"{values['fluid_load']:.0f} ± {errors['fluid_load']:.0f} N: too little",
+            Message(
+                "a preview would say COF {cof:.3f} ± {cof_spread:.3f}, film {film:.0f} ± "
+                "{film_spread:.0f} N: too little",
+                cof=values["cof"],
+                cof_spread=errors["cof"],
+                film=values["fluid_load"],
+                film_spread=errors["fluid_load"],
+            ),
             where="continued",
             remedy="Run the changed case",
         )

@@ -20,6 +20,7 @@ from platformdirs import user_state_path
 
 from underfoot.core import InputError
 from underfoot.core.files import whole_file
+from underfoot.core.remark import Message
 
 from .frame import WORDS, build_framed_page, open_session
 from .gate import UPLOADS, Gate, own_name
@@ -201,7 +202,12 @@ def _socket(host: str, port: int) -> socket.socket:
     except OSError as error:
         listening.close()
         raise InputError(
-            f"port {port} of {host} can't be used: {(error.strerror or str(error)).lower()}",
+            Message(
+                "port {port} of {host} can't be used: {strerror}",
+                port=port,
+                host=host,
+                strerror=(error.strerror or str(error)).lower(),
+            ),
             where="--port",
             remedy="Perhaps the app runs already: look for its page in your browser. Or take "
             "another port: --port 0 takes any that is free",

@@ -15,9 +15,10 @@ from urllib.parse import quote, urlencode
 from nicegui import ui
 
 from underfoot.core.errors import Cancelled, UnderfootError, error_text
-from underfoot.core.units import SYSTEMS
+from underfoot.core.unit_text import SYSTEMS
 
 from .jobs import JobQueue, Lane, QueuedTask
+from .labels import package_label
 from .project import Project
 from .projects import Servers
 from .text import Text
@@ -192,7 +193,7 @@ class Session:
         with self.problems, ui.element("div").classes("problem") as box:
             box.props('role="alert"')
             for kind, words in problem_parts(error):
-                ui.label(words).classes(f"problem-{kind}")
+                package_label(words).classes(f"problem-{kind}")
             close = ui.button(icon="close", on_click=box.delete).props("flat round dense")
             close.props(f'aria-label="{self.text("frame.close")}"')
 
@@ -206,11 +207,8 @@ def problem_parts(error: BaseException) -> list[tuple[str, str]]:
     """Return what an error says as (kind, words): where, what, then what helps; of several, all."""
     if not isinstance(error, UnderfootError):
         return [("what", error_text(error))]
-    titles = {"allowed": "Allowed: {}", "nearest": 'Did you mean "{}"?'}
     problems: list[tuple[str, str]] = []
     for each in getattr(error, "errors", (error,)):
-        parts = {"where": each.where, "what": each.what, **each.parts}
-        problems += [
-            (kind, titles.get(kind, "{}").format(word)) for kind, word in parts.items() if word
-        ]
+        problems += [("where", each.where)] if each.where else []
+        problems += [*{**each.sentences, "what": each.what}.items()]
     return problems

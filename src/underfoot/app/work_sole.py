@@ -14,6 +14,7 @@ from underfoot.compute.sole import new_sole, sole_shape
 from underfoot.core import InputError, Progress
 from underfoot.core.fields import labelled_fields
 from underfoot.core.files import checksum
+from underfoot.core.remark import Message
 from underfoot.report.outsole import OutsoleInspection, case_shoe
 from underfoot.report.surface_mesh import surface_mesh
 from underfoot.shoe import heel_map
@@ -99,7 +100,10 @@ def equal_land(
     for each in (one, case):
         if each.shoe.outsole is not None:
             raise InputError(
-                f"the sole of {each.name} comes from a file: its channels have no width to set",
+                Message(
+                    "the sole of {name} comes from a file: its channels have no width to set",
+                    name=each.name,
+                ),
                 where="shoe.outsole.file",
                 remedy="Compare at equal land two soles with a tread of the app's own, or change "
                 "the file in CAD and compute it again",
@@ -107,7 +111,7 @@ def equal_land(
     width = case.value(CHANNEL)
     if width is None or case.value("shoe.tread.land") is not None:
         raise InputError(
-            f"no channel width sets the share of land of {case.name}",
+            Message("no channel width sets the share of land of {name}", name=case.name),
             where="shoe.tread.pattern",
             remedy="Choose a pattern of lugs and channels"
             + (", or set shoe.tread.land" if width else ""),
@@ -131,10 +135,20 @@ def equal_land(
         if far == last:
             reached = _percent(sought + off(far))
             raise InputError(
-                f"channels of {_written(far)} leave {case.name} {reached} of land, "
-                f"{one.name} has {_percent(sought)}",
+                Message(
+                    "channels of {width} leave {name} {land} of land, {other} has {wanted}",
+                    width=_written(far),
+                    name=case.name,
+                    land=reached,
+                    other=one.name,
+                    wanted=_percent(sought),
+                ),
                 where=CHANNEL,
-                allowed=f"{_written(least)} (two cells of the grid) to {_written(WIDEST)}",
+                allowed=Message(
+                    "{narrowest} (two cells of the grid) to {widest}",
+                    narrowest=_written(least),
+                    widest=_written(WIDEST),
+                ),
                 remedy="Change shoe.tread.lug_width of one of them, then compare again",
             )
     for _ in range(HALVINGS):
@@ -144,8 +158,13 @@ def equal_land(
     share = _land_share(case.replace(CHANNEL, found))
     if abs(share - sought) > LAND_EQUAL:  # a row of lugs came onto the sole or left it
         raise InputError(
-            f"no channel width near {found} gives {case.name} {_percent(sought)} of land, the "
-            f"nearest {_percent(share)}",
+            Message(
+                "no channel width near {near} gives {name} {wanted} of land, the nearest {nearest}",
+                near=found,
+                name=case.name,
+                wanted=_percent(sought),
+                nearest=_percent(share),
+            ),
             where=CHANNEL,
             remedy="Change shoe.tread.lug_width a little, then compare again",
         )

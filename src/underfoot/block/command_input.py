@@ -15,6 +15,7 @@ from underfoot.core.cache import default_folder
 from underfoot.core.checks import choice, exactly_one
 from underfoot.core.files import read_toml
 from underfoot.core.identity import content_hash
+from underfoot.core.remark import Message
 from underfoot.surface import HeightMap, make_periodic, read_surface
 
 TEMPLATE = """\
@@ -224,7 +225,9 @@ def _completed(
         inner = f"{section}.{key}" if section else key
         if inner in _KEYS:
             if not isinstance(value, Mapping):
-                raise InputError(f"{value!r} is no section", where=f"{path}, {inner}")
+                raise InputError(
+                    Message("{given} is no section", given=repr(value)), where=f"{path}, {inner}"
+                )
             kept = {k: v for k, v in defaults.get(key, {}).items() if k not in _CHOICES}
             completed[key] = _completed(value, kept, inner, path)
     return completed

@@ -7,6 +7,7 @@ import scipy.sparse as sp
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from underfoot.core import ConvergenceError, InputError, Progress, silent
+from underfoot.core.remark import Message
 from underfoot.core.sparse import factorization, schur_complement, upper_triangle
 
 from ._kernels.active_set import contact_under_load
@@ -61,7 +62,7 @@ def bulk_ratio(poisson_ratio: float) -> float:
     """Return the bulk over the shear modulus, 2 (1 + nu) / (3 (1 - 2 nu))."""
     if not 0.0 <= poisson_ratio < 0.5:
         raise InputError(
-            f"Poisson's ratio {poisson_ratio:g}",
+            Message("Poisson's ratio {poisson_ratio:g}", poisson_ratio=poisson_ratio),
             where="poisson_ratio",
             allowed="0 to below 0.5",
             remedy="Choose 0.499 for rubber: at 0.5 the bulk modulus is infinite",

@@ -12,6 +12,7 @@ from scipy.ndimage import spline_filter
 
 from underfoot.core import InputError
 from underfoot.core.checks import choice, not_negative, positive
+from underfoot.core.remark import Message
 from underfoot.material import Elastomer, RelaxationSpectrum, bulk_modulus, shear_from_young
 from underfoot.surface import HeightMap
 
@@ -178,7 +179,7 @@ class MicroMaterial:
         choice(at, ("equilibrium", "instantaneous"), "at")
         if not 0.0 < poisson_ratio < 0.5:
             raise InputError(
-                f"Poisson's ratio {poisson_ratio:g}",
+                Message("Poisson's ratio {poisson_ratio:g}", poisson_ratio=poisson_ratio),
                 where="poisson_ratio",
                 allowed="0 to 0.5, both excluded",
                 remedy="Choose 0.499 for rubber: at 0.5 the bulk modulus is infinite",

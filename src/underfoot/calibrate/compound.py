@@ -497,7 +497,9 @@ def _read(
         )
     if thickness is None or area is None:
         raise InputError(
-            f"{file.name} is a compression test: moduli need the size of a block",
+            Message(
+                "{name} is a compression test: moduli need the size of a block", name=file.name
+            ),
             where="--thickness and --area",
             remedy='Give them, as --thickness "5.5 mm" --area "1.6 cm^2"',
         )
@@ -522,11 +524,16 @@ def _refuse_rising(curve: RelaxationCurve) -> None:
     if rise[at] > RISES:
         start = int(np.argmin(curve.modulus[: at + 1]))
         raise DataError(
-            f"the modulus rises from {display(curve.modulus[start], 'Pa')} at "
-            f"{display(curve.time[start], 's')} to {display(curve.modulus[at], 'Pa')} at "
-            f"{display(curve.time[at], 's')}: a relaxation falls",
+            Message(
+                "the modulus rises from {modulus} at {time} to {later_modulus} at {later}: "
+                "a relaxation falls",
+                modulus=display(curve.modulus[start], "Pa"),
+                time=display(curve.time[start], "s"),
+                later_modulus=display(curve.modulus[at], "Pa"),
+                later=display(curve.time[at], "s"),
+            ),
             where=curve.source or "relaxation",
-            allowed=f"rises of at most {RISES:.0%} (scatter)",
+            allowed=Message("rises of at most {rises:.0%} (scatter)", rises=RISES),
             remedy="Cut off what is not the hold (loading, drift of temperature, cure), or check "
             "which column is time",
         )

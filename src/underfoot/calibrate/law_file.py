@@ -113,7 +113,7 @@ def trial_readings(folder: Path, chosen: Mapping[str, str] | None = None) -> Tri
 def _rows(conditions: Mapping[str, NDArray], name: str, value: str) -> NDArray[np.bool_]:
     if name not in conditions:
         raise InputError(
-            f'the trials have no condition "{name}"',
+            Message('the trials have no condition "{name}"', name=name),
             where="--where",
             allowed=", ".join(conditions) or "none: leave --where out",
             nearest=nearest_match(name, conditions),
@@ -122,7 +122,7 @@ def _rows(conditions: Mapping[str, NDArray], name: str, value: str) -> NDArray[n
     if not found.any():
         known = sorted({str(one) for one in conditions[name]})
         raise InputError(
-            f'no trial has {name} = "{value}"',
+            Message('no trial has {name} = "{value}"', name=name, value=value),
             where="--where",
             allowed=", ".join(known[:12]),
             nearest=nearest_match(value, known),

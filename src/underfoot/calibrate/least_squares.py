@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from underfoot.core import ConvergenceError, DataError, InputError, SourcedValue
+from underfoot.core.remark import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +27,9 @@ class Parameter:
     def __post_init__(self) -> None:
         if not (self.low < self.start < self.high):
             raise InputError(
-                f"{self.start:g}", where="start", allowed=f"within {self.low:g} to {self.high:g}"
+                f"{self.start:g}",
+                where="start",
+                allowed=Message("within {low:g} to {high:g}", low=self.low, high=self.high),
             )
         if self.logarithmic and not self.low > 0:
             raise InputError(f"{self.low:g}", where="low", allowed="above 0 when logarithmic")
@@ -87,7 +90,9 @@ def calibrate_model(
     observed = np.asarray(data, dtype=float)
     if observed.size < len(parameters) or not np.isfinite(observed).all():
         raise DataError(
-            f"{observed.size} values for {len(parameters)} parameters",
+            Message(
+                "{size} values for {count} parameters", size=observed.size, count=len(parameters)
+            ),
             where="calibrated",
             allowed="finite values, at least as many as parameters",
         )
@@ -113,7 +118,9 @@ def calibrate_model(
     )
     if found.status == 0:
         raise ConvergenceError(
-            f"no end after {found.nfev} evaluations", where="calibrated", history=[found.cost]
+            Message("no end after {nfev} evaluations", nfev=found.nfev),
+            where="calibrated",
+            history=[found.cost],
         )
     best = values(found.x)
     residuals = np.asarray(model(best), dtype=float) - observed

@@ -203,7 +203,9 @@ def read_pair_readings(path: Path) -> tuple[PairReading, ...]:
 
 def _reading(entry: Any, folder: Path, where: str) -> PairReading:
     if not isinstance(entry, dict):
-        raise InputError(f"{entry!r} is no table", where=where, allowed=", ".join(KEYS))
+        raise InputError(
+            Message("{entry} is no table", entry=repr(entry)), where=where, allowed=", ".join(KEYS)
+        )
     for key in entry:
         if key not in KEYS:
             raise unknown_name("key", key, KEYS, where=where)

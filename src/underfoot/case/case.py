@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from underfoot.core import InputError, SourcedValue, content_hash, display
 from underfoot.core.catalogue import Catalogue, catalogue_folders
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
 from . import text as toml
 from .compose import DRY, compose_case, expand_sections, optional_reads
@@ -241,9 +242,9 @@ class Case(Presentable):
 
     def __setattr__(self, name: str, value: Any) -> Never:
         raise InputError(
-            f"a case is frozen: {name} can't be set",
+            Message("a case is frozen: {name} can't be set", name=name),
             where=f"case.{name}",
-            remedy=f'Make a new case: case = case.replace("{name}", ...)',
+            remedy=Message('Make a new case: case = case.replace("{name}", ...)', name=name),
         )
 
     def __delattr__(self, name: str) -> Never:
@@ -545,14 +546,18 @@ def _version(mapping: Mapping[str, Any], places: toml.Places) -> int:
     version = mapping.get("file_version", 1)
     if isinstance(version, bool) or not isinstance(version, int) or version < 1:
         error = InputError(
-            f"{version!r} is no version", where=places("file_version"), allowed="1 or 2"
+            Message("{version} is no version", version=repr(version)),
+            where=places("file_version"),
+            allowed="1 or 2",
         )
         raise CaseError([error])
     if version > FILE_VERSION:
         error = InputError(
-            f"the file was written for version {version} of the case format",
+            Message(
+                "the file was written for version {version} of the case format", version=version
+            ),
             where=places("file_version"),
-            allowed=f"{FILE_VERSION} or older",
+            allowed=Message("{file_version} or older", file_version=FILE_VERSION),
             remedy="Update underfoot",
         )
         raise CaseError([error])
@@ -637,7 +642,7 @@ def _checked(settings: Mapping[str, Any]) -> dict[str, Any]:
         allowed = value is None or isinstance(value, str | Mapping | Section)
         if path_kind(path) == "section" and (not allowed or origin_of(value) is not None):
             raise InputError(
-                f"{value!r} can't stand for a section",
+                Message("{given} can't stand for a section", given=repr(value)),
                 where=path,
                 allowed="the name of a catalogue entry or option, a mapping, or a section",
             )

@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 from underfoot.core import InputError, unknown_name
 from underfoot.core.catalogue import Catalogue, Entry
 from underfoot.core.leaves import Leaf, leaves
+from underfoot.core.remark import Message
 
 from .errors import CaseError, Place, place_error
 from .friction import FrictionOption
@@ -128,7 +129,9 @@ def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: 
     kind, part = CATALOGUE_SECTIONS[section]
     catalogue, where = composition.catalogue, composition.places(f"{section}.from")
     if not isinstance(name, str):
-        composition.errors.append(InputError(f"{name!r} is no name", where=where, allowed="text"))
+        composition.errors.append(
+            InputError(Message("{name} is no name", name=repr(name)), where=where, allowed="text")
+        )
         return
     try:
         entry = catalogue.entry(kind, name, where=where)
@@ -140,7 +143,11 @@ def _lay(composition: Composition, laid: dict[str, Origin], section: str, name: 
         return
     if part and not entry.under(part):
         known = [n for n in catalogue.names(kind) if catalogue.entry(kind, n).under(part)]
-        composition.errors.append(unknown_name(f"{kind} with {part}", name, known, where=where))
+        composition.errors.append(
+            unknown_name(
+                Message("{kind} with {part}", kind=kind, part=part), name, known, where=where
+            )
+        )
     for path in [path for path in laid if path.startswith(section + ".")]:
         del laid[path]
     for path, leaf in _part(entry, part, section).items():

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 from pydantic_core import PydanticCustomError
 
 from underfoot.core import InputError, RangeError, nearest_match, unknown_name
+from underfoot.core.remark import Message
 
 from .parts import CaseParts, nearest_path
 from .section import Option, Section, item_section, section_in
@@ -32,11 +33,14 @@ class CaseError(InputError):
         first = self.errors[0]
         super().__init__(first.what, where=first.where, **first.parts)
 
-    def __str__(self) -> str:
+    @property
+    def message(self) -> Message:
+        """All that is wrong, a line each."""
         if len(self.errors) == 1:
-            return str(self.errors[0])
-        listed = "\n".join(f"  - {error}" for error in self.errors)
-        return f"{len(self.errors)} problems:\n{listed}"
+            return self.errors[0].message
+        return Message(
+            "{count} problems:\n  - {errors:\n  - }", count=len(self.errors), errors=self.errors
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.errors,)
@@ -105,7 +109,7 @@ def _translated(
             part.strip("' ") for part in str(context["expected"]).replace(" or ", ",").split(",")
         ]
         return InputError(
-            f'unknown choice "{given}"',
+            Message('unknown choice "{given}"', given=given),
             where=where,
             allowed=", ".join(choices),
             nearest=nearest_match(str(given), choices),
@@ -113,9 +117,13 @@ def _translated(
     if kind in ("greater_than_equal", "less_than_equal"):
         bound = context.get("ge", context.get("le"))
         side = "at least" if kind.startswith("greater") else "at most"
-        return RangeError(f"{given} is outside the range", where=where, allowed=f"{side} {bound}")
+        return RangeError(
+            Message("{given} is outside the range", given=given),
+            where=where,
+            allowed=f"{side} {bound}",
+        )
     return InputError(
-        f"{given!r} can't be used here",
+        Message("{given} can't be used here", given=repr(given)),
         where=where,
         allowed=_TYPES.get(kind) or item["msg"].lower(),
     )
@@ -129,10 +137,10 @@ def _not_taken(owner: type[Section] | None, key: str, where: str) -> InputError:
     if others:
         choice = " or ".join(f'{owner.key} = "{name}"' for name in others)
         return InputError(
-            f'is not used by {owner.key} = "{owner.name}"',
+            Message('is not used by {key} = "{name}"', key=owner.key, name=owner.name),
             where=where,
             allowed=", ".join(sorted(known)),
-            remedy=f"Remove it, or write {choice}",
+            remedy=Message("Remove it, or write {choice}", choice=choice),
         )
     siblings = {name for o in owner.options().values() for name in o.model_fields}
     known |= {owner.key}

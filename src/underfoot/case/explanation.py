@@ -11,6 +11,7 @@ from typing import Any
 
 from underfoot.core import InputError, display, unknown_name
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.remark import Message
 
 from .equations import EQUATIONS
 from .parts import field_at, keys, paths, unit_at
@@ -65,7 +66,9 @@ def explanation(name: str, catalogue: Catalogue, *, full: bool = False) -> str:
         number = int(equation.group(1))
         if number not in EQUATIONS:
             raise InputError(
-                name, where="explain", allowed=f"Eq. 1 to Eq. {len(EQUATIONS)} of the report"
+                name,
+                where="explain",
+                allowed=Message("Eq. 1 to Eq. {count} of the report", count=len(EQUATIONS)),
             )
         return _equation(number, closures)
     chosen = [name] if name in closures else _named(name, closures)

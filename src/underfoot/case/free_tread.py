@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, create_model
 
 from underfoot.core import InputError, RangeError, display
+from underfoot.core.remark import Message
 
 from .quantity import Angle, Length, Quantity, default
 from .section import CaseView
@@ -127,7 +128,7 @@ class FreeTread(_Waves):
             yield RangeError(
                 f"{self.land:g}",
                 where=f"{where}.land",
-                allowed=f"{LEAST_LAND:g} to {MOST_LAND:g}",
+                allowed=Message("{low:g} to {high:g}", low=LEAST_LAND, high=MOST_LAND),
                 remedy='Write pattern = "none" for a sole without tread',
             )
         cell, both = max(self.cell_length, self.cell_width), self.lug_width + self.channel_width

@@ -78,7 +78,7 @@ class FrictionOption(Option):
     def problems(self, case: CaseView, where: str) -> Iterator[InputError]:
         if case.contaminant is None and not self.dry:
             yield InputError(
-                f"the law {self.name} needs a fluid",
+                Message("the law {name} needs a fluid", name=self.name),
                 where=f"{where}.{self.key}",
                 remedy='On a dry floor write friction.model = "pair", or "constant" with a '
                 "measured friction.cof",
@@ -548,7 +548,7 @@ class TableOption(FrictionOption):
                 yield InputError(
                     "is missing, other readings have it",
                     where=f"{where}.readings {lacking[0]}.{name}",
-                    allowed=f"{name} of all readings, or of none",
+                    allowed=Message("{name} of all readings, or of none", name=name),
                 )
         if len({reading.speed for reading in self.readings}) < 2:
             yield InputError(

@@ -9,6 +9,7 @@ from pydantic.fields import FieldInfo
 
 from underfoot.core import InputError, unknown_name
 from underfoot.core.errors import nearest_match
+from underfoot.core.remark import Message
 
 from .contact import ComplianceOption, FilmOption, HardnessOption, RoughContactOption
 from .contaminant import ContaminantSection
@@ -195,7 +196,8 @@ def unknown_path(path: str) -> InputError:
     known, (*sections, _) = paths(), path.split(".")
     if path in known:
         return InputError(
-            f'"{path}" is a section, not a value', allowed=", ".join(_below(path, known))
+            Message('"{path}" is a section, not a value', path=path),
+            allowed=", ".join(_below(path, known)),
         )
     above = [".".join(sections[:depth]) for depth in range(len(sections), 0, -1)]
     beside = next((near for at in above if (near := _below(at, known))), known)

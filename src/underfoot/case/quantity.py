@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from underfoot.core import InputError, display, to_si
+from underfoot.core.remark import Message
 from underfoot.core.units import refuse_percent
 
 DOOR = {"door": True}
@@ -69,7 +70,7 @@ class Quantity:
             raise refusal(
                 "range",
                 InputError(
-                    f"{text} is outside the physical range",
+                    Message("{text} is outside the physical range", text=text),
                     allowed=self.allowed(),
                     nearest=self._likely(text) if isinstance(given, str) else None,
                     remedy=self.remedy,

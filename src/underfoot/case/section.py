@@ -30,6 +30,7 @@ from underfoot.core import InputError, SourcedValue, unknown_name
 from underfoot.core.arrays import of_python
 from underfoot.core.leaves import INHERITED, Leaf
 from underfoot.core.registry import all_offers, find_offer, load_address, offers
+from underfoot.core.remark import Message
 from underfoot.core.units import spread_to_si
 
 from .quantity import Quantity, default_of, refusal
@@ -143,7 +144,8 @@ class Section(BaseModel):
             number = number and isinstance(getattr(section, key), float | None)
             if why := cls.without_spread or ("" if number else "it is no quantity"):
                 error = InputError(
-                    f"has no standard deviation: {why}", remedy="Leave uncertainty out"
+                    Message("has no standard deviation: {why}", why=why),
+                    remedy="Leave uncertainty out",
                 )
                 raise refused_at(cls, (key, "uncertainty"), error, written)
             assert field is not None
@@ -154,7 +156,9 @@ class Section(BaseModel):
             try:
                 uncertainty = spread_to_si(plain, given, unit, where="")
                 if uncertainty < 0:
-                    raise InputError(f"{written} is negative", allowed="0 or more")
+                    raise InputError(
+                        Message("{written} is negative", written=written), allowed="0 or more"
+                    )
             except InputError as error:
                 raise refused_at(cls, (key, "uncertainty"), error, written) from error
         return replace(origin, value=getattr(section, key), uncertainty=uncertainty)
@@ -162,7 +166,7 @@ class Section(BaseModel):
     def __setattr__(self, name: str, value: Any) -> None:
         if name in type(self).model_fields:
             raise InputError(
-                f"a section of a case is frozen: {name} can't be set",
+                Message("a section of a case is frozen: {name} can't be set", name=name),
                 where=f"{type(self).__name__}.{name}",
                 remedy=f'Make a new case: case.replace("PATH.{name}", ...), or a new section: '
                 f'section.model_copy(update={{"{name}": ...}})',
@@ -221,7 +225,9 @@ class Section(BaseModel):
         if value is None:
             return SourcedValue(None, unit, reason="not given in the case")
         if not isinstance(value, float | int):
-            raise InputError(f"{name} is no number", allowed="the path of a quantity")
+            raise InputError(
+                Message("{name} is no number", name=name), allowed="the path of a quantity"
+            )
         origin = self.origin(name)
         if origin is None:
             return SourcedValue(float(value), unit, source="case")
@@ -339,7 +345,12 @@ class Option(Section):
             given = {cls.key: given}
         if not isinstance(given, Mapping):
             allowed = f"one of {', '.join(cls.options())}, or a section with its own keys"
-            raise refusal("input", InputError(f"{given!r} can't be used here", allowed=allowed))
+            raise refusal(
+                "input",
+                InputError(
+                    Message("{given} can't be used here", given=repr(given)), allowed=allowed
+                ),
+            )
         origin = origin_of(given.get(cls.key))
         name = given.get(cls.key) if origin is None else origin.leaf.given
         if name is None:

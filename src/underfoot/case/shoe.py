@@ -14,6 +14,7 @@ from pydantic import Field, create_model
 
 from underfoot.core import InputError, RangeError, display, nearest_match
 from underfoot.core.registry import find_offer
+from underfoot.core.remark import Message
 
 from .quantity import Flag, Length, Quantity, default, optional
 from .section import (
@@ -176,15 +177,15 @@ def _compound(path: Path, sha256: str | None, where: str) -> dict[str, Any]:
             read = tomllib.loads(path.read_text(encoding="utf-8"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise InputError(
-                f"{path.name} is no compound ({error})",
+                Message("{name} is no compound ({error})", name=path.name, error=error),
                 where=where,
                 allowed="a file that underfoot material wrote",
-                remedy=f"underfoot material {path.name} --out compound.toml",
+                remedy=Message("underfoot material {name} --out compound.toml", name=path.name),
             ) from error
     fields = set(Material.model_fields) - {"file", "sha256"}
     if wrong := sorted(read.keys() - fields):
         raise InputError(
-            f"{path.name}: a compound has no {wrong[0]}",
+            Message("{name}: a compound has no {wrong}", name=path.name, wrong=wrong[0]),
             where=where,
             allowed=", ".join(sorted(fields)),
             nearest=nearest_match(wrong[0], sorted(fields)),
@@ -262,16 +263,21 @@ class OutsoleFile(Section):
         down, forward = self.down, self.forward
         if down[0] in "+-" and forward[0] in "+-" and down[1] == forward[1]:
             yield InputError(
-                f"down {down} and forward {forward} lie on one axis",
+                Message(
+                    "down {down} and forward {forward} lie on one axis", down=down, forward=forward
+                ),
                 where=f"{where}.forward",
                 allowed="two different axes of the file",
             )
         finest = min(case.numerics.grid_spacing, case.numerics.quick_grid_spacing)
         if self.map_spacing > finest * (1 + 1e-9):
             yield RangeError(
-                f"{display(self.map_spacing, 'm')} is coarser than the solver's grid",
+                Message(
+                    "{map_spacing} is coarser than the solver's grid",
+                    map_spacing=display(self.map_spacing, "m"),
+                ),
                 where=f"{where}.map_spacing",
-                allowed=f"at most {display(finest, 'm')}",
+                allowed=Message("at most {most}", most=display(finest, "m")),
             )
 
 
@@ -334,7 +340,7 @@ class Shoe(_Classed):
         both = exclusive(known.readings)
         if both:
             yield InputError(
-                f"{both[0]} and {both[1]} exclude each other",
+                Message("{first} and {second} exclude each other", first=both[0], second=both[1]),
                 where=f"{where}.certificate",
                 remedy="Leave out the bound that is not of this sole",
             )
@@ -347,9 +353,12 @@ class Shoe(_Classed):
         for part in ("heel", "tread"):
             if table.get(part) and not from_catalogue(table[part]):
                 raise InputError(
-                    f"is not used: the outsole comes from {plain(outsole.get('file'))}",
+                    Message(
+                        "is not used: the outsole comes from {plain}",
+                        plain=plain(outsole.get("file")),
+                    ),
                     where=f"{where}.{part}",
-                    remedy=f"Remove [shoe.{part}], or shoe.outsole.file",
+                    remedy=Message("Remove [shoe.{part}], or shoe.outsole.file", part=part),
                 )
         if from_catalogue(table.get("roughness", {})):
             table = {**table, "roughness": {}}  # read on another sole

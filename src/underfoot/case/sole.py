@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display
+from underfoot.core.remark import Message
 
 from .lettering import check_text, text_rings
 from .quantity import Angle, Depth, LargeRadius, Length, Quantity, Rounding, default, optional
@@ -513,9 +514,11 @@ def through_outsole(case: CaseView, depth: float, where: str) -> Iterator[InputE
     thickness = case.shoe.sole.outsole_thickness
     if depth >= thickness:
         yield RangeError(
-            f"{display(depth, 'm')} goes through the outsole",
+            Message("{depth} goes through the outsole", depth=display(depth, "m")),
             where=where,
-            allowed=f"below {display(thickness, 'm')} (shoe.sole.outsole_thickness)",
+            allowed=Message(
+                "below {thickness} (shoe.sole.outsole_thickness)", thickness=display(thickness, "m")
+            ),
         )
 
 
@@ -524,8 +527,18 @@ def _resolved(case: CaseView, path: str, width: float) -> Iterator[InputError]:
         spacing = getattr(case.numerics, name)
         if width < _CELLS * spacing * (1 - 1e-9):
             yield InputError(
-                f"{display(width, 'm')} is too narrow for the grid of {display(spacing, 'm')}",
+                Message(
+                    "{width} is too narrow for the grid of {spacing}",
+                    width=display(width, "m"),
+                    spacing=display(spacing, "m"),
+                ),
                 where=path,
-                allowed=f"at least {display(_CELLS * spacing, 'm')} (two cells)",
-                remedy=f'Write numerics.{name} = "{width / 4 * 1e3:.3g} mm" (four cells)',
+                allowed=Message(
+                    "at least {cells} (two cells)", cells=display(_CELLS * spacing, "m")
+                ),
+                remedy=Message(
+                    'Write numerics.{name} = "{width:.3g} mm" (four cells)',
+                    name=name,
+                    width=width / 4 * 1000.0,
+                ),
             )

@@ -15,6 +15,7 @@ from pydantic import Field
 
 from underfoot.core import DataError, InputError, RangeError, SourcedValue, display, to_si
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .quantity import Length, Quantity, default, optional
 from .section import CATALOGUE, FILE, GIVEN, CaseView, Option, Section, origin_of, with_file_values
@@ -251,7 +252,9 @@ class Interface(Option):
                 f"{what} is no roughness of a sole on a floor: its waves of up to "
                 f"{display(waves, 'm')} would be steeper than the theory of rough contact allows",
                 where=where,
-                allowed=f"at most {display(steepest * own.get(rougher, rq) / rq, 'm')}",
+                allowed=Message(
+                    "at most {most}", most=display(steepest * own.get(rougher, rq) / rq, "m")
+                ),
                 remedy="Soles and floors have a few to some tens of micrometres; a deeper pattern "
                 "belongs to shoe.tread",
             )
@@ -260,7 +263,7 @@ class Interface(Option):
                 f"{display(pool, 'm')} of fluid do not cover the summits (3 Rq) of a roughness of "
                 f"{display(rq, 'm')} between sole and floor: what holds the film is not known",
                 where="contaminant.pool_depth",
-                allowed=f"at least {display(3 * rq, 'm')}",
+                allowed=Message("at least {least}", least=display(3 * rq, "m")),
                 remedy="Give the depth of the fluid, or leave contaminant out for a floor that is "
                 "only damp",
             )

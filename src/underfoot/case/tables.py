@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError, InputError, nearest_match, to_si
 from underfoot.core.files import checksum
+from underfoot.core.remark import Message
 from underfoot.core.units import refuse_percent
 
 from .section import origin_of
@@ -30,7 +31,7 @@ def existing_file(path: Path, where: str, pattern: str = "*") -> Path:
         return path
     near = [file.name for file in path.parent.glob(pattern)] if path.parent.is_dir() else []
     raise InputError(
-        f"there is no file {path}",
+        Message("there is no file {path}", path=path),
         where=where,
         nearest=nearest_match(path.name, near),
         remedy="The path counts from the folder of the case file",
@@ -60,14 +61,18 @@ def with_checksum(
         present = checksum(path)
     except OSError as error:
         raise InputError(
-            f"{path} can't be read ({error.strerror})", where=f"{where}.{key}"
+            Message("{path} can't be read ({strerror})", path=path, strerror=error.strerror),
+            where=f"{where}.{key}",
         ) from error
     if isinstance(meant, str) and meant.lower() != present:
         raise InputError(
             f"{path.name} is not the file that the case means: its checksum is "
             f"{present[:12]}..., not {meant[:12]}...",
             where=f"{where}.{key}",
-            remedy=f"Bring back that file, or remove {checksum_key} to take this one",
+            remedy=Message(
+                "Bring back that file, or remove {checksum_key} to take this one",
+                checksum_key=checksum_key,
+            ),
         )
     return {**table, key: str(path), checksum_key: present}
 
@@ -87,7 +92,7 @@ def meant_file(path: str, sha256: str | None, where: str) -> Iterator[Path]:
 def _refuse_changed(path: Path, sha256: str | None, where: str) -> None:
     if checksum(existing_file(path, where)) != sha256:
         raise InputError(
-            f"{path} has changed since the case was made",
+            Message("{path} has changed since the case was made", path=path),
             where=where,
             remedy="Load the case again to take the file as it is now",
         )
@@ -112,7 +117,9 @@ def table_columns(
     try:
         sheet = _one_sheet(path, headings, where)
     except DataError as error:
-        raise InputError(f"{path.name}: {error}", where=where) from error
+        raise InputError(
+            Message("{name}: {error}", name=path.name, error=error), where=where
+        ) from error
     optional = [name for name in columns if name not in needed]
     allowed = f"{', '.join(needed)}; also {', '.join(optional)}"
     read = {}
@@ -122,7 +129,7 @@ def table_columns(
             read[name] = values
         elif name in needed:
             raise InputError(
-                f'{sheet.name} has no column "{name}" of numbers',
+                Message('{file} has no column "{column}" of numbers', file=sheet.name, column=name),
                 where=where,
                 allowed=f"{allowed}. Present: " + ", ".join(sheet.columns[:8]),
             )
@@ -133,7 +140,13 @@ def table_columns(
         for row in np.flatnonzero(wrong)[:1]:
             state = "missing" if np.isnan(values[row]) else f"{values[row]:g}"
             raise InputError(
-                f"row {row + 1} of {path.name}: {name} is {state}",
+                Message(
+                    "row {row} of {file}: {name} is {state}",
+                    row=row + 1,
+                    file=path.name,
+                    name=name,
+                    state=state,
+                ),
                 where=where,
                 allowed="a number" if lowest is None else f"a number, {lowest:g} or more",
             )
@@ -155,8 +168,11 @@ def _one_sheet(path: Path, headings: Sequence[tuple[str, ...]], where: str) -> S
                 fitting.append((name, sheet))
     if len(fitting) > 1:
         raise InputError(
-            f"several sheets of {path.name} hold such a table: "
-            f"{', '.join(name for name, _ in fitting)}",
+            Message(
+                "several sheets of {name} hold such a table: {fitting}",
+                name=path.name,
+                fitting=", ".join((name for name, _ in fitting)),
+            ),
             where=where,
             remedy="Keep the one that is meant in a file of its own",
         )

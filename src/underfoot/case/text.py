@@ -11,6 +11,7 @@ from tomlkit.items import InlineTable, Item
 
 from underfoot.core import InputError, nearest_match
 from underfoot.core.files import whole_file
+from underfoot.core.remark import Message
 from underfoot.core.typed import float_of_text
 
 
@@ -21,16 +22,19 @@ def read_text(path: Path) -> str:
     except FileNotFoundError as error:
         near = [other.name for other in path.parent.glob("*.toml")] if path.parent.is_dir() else []
         raise InputError(
-            f"there is no file {path}",
+            Message("there is no file {path}", path=path),
             nearest=nearest_match(path.name, near),
             remedy="Make one with: underfoot new FILE",
         ) from error
     except UnicodeDecodeError as error:
         raise InputError(
-            f"{path} can't be read ({error})", remedy="Save the file as UTF-8 text"
+            Message("{path} can't be read ({strerror})", path=path, strerror=error),
+            remedy="Save the file as UTF-8 text",
         ) from error
     except OSError as error:
-        raise InputError(f"{path} can't be read ({error})") from error
+        raise InputError(
+            Message("{path} can't be read ({strerror})", path=path, strerror=error)
+        ) from error
 
 
 def parse_toml(text: str, file: str | None = None) -> dict[str, Any]:
@@ -41,7 +45,9 @@ def parse_toml(text: str, file: str | None = None) -> dict[str, Any]:
         remedy = 'Text and numbers with a unit stand in quotes, as in speed = "0.7 m/s"'
         if "Cannot overwrite" in str(error):
             remedy = 'Beside [shoe.material] write [shoe] with from = "NAME", not shoe = "NAME"'
-        raise InputError(f"is no TOML file: {error}", where=file, remedy=remedy) from error
+        raise InputError(
+            Message("is no TOML file: {error}", error=error), where=file, remedy=remedy
+        ) from error
     except RecursionError as error:
         raise InputError(
             "brackets are nested too deeply",
@@ -141,7 +147,8 @@ def save(text: str, path: Path, *, overwrite: bool = False) -> None:
     """Write a text file as a whole; an existing file is refused unless ``overwrite``."""
     if path.exists() and not overwrite:
         raise InputError(
-            f"the file {path} exists", remedy="Choose another name, or add --overwrite"
+            Message("the file {path} exists", path=path),
+            remedy="Choose another name, or add --overwrite",
         )
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from underfoot.core import InputError, RangeError, display, to_si
+from underfoot.core.remark import Message
 
 from .quantity import Angle, Depth, Force, Length, Quantity, Rounding, default, optional
 from .section import GIVEN, CaseView, Option, Origin, leaf_of, refused_at
@@ -168,7 +169,9 @@ class ArchardWear(Wear):
                 raise InputError("abrasion and wear_rate say the same thing twice")
             if match is None:
                 example = 'the volume lost, as "DIN 150 mm3"'
-                raise InputError(f"{leaf.given!r} is no abrasion", allowed=example)
+                raise InputError(
+                    Message("{given} is no abrasion", given=repr(leaf.given)), allowed=example
+                )
             volume = 1e9 * to_si(match["volume"], "m^3", where="")
         except InputError as error:
             raise refused_at(cls, ("abrasion",), error, leaf.given) from error

@@ -89,7 +89,7 @@ def options(
     ] = None,
 ) -> None:
     """Friction between a shoe, a floor and what is spilled on it."""
-    from underfoot.core.units import UNITS_VARIABLE
+    from underfoot.core.unit_text import UNITS_VARIABLE
 
     if units is not None:
         os.environ[UNITS_VARIABLE] = units

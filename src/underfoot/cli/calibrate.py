@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .groups import Group
 from .guard import guard_command, say
 from .options import AsJson, Overwrite, Quick
@@ -93,7 +95,9 @@ def pair(
     from underfoot.core.progress import bar
 
     if out.exists() and not overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+        raise InputError(
+            Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
+        )
     given = read_pair_readings(readings)
     with bar("Calibrating the law of the pair") as progress:
         calibration = calibrated_pair(given, quick=quick, progress=progress)

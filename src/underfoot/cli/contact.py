@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import Shared, number, optional, sharing
 
 if TYPE_CHECKING:
@@ -107,7 +109,7 @@ def contact(
         file = Path("contact.npz") if table is None else table
         if file.exists() and not shared.overwrite:
             remedy = "Add --overwrite to replace it"
-            raise InputError(f"{file} exists", where="--table", remedy=remedy)
+            raise InputError(Message("{out} exists", out=file), where="--table", remedy=remedy)
 
         def made(progress: Progress) -> "ContactTable":
             contact_table = measured_table(surface, rubber, **given, progress=progress)

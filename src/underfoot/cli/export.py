@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import Overwrite
 
 if TYPE_CHECKING:
@@ -61,7 +63,9 @@ def export(
     path = out or folder / f"{'sole' if run.is_dir() else run.stem}.{to}"
     if path.exists() and not overwrite:
         raise InputError(
-            f"{path} exists", where="--out", remedy="Choose another name, or add --overwrite."
+            Message("{out} exists", out=path),
+            where="--out",
+            remedy="Choose another name, or add --overwrite.",
         )
     if path.suffix.lower().lstrip(".") not in (to, "stp"):
         raise InputError(

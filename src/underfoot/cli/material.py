@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import Shared, number, optional, sharing
 
 
@@ -57,7 +59,9 @@ def material(
     from .output import answer
 
     if out is not None and out.exists() and not shared.overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+        raise InputError(
+            Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
+        )
 
     def si(name: str, text: str | None, unit: str) -> float | None:
         return None if text is None else to_si(text, unit, where=f"--{name}")

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .output import answer
 
 if TYPE_CHECKING:
@@ -178,7 +180,7 @@ def load_case(path: Path, folders: list[Path] | None, settings: Sequence[str] | 
     if path.is_dir():
         inner = next(iter(sorted(path.glob("*.toml"))), None)
         raise InputError(
-            f"{path} is a folder",
+            Message("{path} is a folder", path=path),
             where="case",
             allowed="a case file (TOML)",
             nearest=None if inner is None else str(inner),

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .guard import say
 from .options import AsJson, Overwrite, Settings, setting
 
@@ -88,7 +90,9 @@ def make(
         )
     if out is not None and out.exists() and not overwrite:
         raise InputError(
-            f"{out} exists", where="--out", remedy="Choose another name, or add --overwrite."
+            Message("{out} exists", out=out),
+            where="--out",
+            remedy="Choose another name, or add --overwrite.",
         )
     shape = (
         _from_file(spec, set_)

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import Shared, number, optional, sharing
 
 
@@ -91,7 +93,9 @@ def calibrate_machine(
     from .options import load_case
 
     if out.exists() and not shared.overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+        raise InputError(
+            Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
+        )
     told = calibrated_floor(load_case(case, None, None), name, reading, kind=kind, fluid=fluid)
     told.draws.write(out)
     shared.answer(told.heading(), lambda _: told)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import AsJson, CasePath, CatalogueFolders, Overwrite, Settings, load_case
 
 if TYPE_CHECKING:
@@ -50,7 +52,11 @@ def stribeck(
 
     low, high = to_si(slowest, "m/s", where="--slowest"), to_si(fastest, "m/s", where="--fastest")
     if not 0 < low < high:
-        raise InputError(f"{slowest} to {fastest}", where="--slowest", allowed="above 0, rising")
+        raise InputError(
+            Message("{low} to {high}", low=slowest, high=fastest),
+            where="--slowest",
+            allowed="above 0, rising",
+        )
     if out is not None:
         check_writable_folder(out, overwrite=overwrite)
     given = load_case(case, catalogue, settings)

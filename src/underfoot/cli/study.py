@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .guard import guard_command, say
 from .options import AsJson, On, Overwrite, ShowAll, Workers, optional
 from .output import finish, print_table
@@ -229,7 +231,9 @@ def posterior(
     from underfoot.explore.posterior import posterior as joint
 
     if out.exists() and not overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+        raise InputError(
+            Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
+        )
     study = Study.load(readings, folder)
     with bar(study.plan.name) as progress:
         answer = joint(study, on=on, workers=workers, progress=progress)

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from underfoot.core.remark import Message
+
 from .options import Shared, optional, sharing
 
 
@@ -48,7 +50,9 @@ def surface(
     read = partial(read_scan, scan, length_unit=length_unit, height_unit=height_unit, **lengths)
     file = out if out is not None and out.suffix.casefold() in FORMS else None
     if file is not None and file.exists() and not shared.overwrite:
-        raise InputError(f"{out} exists", where="--out", remedy="Add --overwrite to replace it")
+        raise InputError(
+            Message("{out} exists", out=out), where="--out", remedy="Add --overwrite to replace it"
+        )
 
     def made() -> Scan:
         found = read()

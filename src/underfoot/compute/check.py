@@ -119,7 +119,7 @@ def case_check(case: Case) -> CaseCheck:
         }
         breaches += [breach.remark for breach in law.breaches(**local)]
     except InputError as error:
-        refusal = str(error)
+        refusal = error.message
     return CaseCheck(
         case,
         refusal,

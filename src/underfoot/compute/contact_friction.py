@@ -9,6 +9,7 @@ from scipy.special import lambertw
 from underfoot.case import Case
 from underfoot.case.context import Context
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.fluid.temperature import ROOM_DEVIATION, sliding_heat, viscosity_slope
 from underfoot.friction import (
     FrictionCoefficients,
@@ -181,7 +182,9 @@ def sole_errors(case: Case, context: Context) -> dict[str, SharedError]:
 
     Soles of one heel share that of the film as far as their treads are alike.
     """
-    film = SharedError(f"film load, {numbers.heel_name(case)}", numbers.FILM_ERROR)
+    film = SharedError(
+        Message("film load, {heel_name}", heel_name=numbers.heel_name(case)), numbers.FILM_ERROR
+    )
     return {"film_error": film, "tread_error": tread_error(context.viscosity_value)}
 
 

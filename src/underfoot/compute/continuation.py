@@ -22,6 +22,7 @@ import numpy as np
 from underfoot.case import Case
 from underfoot.core import ConvergenceError, InputError, Progress, SourcedValue, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.shoe import SoleMap
 from underfoot.sole_contact.solver import SoleContact
@@ -109,7 +110,7 @@ class Continuation:
         self.contact = solved_motion(self._parts, progress=progress)
         if not self.contact.status.usable:
             raise ConvergenceError(
-                f"the case gave no result: {self.contact.status}",
+                Message("the case gave no result: {status}", status=self.contact.status),
                 history=self.contact.residuals,
                 where=case.name,
                 remedy=self.contact.remedy,

@@ -12,6 +12,7 @@ from underfoot.case import Case, Option
 from underfoot.case.context import Context
 from underfoot.core import InputError, Progress, content_hash, silent, unknown_name
 from underfoot.core.identity import attributes
+from underfoot.core.remark import Message
 from underfoot.film import FilmModel, NewtonianFilm
 from underfoot.friction import FrictionLaw
 from underfoot.friction.film_shear import FilmShearLaw
@@ -164,7 +165,12 @@ def checked_object(slot: str, item: Any) -> Any:
     for name, value in attributes(with_members(slot, item, where)).items():
         if isinstance(value, np.ndarray) and value.dtype.kind == "f" and np.isnan(value).any():
             raise InputError(
-                f"{type(item).__name__}.{name} holds nan at {np.argwhere(np.isnan(value))[0]}",
+                Message(
+                    "{owner}.{name} holds nan at {place}",
+                    owner=type(item).__name__,
+                    name=name,
+                    place=np.argwhere(np.isnan(value))[0],
+                ),
                 where=where,
                 allowed="numbers",
             )
@@ -181,7 +187,7 @@ def with_members(slot: str, item: Any, where: str) -> Any:
             f"{type(item).__name__} is no {protocol.__name__}: it has no "
             + ", ".join(missing or ["__call__"]),
             where=where,
-            allowed=f"an object with {', '.join(names)}",
+            allowed=Message("an object with {names}", names=", ".join(names)),
         )
     return item
 

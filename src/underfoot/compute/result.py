@@ -153,10 +153,15 @@ class Result(Presentable):
         """
         scalar = self[name]
         if scalar.value is None:
-            raise DataError(f"{name} was not determined: {scalar.reason}", where=self.name)
+            raise DataError(
+                Message("{name} was not determined: {reason}", name=name, reason=scalar.reason),
+                where=self.name,
+            )
         if not self.status.usable:
             raise DataError(
-                f"{name} is not a result: {self.status}", where=self.name, remedy=self.status.remedy
+                Message("{name} is not a result: {status}", name=name, status=self.status),
+                where=self.name,
+                remedy=self.status.remedy,
             )
         return scalar.value
 
@@ -274,9 +279,11 @@ class Result(Presentable):
                     fields = from_xarray(dataset)
             if stored["format"] > FORMAT:
                 raise DataError(
-                    f"written by a newer version (format {stored['format']})",
+                    Message(
+                        "written by a newer version (format {format})", format=stored["format"]
+                    ),
                     where=str(folder),
-                    allowed=f"format {FORMAT} or older",
+                    allowed=Message("format {format} or older", format=FORMAT),
                     remedy="Update underfoot",
                 )
             reserved = "format name status labels breaches assumptions provenance".split()

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from underfoot.case import Case
 from underfoot.case.people import Walkers
 from underfoot.core import InputError, Progress, silent
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.film import NewtonianFilm
 from underfoot.slip.dynamics import (
@@ -69,9 +70,9 @@ def slip_population(
     for name in ("landing", "weight_transfer"):
         if getattr(people, f"{name}_from") > getattr(people, f"{name}_to"):
             raise InputError(
-                f"lies beyond slip.{name}_to",
+                Message("lies beyond slip.{name}_to", name=name),
                 where=f"slip.{name}_from",
-                allowed=f"at most {name}_to",
+                allowed=Message("at most {name}_to", name=name),
             )
 
     def spread(path: str, low: float, high: float) -> Spread:

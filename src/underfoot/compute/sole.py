@@ -36,7 +36,7 @@ from underfoot.core import (
     display,
     silent,
 )
-from underfoot.core.remark import Remark
+from underfoot.core.remark import Message, Remark
 from underfoot.shoe import SoleMap, SoleSurface, heel_map, surface_map
 from underfoot.shoe.ball_joint import PLACE, BallJoint
 from underfoot.shoe.drawn_surface import drawn_surface
@@ -390,10 +390,14 @@ def file_sole_map(
     deepest = float(np.max(surface.tread_depth))
     if deepest >= thickness:
         raise InputError(
-            f"the tread of {surface.name} is {display(deepest, 'm')} deep, the outsole "
-            f"{display(thickness, 'm')} thick",
+            Message(
+                "the tread of {name} is {deepest} deep, the outsole {thickness} thick",
+                name=surface.name,
+                deepest=display(deepest, "m"),
+                thickness=display(thickness, "m"),
+            ),
             where="shoe.sole.outsole_thickness",
-            allowed=f"above {display(deepest, 'm')}",
+            allowed=Message("above {limit}", limit=display(deepest, "m")),
         )
     return _map_of_surface(case, surface, spacing, case.motion.shoe_angle + turn)
 
@@ -472,10 +476,18 @@ def check_load(case: Case, sole: SoleMap) -> None:
     if depth <= BOTTOMED * thickness:
         return
     raise InputError(
-        f"{force:g} N bottoms out the sole: it would press {display(depth, 'm')} into "
-        f"{display(thickness, 'm')} of outsole, on {area * 1e6:.0f} mm² of land",
+        Message(
+            "{force:g} N bottoms out the sole: it would press {depth} into {thickness} of "
+            "outsole, on {area:.0f} mm² of land",
+            force=force,
+            depth=display(depth, "m"),
+            thickness=display(thickness, "m"),
+            area=area * 1000000.0,
+        ),
         where="motion.normal_force",
-        allowed=f"an approach of up to {BOTTOMED:.0%} of the outsole's thickness",
+        allowed=Message(
+            "an approach of up to {share:.0%} of the outsole's thickness", share=BOTTOMED
+        ),
         remedy="Look at the file with: underfoot outsole inspect. Is the right region under the "
         "load (region, forward, down), is the unit right, does a stray point stand out",
     )

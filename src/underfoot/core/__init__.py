@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .provenance import Provenance as Provenance
     from .remark import Remark as Remark
     from .status import Status as Status
-    from .units import display as display
+    from .unit_text import display as display
     from .units import to_si as to_si
     from .validity import Breach as Breach
     from .validity import ValidityRange as ValidityRange
@@ -45,7 +45,7 @@ _HOMES = {
     "Provenance": ".provenance",
     "Remark": ".remark",
     "Status": ".status",
-    "display": ".units",
+    "display": ".unit_text",
     "to_si": ".units",
     "Breach": ".validity",
     "ValidityRange": ".validity",

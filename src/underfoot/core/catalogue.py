@@ -21,6 +21,7 @@ from .files import checksum, read_toml
 from .leaves import FrozenTable, Leaf, leaves
 from .presentation import Presentable, Table
 from .registry import offers
+from .remark import Message
 from .values import SourcedValue
 
 KINDS = ("fluid", "floor", "material", "protocol", "published", "setup", "shoe")
@@ -52,7 +53,10 @@ class Entry:
             return self.values[path]
         except KeyError:
             raise unknown_name(
-                f"value of {self.kind} {self.name}", path, self.values, where=self._where(path)
+                Message("value of {kind} {name}", kind=self.kind, name=self.name),
+                path,
+                self.values,
+                where=self._where(path),
             ) from None
 
     def sourced(self, path: str, unit: str | None = None) -> SourcedValue:
@@ -63,7 +67,7 @@ class Entry:
         """Return a list of numbers in SI."""
         leaf, where = self.leaf(path), self._where(path)
         if not isinstance(leaf.given, list | tuple):
-            raise InputError(f"{leaf.given!r} is no list", where=where)
+            raise InputError(Message("{given} is no list", given=repr(leaf.given)), where=where)
         values = (
             replace(leaf, given=given).sourced(unit, where=f"{where}[{index}]").value
             for index, given in enumerate(leaf.given)
@@ -248,10 +252,14 @@ def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
             if kind not in KINDS:
                 raise unknown_name("kind of catalogue entry", kind, KINDS, where=str(file))
             if not isinstance(entries, dict):
-                raise InputError(f"{kind} is no table of entries", where=str(file))
+                raise InputError(
+                    Message("{kind} is no table of entries", kind=kind), where=str(file)
+                )
             for name, table in entries.items():
                 if not isinstance(table, dict):
-                    raise InputError(f"{kind}.{name} is no table", where=str(file))
+                    raise InputError(
+                        Message("{kind}.{name} is no table", kind=kind, name=name), where=str(file)
+                    )
                 if (kind, name) in tables:
                     raise _clash(kind, name, str(file), tables[kind, name][0])
                 tables[kind, name] = (origin, table)
@@ -260,7 +268,12 @@ def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
 
 def _clash(kind: str, name: str, place: str, first_place: str) -> InputError:
     return InputError(
-        f'the {kind} "{name}" is defined twice, here and in: {first_place}',
+        Message(
+            'the {kind} "{name}" is defined twice, here and in: {first_place}',
+            kind=kind,
+            name=name,
+            first_place=first_place,
+        ),
         where=place,
         remedy="Give it another name, or write replaces = true in a catalogue of your own",
     )
@@ -274,7 +287,10 @@ def _resolve(
     origin, table = raw[kind, name]
     where = f"{origin}, {kind}.{name}"
     if name in chain:
-        raise InputError(f"from leads in a circle: {' -> '.join((*chain, name))}", where=where)
+        raise InputError(
+            Message("from leads in a circle: {names}", names=" -> ".join((*chain, name))),
+            where=where,
+        )
     values: dict[str, Leaf] = {}
     parents: tuple[str, ...] = ()
     parent = table.get("from")

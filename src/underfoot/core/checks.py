@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .errors import InputError, unknown_name
+from .remark import Message
 
 
 def positive(value: float, where: str, unit: str = "") -> float:
@@ -26,7 +27,9 @@ def between(value: float, low: float, high: float, where: str, allowed: str = ""
     """Return ``value``; refuse one outside [low, high], which ``allowed`` says in words."""
     if not low <= value <= high:
         raise InputError(
-            f"{value:g} is out of range", where=where, allowed=allowed or f"{low:g} to {high:g}"
+            Message("{value:g} is out of range", value=value),
+            where=where,
+            allowed=allowed or Message("{low:g} to {high:g}", low=low, high=high),
         )
     return float(value)
 
@@ -50,7 +53,12 @@ def host_array(values: Any, where: str, allowed: str, remedy: str = "") -> Any:
         return np.asarray(values)
     except (TypeError, ValueError, RuntimeError) as error:
         raise InputError(
-            f"{where} ({type(values).__name__}) can't be read by NumPy: {error}",
+            Message(
+                "{where} ({name}) can't be read by NumPy: {error}",
+                where=where,
+                name=type(values).__name__,
+                error=error,
+            ),
             where=where,
             allowed=allowed,
             remedy=remedy or "Bring it to the processor first, for example numpy.asarray(x.cpu())",
@@ -78,7 +86,11 @@ def exactly_one(given: Mapping[str, object], missing: str, where: str, allowed: 
 def poisson_ratio(value: float, where: str = "poisson_ratio") -> float:
     """Return Poisson's ratio; refuse one outside 0 to 0.5."""
     if not 0.0 <= value <= 0.5:
-        raise InputError(f"Poisson's ratio {value:g}", where=where, allowed="0 to 0.5")
+        raise InputError(
+            Message("Poisson's ratio {poisson_ratio:g}", poisson_ratio=value),
+            where=where,
+            allowed="0 to 0.5",
+        )
     return float(value)
 
 

@@ -4,6 +4,8 @@ import difflib
 import errno
 from collections.abc import Iterable, Sequence
 
+from .remark import Message, together
+
 
 class UnderfootError(Exception):
     """Base of all errors a user can meet.
@@ -36,15 +38,27 @@ class UnderfootError(Exception):
         """All but ``what`` and ``where``, by name."""
         return {name: getattr(self, name) for name in ("allowed", "nearest", "remedy")}
 
+    @property
+    def sentences(self) -> dict[str, Message]:
+        """The sentences that it says, by what each is: where and what, allowed, nearest, remedy."""
+        what = Message("{what}", what=self.what)
+        if self.where:
+            what = Message("{where}: {what}", where=self.where, what=self.what)
+        named = {
+            "what": what,
+            "allowed": Message("Allowed: {allowed}", allowed=self.allowed),
+            "nearest": Message('Did you mean "{nearest}"?', nearest=self.nearest),
+            "remedy": Message("{remedy}", remedy=self.remedy),
+        }
+        return {name: named[name] for name in named if name == "what" or self.parts[name]}
+
+    @property
+    def message(self) -> Message:
+        """All that it says, which knows what it was made of."""
+        return together(map(_sentence, self.sentences.values()))
+
     def __str__(self) -> str:
-        parts = [f"{self.where}: {self.what}" if self.where else self.what]
-        if self.allowed:
-            parts.append(f"Allowed: {self.allowed}")
-        if self.nearest:
-            parts.append(f'Did you mean "{self.nearest}"?')
-        if self.remedy:
-            parts.append(self.remedy)
-        return " ".join(_sentence(part) for part in parts)
+        return str(self.message)
 
 
 class InputError(UnderfootError):
@@ -80,8 +94,12 @@ class MissingExtraError(UnderfootError):
 
     def __init__(self, package: str, extra: str, purpose: str) -> None:
         super().__init__(
-            f"{purpose} needs the package {package}, which is not installed",
-            remedy=f'Install it with: pip install "underfoot[{extra}]"',
+            Message(
+                "{purpose} needs the package {package}, which is not installed",
+                purpose=purpose,
+                package=package,
+            ),
+            remedy=Message('Install it with: pip install "underfoot[{extra}]"', extra=extra),
         )
 
 
@@ -91,23 +109,10 @@ class Cancelled(UnderfootError):
     exit_code = 130
 
 
-_FILE_ERRORS = {
-    errno.ENOENT: "{} does not exist",
-    errno.EISDIR: "{} is a folder; a file is needed",
-    errno.ENOTDIR: "a part of {} is a file, not a folder",
-    errno.EACCES: "no permission to use {}",
-    errno.EPERM: "no permission to use {}",
-    errno.EROFS: "{} can't be written: the disk is read-only",
-    errno.ENOSPC: "no space left on the disk for {}",
-    errno.EEXIST: "{} exists already",
-    errno.ENAMETOOLONG: "the name {} is too long",
-}
-
-
 def error_text(error: BaseException) -> str:
     """Return what went wrong in words for people; of an error of the program itself its type."""
     if isinstance(error, UnderfootError):
-        return str(error)
+        return error.message
     if isinstance(error, OSError):
         return file_trouble(error)
     if isinstance(error, MemoryError):
@@ -117,11 +122,22 @@ def error_text(error: BaseException) -> str:
 
 def file_trouble(error: OSError) -> str:
     """Return what went wrong with a file, with its name."""
-    name = str(error.filename or "")
-    text = _FILE_ERRORS.get(error.errno or 0)
-    if text is None:
-        return f"{error.strerror or error}: {name}".rstrip(": ") + "."
-    return text.format(name or "the file") + "."
+    name = str(error.filename or "the file")
+    refused = Message("no permission to use {name}", name=name)
+    texts = {
+        errno.ENOENT: Message("{name} does not exist", name=name),
+        errno.EISDIR: Message("{name} is a folder; a file is needed", name=name),
+        errno.ENOTDIR: Message("a part of {name} is a file, not a folder", name=name),
+        errno.EACCES: refused,
+        errno.EPERM: refused,
+        errno.EROFS: Message("{name} can't be written: the disk is read-only", name=name),
+        errno.ENOSPC: Message("no space left on the disk for {name}", name=name),
+        errno.EEXIST: Message("{name} exists already", name=name),
+        errno.ENAMETOOLONG: Message("the name {name} is too long", name=name),
+    }
+    if text := texts.get(error.errno or 0):
+        return _sentence(text)
+    return f"{error.strerror or error}: {error.filename or ''}".rstrip(": ") + "."
 
 
 def nearest_match(given: str, known: Iterable[str], *, least: float = 0.5) -> str | None:
@@ -143,15 +159,17 @@ def unknown_name(
 ) -> InputError:
     """Return the error for a name that is not in a list, with the list and the nearest match."""
     names = sorted(known)
-    shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+    more = len(names) - 12
+    shown = Message("{names}", names=names)
+    if more > 0:
+        shown = Message("{names} and {more} more", names=names[:12], more=more)
     return InputError(
-        f'unknown {kind} "{given}"',
+        Message('unknown {kind} "{given}"', kind=kind, given=given),
         where=where,
         allowed=shown or "none defined",
         nearest=nearest_match(given, names),
     )
 
 
-def _sentence(text: str) -> str:
-    text = text.rstrip()
-    return text if text.endswith((".", "?", "!")) else text + "."
+def _sentence(text: Message) -> Message:
+    return text if text.rstrip().endswith((".", "?", "!")) else Message("{text}.", text=text)

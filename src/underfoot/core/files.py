@@ -13,6 +13,7 @@ from typing import Any
 from uuid import uuid4
 
 from .errors import InputError
+from .remark import Message
 from .typed import float_of_text
 
 MARKER = ".underfoot"
@@ -112,10 +113,12 @@ def _guard(staging: Path, path: Path) -> subprocess.Popen[bytes] | None:
 def check_writable_folder(path: Path, *, overwrite: bool = False) -> None:
     """Refuse an output folder that holds something or can't be made, before any work is done."""
     if path.is_file():
-        raise InputError(f"{path} is a file", where="--out", allowed="a folder to be made")
+        raise InputError(
+            Message("{path} is a file", path=path), where="--out", allowed="a folder to be made"
+        )
     if path.is_dir() and any(path.iterdir()) and not overwrite:
         raise InputError(
-            f"the folder {path} exists and is not empty",
+            Message("the folder {path} exists and is not empty", path=path),
             where="--out",
             remedy="Choose another folder, or add --overwrite to replace it as a whole",
         )
@@ -142,7 +145,12 @@ def _check_place(path: Path) -> None:
     except OSError as error:
         reason = "it is a file" if place.is_file() else (error.strerror or str(error)).lower()
         raise InputError(
-            f"{path} can't be made: nothing can be written in {place} ({reason})",
+            Message(
+                "{path} can't be made: nothing can be written in {place} ({reason})",
+                path=path,
+                place=place,
+                reason=reason,
+            ),
             where="--out",
             remedy="Choose another folder",
         ) from error
@@ -159,4 +167,6 @@ def read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=float_of_text)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"is no TOML file ({error})", where=str(path)) from error
+        raise InputError(
+            Message("is no TOML file ({error})", error=error), where=str(path)
+        ) from error

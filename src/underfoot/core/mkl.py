@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .remark import Message
+
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
@@ -141,7 +143,7 @@ class _System:
         self._pardiso(*self._before, _address(right), _address(answer), ctypes.byref(error))
         self._set_threads(before)
         if error.value and phase != _RELEASE:
-            raise MklError(f"PARDISO reported error {error.value}")
+            raise MklError(Message("PARDISO reported error {number}", number=error.value))
 
     def __del__(self) -> None:
         if getattr(self, "_before", None) is not None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from .errors import DataError
+from .remark import Message
 from .text import MISSING
 from .typed import is_lost, plain_signs
 
@@ -180,8 +181,11 @@ def _marks_decimals(
 
 def _undecided(examples: str, where: str) -> DataError:
     return DataError(
-        f"{examples} can be a decimal number or one with its thousands marked, a thousand times "
-        "as much; nothing in the file decides",
+        Message(
+            "{examples} can be a decimal number or one with its thousands marked, a "
+            "thousand times as much; nothing in the file decides",
+            examples=examples,
+        ),
         where=where,
         remedy="Export with a decimal point and without thousands separators",
     )
@@ -234,7 +238,11 @@ def one_unit(units: Sequence[str], same: Callable[[str, str], bool], where: str)
     for word in named[1:]:
         if not same(named[0], word):
             raise DataError(
-                f'two units that contradict each other, "{named[0]}" and "{word}"',
+                Message(
+                    'two units that contradict each other, "{first}" and "{second}"',
+                    first=named[0],
+                    second=word,
+                ),
                 where=where,
                 remedy="Keep the one that the numbers are in",
             )

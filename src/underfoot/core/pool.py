@@ -19,6 +19,7 @@ from typing import Any, Generic, TypeVar
 
 from .errors import UnderfootError
 from .progress import Progress, silent
+from .remark import Message
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -251,7 +252,14 @@ def _serve(pipe: Connection, function: Callable[[Any], Any], parent: int, by_ker
         try:
             pipe.send(message)
         except (pickle.PicklingError, TypeError, AttributeError):
-            pipe.send((False, UnderfootError(f"{type(message[1]).__name__}: {message[1]}")))
+            pipe.send(
+                (
+                    False,
+                    UnderfootError(
+                        Message("{name}: {error}", name=type(message[1]).__name__, error=message[1])
+                    ),
+                )
+            )
 
 
 def watch_parent(parent: int, by_kernel: bool) -> None:

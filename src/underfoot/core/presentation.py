@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, runtime_checkab
 
 from underfoot.core.remark import Message
 
-from .units import display_unit, number_text, unit_system
+from .unit_text import display_unit, number_text, unit_system
 from .values import SourcedValue
 
 if TYPE_CHECKING:

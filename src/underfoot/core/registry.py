@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import InputError
+from .remark import Message
 
 PREFIX = "underfoot."
 OWN = "underfoot"
@@ -41,7 +42,9 @@ class Offer:
             return load_address(self.address)
         except InputError as error:
             remedy = f"Mend or remove {self.package}"
-            raise InputError(f"{self}: {error.what}", remedy=remedy) from error
+            raise InputError(
+                Message("{name}: {error}", name=self, error=error.what), remedy=remedy
+            ) from error
 
     def folder(self) -> Path:
         """Return the folder ``package:folder`` that an address names, without importing it.
@@ -55,7 +58,9 @@ class Offer:
             folder = Path(place, *package.split(".")[1:], name)
             if folder.is_dir():
                 return folder
-        raise InputError(f"{self}: there is no such folder", allowed="package:folder")
+        raise InputError(
+            Message("{folder}: there is no such folder", folder=self), allowed="package:folder"
+        )
 
 
 def load_address(address: str) -> Any:
@@ -72,7 +77,9 @@ def load_address(address: str) -> Any:
         if not isinstance(error, ImportError):  # of the package itself
             reason = f"{type(error).__name__}: {reason}"
         raise InputError(
-            f'"{address}" can\'t be imported ({reason:.200})',
+            Message(
+                '"{address}" can\'t be imported ({reason:.200})', address=address, reason=reason
+            ),
             allowed="module:Name of a module on Python's path",
             remedy="Set PYTHONPATH to the folder of the module",
         ) from error
@@ -102,7 +109,10 @@ def find_offer(door: str, name: str, check: Callable[[Any], str] = lambda _item:
     for offer in chosen:
         item = offer.load()
         if wrong := check(item):
-            raise InputError(f"{offer} {wrong}", remedy=f"Mend or remove {offer.package}")
+            raise InputError(
+                f"{offer} {wrong}",
+                remedy=Message("Mend or remove {package}", package=offer.package),
+            )
         return item
     return None
 

@@ -14,8 +14,6 @@ from html import escape
 from string import Formatter
 from typing import Any, Self
 
-from .units import display
-
 MARK = "data-message"
 """Attribute of an element of a page that holds ``page_data`` of its text, as JSON."""
 ASSUMED = "Assumed"
@@ -37,6 +35,8 @@ class Amount:
     digits: int = 3
 
     def __format__(self, spec: str) -> str:
+        from .unit_text import display
+
         return display(self.value, self.unit, self.digits)
 
 
@@ -288,6 +288,8 @@ def _plain(value: Any) -> Any:
     """Return a value as JSON can hold it: no number of numpy, no generator."""
     if isinstance(value, str | Amount):
         return value
+    if isinstance(message := getattr(value, "message", None), Message):  # of an error
+        return message
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, Iterable):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .errors import ConvergenceError, MissingExtraError, unknown_name
 from .mkl import MklError, Pardiso, mkl_library, pardiso_schur_complement
+from .remark import Message
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
@@ -158,8 +159,13 @@ class _Checked:
             error = np.abs(matrix @ answer - right).max()
             if not error <= LARGEST_RESIDUAL * largest:
                 raise ConvergenceError(
-                    f"a solution by {self._name} is wrong: its backward error is "
-                    f"{error / largest:.1e}, at most {LARGEST_RESIDUAL:.0e} is right",
+                    Message(
+                        "a solution by {name} is wrong: its backward error is {error:.1e}, "
+                        "at most {largest_residual:.0e} is right",
+                        name=self._name,
+                        error=error / largest,
+                        largest_residual=LARGEST_RESIDUAL,
+                    ),
                     where=self._where,
                     remedy="Check that each part is held or loaded, or choose the other solver: "
                     f"{VARIABLE}={BACK_ENDS[1 - BACK_ENDS.index(self._name)]}",

@@ -5,7 +5,8 @@ from typing import Any
 
 from .deprecation import renamed_member
 from .errors import DataError
-from .units import display
+from .remark import Message
+from .unit_text import display
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class SourcedValue:
 
     def __float__(self) -> float:
         if self.value is None:
-            raise DataError(f"was not determined: {self.reason}")
+            raise DataError(Message("was not determined: {reason}", reason=self.reason))
         return self.value
 
     def __str__(self) -> str:

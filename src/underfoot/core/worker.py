@@ -19,6 +19,7 @@ from typing import Any
 
 from .errors import Cancelled, UnderfootError
 from .pool import one_thread, watch_parent
+from .remark import Message
 
 
 @dataclass
@@ -44,7 +45,9 @@ class Job:
         if self.error is not None:
             raise self.error
         if not self.done:
-            raise UnderfootError(f"job {self.number} is not done", remedy="Poll until it is")
+            raise UnderfootError(
+                Message("job {number} is not done", number=self.number), remedy="Poll until it is"
+            )
         return self.answer
 
 

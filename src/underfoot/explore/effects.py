@@ -22,6 +22,7 @@ from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
 from .goals import AnyGoal
 from .plan import StudyPlan
@@ -106,8 +107,12 @@ def sampled_effect_points(plan: StudyPlan) -> list[tuple[float, ...]]:
     count = plan.designs // each
     if count < least:
         raise DataError(
-            f"{plan.method.budget} runs are too few for {plan.method.analysis} on runs",
-            allowed=f"at least {least * each * plan.cases_per_design}",
+            Message(
+                "{budget} runs are too few for {analysis} on runs",
+                budget=plan.method.budget,
+                analysis=plan.method.analysis,
+            ),
+            allowed=Message("at least {least}", least=least * each * plan.cases_per_design),
             remedy='Raise it, or write on = "surrogate"',
         )
     rows = _salib(plan, "sample")(count if morris else 2 ** int(np.log2(count)))
@@ -128,7 +133,12 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
         basis = f"{len(values)} designs run in full"
         if lost := np.count_nonzero(~np.isfinite(values)):
             raise DataError(
-                f"{lost} of {len(values)} runs have no {goal}: indices on runs need all of them",
+                Message(
+                    "{lost} of {count} runs have no {goal}: indices on runs need all of them",
+                    lost=lost,
+                    count=len(values),
+                    goal=goal,
+                ),
                 remedy='Write on = "surrogate", which takes those that there are',
             )
     else:

@@ -14,6 +14,7 @@ from typing import Any
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
 from underfoot.core.pool import TRIES, answers_of, available_processors
+from underfoot.core.remark import Message
 
 from .record import CaseJob, Record
 
@@ -50,7 +51,7 @@ def engine(on: str | None, workers: int | None, told: Callable[[str], None]) -> 
     kind, _, address = on.partition(":")
     if kind != DASK:
         raise InputError(
-            f'"{on}" is no engine',
+            Message('"{name}" is no engine', name=on),
             where="--on",
             allowed='"dask", "dask:tcp://host:8786", or nothing for processes of this machine',
             remedy="In an array job (Slurm, PBS) use underfoot study work in each task",
@@ -97,7 +98,11 @@ def _on_dask(
                 del following, future, answer
         except (OSError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
             raise UnderfootError(
-                f"the Dask scheduler {address} went away ({type(error).__name__})",
+                Message(
+                    "the Dask scheduler {address} went away ({name})",
+                    address=address,
+                    name=type(error).__name__,
+                ),
                 remedy="Finished cases are kept; start it and give the same command again",
             ) from error
 
@@ -124,7 +129,9 @@ def _client(distributed: Any, address: str, workers: int) -> Any:
         return distributed.Client(address, timeout=WAIT)
     except (OSError, ValueError) as error:
         raise InputError(
-            f"no Dask scheduler answers at {address} ({error})",
+            Message(
+                "no Dask scheduler answers at {address} ({error})", address=address, error=error
+            ),
             where="--on",
             remedy="Start one with: dask scheduler, and workers with: dask worker ADDRESS",
         ) from error

@@ -21,6 +21,7 @@ import numpy as np
 from underfoot.core import InputError, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.presentation import quantity_text
+from underfoot.core.remark import Message
 from underfoot.core.units import refuse_percent
 
 from .record import Record
@@ -267,7 +268,7 @@ def read_goal(
     match = _STATISTIC.fullmatch(body)
     if match is None:
         raise InputError(
-            f'"{text}" is no goal',
+            Message('"{text}" is no goal', text=text),
             allowed='an output, or "quantile(cof, 0.1) in canola_oil over conditions"',
         )
     statistic, output = (match[1] or "mean"), (match[2] or match[4])
@@ -289,10 +290,11 @@ def read_goal(
         meant = {k for state in states for k, part in enumerate(state.parts) if part == word}
         if len(meant) > 1:
             raise InputError(
-                f"{word} stands under several conditions", remedy="Write one in another unit"
+                Message("{word} stands under several conditions", word=word),
+                remedy="Write one in another unit",
             )
     if not _chosen(states, within):
-        raise InputError(f"no condition is {' and '.join(within)}")
+        raise InputError(Message("no condition is {within}", within=" and ".join(within)))
     return Goal(output, units[output], statistic, share, over, within)
 
 
@@ -313,11 +315,14 @@ def read_requirement(
     body, clauses = _clauses(text)
     match = _BOUND.fullmatch(body)
     if match is None:
-        raise InputError(f'"{text}" is no requirement', allowed='as "cof > 0.16 in canola_oil"')
+        raise InputError(
+            Message('"{text}" is no requirement', text=text),
+            allowed='as "cof > 0.16 in canola_oil"',
+        )
     whole = match[1] + "".join(f" {word} {rest}" for word, rest in clauses.items())
     goal = read_goal(whole, units, states)
     if not isinstance(goal, Goal):
-        raise InputError(f"{goal} can't be required", allowed="an output")
+        raise InputError(Message("{goal} can't be required", goal=goal), allowed="an output")
     if goal.statistic == "sd":
         refuse_percent(match[3], where="")
     return Requirement(goal, 1 if ">" in match[2] else -1, to_si(match[3], goal.unit, where=""))
@@ -334,7 +339,10 @@ def check_agreement(require: Sequence[Requirement]) -> None:
         ordered = one == other or one.statistic == "min" or other.statistic == "max"
         numbers = "sd" not in (one.statistic, other.statistic) or one == other
         if same and ordered and numbers and low.sense > 0 > high.sense and low.bound >= high.bound:
-            raise InputError(f'"{low}" and "{high}" can\'t both hold', remedy="Drop one")
+            raise InputError(
+                Message('"{low}" and "{high}" can\'t both hold', low=low, high=high),
+                remedy="Drop one",
+            )
 
 
 def _life(requirement: Requirement, states: Sequence[Condition]) -> WearLife:

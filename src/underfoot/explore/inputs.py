@@ -17,6 +17,7 @@ from underfoot.case.section import quantity_of
 from underfoot.core import InputError, RangeError, display, to_si, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.catalogue import Catalogue
+from underfoot.core.remark import Message
 from underfoot.core.units import spread_to_si
 
 TAIL = 1e-3
@@ -125,7 +126,7 @@ def read_input(path: str, given: Any, known: Catalogue) -> Input | Follow:
         return Follow(path, given["of"], _number(given.get("times", 1.0), ".times", 0.0))
     form = '{ from = "1 mm", to = "4 mm" }, a list, or { times = 1.5, of = "path" }'
     if not isinstance(given, Mapping) or not {"from", "to"} <= set(given):
-        raise InputError(f"{given!r} is no range", allowed=form)
+        raise InputError(Message("{given} is no range", given=repr(given)), allowed=form)
     allowed = ("from", "to", "log", "steps")
     for key in set(given) - set(allowed):
         raise unknown_name("key", key, allowed)
@@ -133,7 +134,10 @@ def read_input(path: str, given: Any, known: Catalogue) -> Input | Follow:
     if not isinstance(low, float) or not isinstance(high, float):
         raise InputError("is no number", allowed="a list of names")
     if not low < high:
-        raise RangeError(f"from {given['from']} to {given['to']} is no range", allowed="from < to")
+        raise RangeError(
+            Message("from {low} to {high} is no range", low=given["from"], high=given["to"]),
+            allowed="from < to",
+        )
     logarithmic, steps = given.get("log", False), given.get("steps")
     if not isinstance(logarithmic, bool):
         raise InputError(f"{logarithmic!r}", where=".log", allowed="true or false")
@@ -161,7 +165,7 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
     kind = next((name for name in forms if isinstance(given, Mapping) and name in given), None)
     if kind is None or set(given) != {kind, forms[kind]}:
         raise InputError(
-            f"{given!r} is no distribution",
+            Message("{given} is no distribution", given=repr(given)),
             allowed='{ normal = "60 cP", sd = "5 cP" }, { lognormal = 2.0, factor = 1.3 } or '
             '{ from = "1 mm", to = "2 mm" } (even)',
         )
@@ -172,7 +176,9 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
     if kind == "lognormal":
         spread = _number(second, place, 1.0)
         if spread > WIDEST:
-            raise RangeError(f"{second}", where=place, allowed=f"up to {WIDEST:g}")
+            raise RangeError(
+                f"{second}", where=place, allowed=Message("up to {most:g}", most=WIDEST)
+            )
         if centre <= 0:
             raise RangeError(f"{given[kind]}", where=f".{kind}", allowed="above 0")
     else:
@@ -192,7 +198,9 @@ def read_distribution(path: str, given: Any, known: Catalogue) -> Distribution:
         value = distribution.value(share)
         if not quantity.low <= value <= quantity.high:
             raise RangeError(
-                f"reaches {display(value, unit)} at {share:.1%} of it",
+                Message(
+                    "reaches {value} at {share:.1%} of it", value=display(value, unit), share=share
+                ),
                 allowed=quantity.allowed(),
                 remedy="Narrow it, or take lognormal for what is positive",
             )
@@ -212,7 +220,9 @@ def value_at(path: str, given: Any, known: Catalogue, where: str = "") -> Any:
         kind = CATALOGUE_SECTIONS.get(path.removesuffix(".from"), ("", ""))[0]
         if not kind or not isinstance(given, str):
             raise InputError(
-                f"{given!r} can't be used here", where=where, allowed="the name of an entry"
+                Message("{given} can't be used here", given=repr(given)),
+                where=where,
+                allowed="the name of an entry",
             )
         names = [*known.names(kind), *(["none"] if kind == "fluid" else [])]
         if given not in names:
@@ -224,7 +234,9 @@ def value_at(path: str, given: Any, known: Catalogue, where: str = "") -> Any:
     value = to_si(given, quantity.unit, where=where)
     if not quantity.low <= value <= quantity.high or (quantity.open_low and value == quantity.low):
         raise RangeError(
-            f"{given} is outside the physical range", where=where, allowed=quantity.allowed()
+            Message("{text} is outside the physical range", text=given),
+            where=where,
+            allowed=quantity.allowed(),
         )
     return value
 
@@ -237,11 +249,13 @@ def read_joint_draws(path: Path) -> JointDraws:
         table = pandas.read_csv(path, comment="#")
         values = table.to_numpy(dtype=float)
     except FileNotFoundError:
-        raise InputError(f"there is no file {path}") from None
+        raise InputError(Message("there is no file {path}", path=path)) from None
     except (OSError, ValueError) as error:
-        raise InputError(f"{path} can't be read ({error})") from error
+        raise InputError(
+            Message("{path} can't be read ({strerror})", path=path, strerror=error)
+        ) from error
     if len(values) < 2 or not np.isfinite(values).all():
-        raise InputError(f"{path} holds no table of finite draws")
+        raise InputError(Message("{path} holds no table of finite draws", path=path))
     for name in table.columns:
         path_kind(str(name))
     return JointDraws(tuple(map(str, table.columns)), values)
@@ -250,5 +264,7 @@ def read_joint_draws(path: Path) -> JointDraws:
 def _number(given: Any, where: str, above: float) -> float:
     good = isinstance(given, int | float) and not isinstance(given, bool)
     if not good or not above < float(given) < math.inf:
-        raise InputError(f"{given!r}", where=where, allowed=f"a number above {above:g}")
+        raise InputError(
+            f"{given!r}", where=where, allowed=Message("a number above {above:g}", above=above)
+        )
     return float(given)

@@ -18,6 +18,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.arrays import AnyArray
+from underfoot.core.remark import Message
 
 from .lines import CURRENT, FORMAT, KEY, KEYED, seal_line, unseal_line, whole_lines, write_all
 from .record import CaseJob
@@ -96,7 +97,7 @@ def jobs_at(path: Path, places: Iterable[int]) -> list[CaseJob]:
             body = unseal_line(stream.readline().removesuffix(b"\n"))
             if body is None:
                 raise DataError(
-                    f"the job at byte {place} is damaged",
+                    Message("the job at byte {place} is damaged", place=place),
                     where=str(path),
                     remedy="Give underfoot study run again: it sets that batch anew",
                 )

@@ -41,6 +41,7 @@ from underfoot.core import DataError, InputError, UnderfootError
 from underfoot.core.fields import Fields, from_xarray
 from underfoot.core.files import MARKER
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 from underfoot.core.text import harmless
 
 from .claims import Round, begin_round, clear, latest_round
@@ -100,11 +101,13 @@ class Store:
         store = cls(folder)
         place = store.folder
         if place.is_file():
-            raise InputError(f"{place} is a file", where="--out", allowed="a folder")
+            raise InputError(
+                Message("{path} is a file", path=place), where="--out", allowed="a folder"
+            )
         other = place.is_dir() and not store.exists and any(place.iterdir())
         if other and not (place / "claims").is_dir():  # made first: another process may begin it
             raise InputError(
-                f"the folder {place} holds no study",
+                Message("the folder {place} holds no study", place=place),
                 where="--out",
                 remedy="Choose another folder, or empty this one yourself",
             )
@@ -159,7 +162,7 @@ class Store:
         """Return the plan of the study in the folder."""
         if not self.exists:
             raise InputError(
-                f"{self.folder} holds no study",
+                Message("{folder} holds no study", folder=self.folder),
                 where="STUDY",
                 allowed="a folder that underfoot study run made",
             )
@@ -167,15 +170,21 @@ class Store:
             base = Case.load(self.folder / "base.toml")
             text = (self.folder / "study.toml").read_text(encoding="utf-8")
         except UnicodeDecodeError as error:
-            raise DataError(f"can't be read ({error})", where=str(self.folder)) from error
+            raise DataError(
+                Message("can't be read ({error})", error=error), where=str(self.folder)
+            ) from error
         file = self.folder / "study.toml"
         plan = read_plan(text, self.folder, str(file), base=base)
         if not self._set_by(plan):
             raise InputError(
                 "was changed after its designs were set",
                 where=str(file),
-                remedy="Copy it to where your studies are and give underfoot study run COPY.toml "
-                f"--out {self.folder}: designs are set anew, and cases that both have are kept",
+                remedy=Message(
+                    "Copy it to where your studies are and give underfoot study run "
+                    "COPY.toml --out {folder}: designs are set anew, and cases that "
+                    "both have are kept",
+                    folder=self.folder,
+                ),
             )
         return plan
 
@@ -262,7 +271,9 @@ class Store:
         if error.errno not in NO_SPACE:
             return error
         return DataError(
-            f"the disk of {self.folder} is full; every finished case is on it",
+            Message(
+                "the disk of {folder} is full; every finished case is on it", folder=self.folder
+            ),
             remedy="Free some space and give the same command again: it goes on from there",
         )
 

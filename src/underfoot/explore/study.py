@@ -10,6 +10,7 @@ from pathlib import Path
 
 from underfoot.core import InputError, Progress, nearest_match, silent
 from underfoot.core.errors import Cancelled
+from underfoot.core.remark import Message
 
 from .claims import Round
 from .computing import compute_job, crash_record
@@ -61,7 +62,7 @@ class Study:
             return cls(Store(path).plan(), path)
         if not path.exists():
             raise InputError(
-                f"there is no study {path}",
+                Message("there is no study {path}", path=path),
                 where="STUDY",
                 allowed="a study file, or the folder that underfoot study run made of it",
                 nearest=nearest_match(path.name, [one.name for one in path.parent.glob("*")]),
@@ -89,9 +90,15 @@ class Study:
         with self.store.leading() as leads:
             if not leads:
                 raise InputError(
-                    f"the study in {self.store.folder} is being run by {self.store.leader()}",
+                    Message(
+                        "the study in {folder} is being run by {leader}",
+                        folder=self.store.folder,
+                        leader=self.store.leader(),
+                    ),
                     where="STUDY",
-                    remedy=f"To help it: underfoot study work {self.store.folder}",
+                    remedy=Message(
+                        "To help it: underfoot study work {folder}", folder=self.store.folder
+                    ),
                 )
             self.store.go_on()
             self.store.adopt(self.plan)

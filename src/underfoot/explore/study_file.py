@@ -252,7 +252,7 @@ def flat_paths(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
 
 def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Reading]:
     if not isinstance(table, Mapping) or not isinstance(table.get("when", {}), Mapping):
-        raise InputError(f"{table!r} is no table")
+        raise InputError(Message("{entry} is no table", entry=repr(table)))
     changes = {
         path: value_at(path, value, known, f".when.{path}")
         for path, value in table.get("when", {}).items()
@@ -260,8 +260,8 @@ def _reading(table: Any, name: str, known: Catalogue) -> tuple[Condition, Readin
     outputs = [key for key in table if key not in ("when", "sd", "name")]
     if len(outputs) != 1 or outputs[0] not in UNITS or "sd" not in table:
         raise InputError(
-            f"{', '.join(outputs) or 'nothing'} was measured",
-            allowed=f"one of {', '.join(UNITS)}, with its sd",
+            Message("{outputs} was measured", outputs=", ".join(outputs) or "nothing"),
+            allowed=Message("one of {units}, with its sd", units=", ".join(UNITS)),
             remedy="Write cof = 0.24, sd = 0.02",
         )
     unit = UNITS[outputs[0]]
@@ -285,8 +285,10 @@ class _Reader:
         self.refuse_if(
             not isinstance(version, int) or isinstance(version, bool) or version > FILE_VERSION,
             "file_version",
-            f"the file was written for version {version} of the study format",
-            allowed=f"{FILE_VERSION} or older",
+            Message(
+                "the file was written for version {version} of the study format", version=version
+            ),
+            allowed=Message("{file_version} or older", file_version=FILE_VERSION),
             remedy="Update underfoot",
         )
 
@@ -308,7 +310,7 @@ class _Reader:
             many,
             path,
             f"{count:.2g} {what}{cost}",
-            allowed=f"at most {MOST_CASES:g}",
+            allowed=Message("at most {most:g}", most=MOST_CASES),
             remedy=remedy,
         )
         return many
@@ -331,7 +333,11 @@ class _Reader:
     def table(self, name: str) -> dict[str, Any]:
         """Return a section with flat, dotted keys."""
         given = self.plain.get(name, {})
-        self.refuse_if(not isinstance(given, Mapping), name, f"{given!r} is no section")
+        self.refuse_if(
+            not isinstance(given, Mapping),
+            name,
+            Message("{given} is no section", given=repr(given)),
+        )
         pairs = list(flat_paths(given)) if isinstance(given, Mapping) else []
         paths = [ALIASES.get(path, path) for path, _ in pairs]
         for path in {one for one in paths if paths.count(one) > 1}:
@@ -427,10 +433,17 @@ class _Reader:
         maximise, minimise = (read(name, read_goal, require) for name in names[:2])
         self.attempt("outputs.require", check_agreement, require)
         for goal in set(maximise) & set(minimise):
-            self.refuse_if(True, "outputs", f"{goal} is to be both large and small")
+            self.refuse_if(
+                True, "outputs", Message("{goal} is to be both large and small", goal=goal)
+            )
         for name, goals in (("maximise", maximise), ("minimise", minimise)):
             for goal in {one for one in goals if goals.count(one) > 1}:
-                self.refuse_if(True, f"outputs.{name}", f"{goal} stands twice", remedy="Drop one")
+                self.refuse_if(
+                    True,
+                    f"outputs.{name}",
+                    Message("{goal} stands twice", goal=goal),
+                    remedy="Drop one",
+                )
         wanted = (*maximise, *minimise, *(one.goal for one in require))
         weighed = any(isinstance(one, Goal) and one.output == "mass" for one in wanted)
         self.refuse_if(

@@ -44,6 +44,7 @@ from underfoot.case import unit_at
 from underfoot.core import DataError, RangeError, display
 from underfoot.core.arrays import AnyArray, Array, Mask
 from underfoot.core.presentation import quantity_text
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 
 from .inputs import Choice, Distribution, Input
@@ -337,7 +338,11 @@ class Surrogate:
             row, column = outside[0]
             one, share = self.dimensions[column], float(points[row, column])
             raise RangeError(
-                f"the surrogate of {self.name} ends before {_text(one, share)}",
+                Message(
+                    "the surrogate of {study} ends before {design}",
+                    study=self.name,
+                    design=_text(one, share),
+                ),
                 where=one.path,
                 allowed=" to ".join(_text(one, end) for end in (0.0, 1.0)),
                 remedy="Widen the range of the study and run it again, or run the case itself",
@@ -407,8 +412,17 @@ def fit_surrogate(
     least = FEWEST * len(dimensions)
     if len(good) < least:
         raise DataError(
-            f"{len(good)} usable runs are too few for a surrogate of {name}",
-            allowed=f"at least {least} ({FEWEST} for each of {len(dimensions)} inputs)",
+            Message(
+                "{count} usable runs are too few for a surrogate of {name}",
+                count=len(good),
+                name=name,
+            ),
+            allowed=Message(
+                "at least {least} ({fewest} for each of {count} inputs)",
+                least=least,
+                fewest=FEWEST,
+                count=len(dimensions),
+            ),
             remedy="Raise the budget of the study",
         )
     if len(good) > MOST:

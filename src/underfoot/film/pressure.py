@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import ConvergenceError, InputError, Progress, silent
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import positive
+from underfoot.core.remark import Message
 from underfoot.core.sparse import Factorization, factorization
 
 from .operator import Conductance, FilmOperator, Pattern, film_operator
@@ -362,7 +363,11 @@ def _grids(film: Film) -> _Grids:
         positive(value, where)
     for where, value in (("speed", film.speed), ("upper_speed", film.upper_speed)):
         if not math.isfinite(value):
-            raise InputError(f"{value} is not finite", where=where, allowed="a finite speed, m/s")
+            raise InputError(
+                Message("{value} is not finite", value=value),
+                where=where,
+                allowed="a finite speed, m/s",
+            )
     gap = np.asarray(film.gap, dtype=float)
     mask = _mask(gap, film.mask)
     inner = gap[mask]

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
+from underfoot.core.remark import Message
 
 NAME = "cheng_2008"
 SOURCE = (
@@ -124,7 +125,7 @@ def _checked(
 ) -> tuple[np.ndarray, np.ndarray]:
     if basis not in BASES:
         raise InputError(
-            f'"{basis}" is not a basis of concentration',
+            Message('"{basis}" is not a basis of concentration', basis=basis),
             where="basis",
             allowed='"mass" (weighed) or "volume" (measured by jug)',
         )
@@ -135,7 +136,7 @@ def _checked(
             raise InputError("a value is not finite", where=name, allowed="finite numbers")
     if np.any((share < 0.0) | (share > 1.0)):
         raise RangeError(
-            f"glycerol fraction {share.min():g} to {share.max():g}",
+            Message("glycerol fraction {min:g} to {max:g}", min=share.min(), max=share.max()),
             where="fraction",
             allowed="0 to 1",
             remedy="Write 25 % as 0.25",
@@ -143,7 +144,7 @@ def _checked(
     low, high = RANGES["temperature"].low, RANGES["temperature"].high
     if np.any((kelvin < low) | (kelvin > high)):
         raise RangeError(
-            f"temperature {kelvin.min():g} K to {kelvin.max():g} K",
+            Message("temperature {min:g} K to {max:g} K", min=kelvin.min(), max=kelvin.max()),
             where="temperature",
             allowed="273.15 K to 373.15 K (0 to 100 degC)",
             remedy="Give kelvin; outside this range enter a measured viscosity instead",

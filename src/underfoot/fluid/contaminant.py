@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import InputError, RangeError, SourcedValue, display
+from underfoot.core.remark import Message
 
 from .cheng_2008 import SOURCE as CHENG
 from .cheng_2008 import glycerol_water_density, glycerol_water_viscosity
@@ -37,7 +38,9 @@ class Contaminant:
             _check(self.density, "density", "kg/m^3")
         if self.temperature is not None and not self.temperature > 0.0:
             raise RangeError(
-                f"temperature {self.temperature:g} K", where="temperature", allowed="above 0 K"
+                Message("temperature {temperature:g} K", temperature=self.temperature),
+                where="temperature",
+                allowed="above 0 K",
             )
 
 
@@ -156,6 +159,14 @@ def compared_viscosity(
 
 def _check(quantity: SourcedValue, name: str, unit: str) -> None:
     if quantity.unit.replace(" ", "") not in (unit, unit.replace("*", "")):
-        raise InputError(f'{name} has the unit "{quantity.unit}"', where=name, allowed=unit)
+        raise InputError(
+            Message('{name} has the unit "{unit}"', name=name, unit=quantity.unit),
+            where=name,
+            allowed=unit,
+        )
     if quantity.value is None or not (math.isfinite(quantity.value) and quantity.value > 0.0):
-        raise RangeError(f"{name} is {quantity.value}", where=name, allowed=f"above 0 {unit}")
+        raise RangeError(
+            Message("{name} is {value}", name=name, value=quantity.value),
+            where=name,
+            allowed=f"above 0 {unit}",
+        )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, InputError, SourcedValue, ValidityRange, breaches, unknown_name
 from underfoot.core.arrays import scalar_or_array
+from underfoot.core.remark import Message
 
 NAME = "strobel_2012"
 SOURCE = (
@@ -48,7 +49,11 @@ class AdhesionBlocking:
             raise InputError(what, where="normal_force", allowed="above 0 N")
         for name, value in (("alpha", self.alpha), ("beta", self.beta)):
             if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"{name} is {value:g}", where=name, allowed="0 or more")
+                raise InputError(
+                    Message("{name} is {value:g}", name=name, value=value),
+                    where=name,
+                    allowed="0 or more",
+                )
 
     def lubricated_adhesion(self, dry_adhesion: ArrayLike) -> Any:
         """Return the adhesion friction force under the fluid, N (Eq. 26), at ``normal_force``.

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from .law import FrictionParts
 from .sampled_cof import SampledCof
@@ -75,7 +76,11 @@ def cof(
     shears = {"adhesion": parts.adhesion, "hysteresis": parts.hysteresis, "viscous": parts.viscous}
     for name, array in {**shears, "fluid_pressure": fluid, "wet": mask}.items():
         if np.shape(array) != contact.shape:
-            raise InputError(f"shape {np.shape(array)}", where=name, allowed=f"{contact.shape}")
+            raise InputError(
+                Message("shape {shape}", shape=np.shape(array)),
+                where=name,
+                allowed=f"{contact.shape}",
+            )
     shears["viscous"] = np.where(mask, parts.viscous, 0.0)
     for name, array in {**shears, "contact_pressure": contact, "fluid_pressure": fluid}.items():
         if not np.isfinite(array).all():
@@ -85,7 +90,9 @@ def cof(
     normal = float((contact * area).sum()) * cell + fluid_load
     if not normal > 0:
         raise InputError(
-            f"the normal force is {normal:.3g} N", where="contact_pressure", allowed="above 0"
+            Message("the normal force is {normal:.3g} N", normal=normal),
+            where="contact_pressure",
+            allowed="above 0",
         )
     coefficients = {
         name: float((array * area).sum()) * cell / normal for name, array in shears.items()

@@ -15,6 +15,7 @@ from underfoot.core import Breach, InputError, SourcedValue, ValidityRange, brea
 from underfoot.core.arrays import Array
 from underfoot.core.checks import positive
 from underfoot.core.presentation import AssumingModel, Presentable, Table
+from underfoot.core.remark import Message
 
 SMALLEST_FILM = 2e-7
 """m: the viscous part counts no film thinner than this; mean gaps of rough soles are micrometres
@@ -233,7 +234,7 @@ def check_arguments(
             raise InputError("a value is not a number", where=name)
     if (arrays["contact_pressure"] < 0).any():
         raise InputError(
-            f"contact pressure down to {arrays['contact_pressure'].min():.3g} Pa",
+            Message("contact pressure down to {min:.3g} Pa", min=arrays["contact_pressure"].min()),
             where="contact_pressure",
             allowed="0 or more",
         )
@@ -252,7 +253,7 @@ def coefficient(value: SourcedValue, where: str) -> float:
     """Return the number of a friction coefficient, refused when missing, negative or not finite."""
     if value.value is None:
         raise InputError(
-            f"was not measured: {value.reason}",
+            Message("was not measured: {reason}", reason=value.reason),
             where=where,
             remedy="Give a measured value of your own, or choose another friction law",
         )

@@ -315,7 +315,9 @@ def read_pair_draws(path: Path) -> PairDraws:
         return _from_columns(columns, head.removeprefix("# source:").strip())
     except (OSError, ValueError, IndexError, KeyError, TypeError) as error:
         raise DataError(
-            f"{path.name} holds no draws of the law of a pair ({error})",
+            Message(
+                "{name} holds no draws of the law of a pair ({error})", name=path.name, error=error
+            ),
             where=str(path),
             allowed="a file that underfoot calibrate pair wrote",
         ) from error
@@ -429,7 +431,11 @@ class PairContactLaw(UncertainInputs):
             positive(self.viscosity, "viscosity", "Pa s")
         if (self.viscosity is None) != (self.pair.family == "dry"):
             raise InputError(
-                f"a viscosity of {self.viscosity} and a fluid of family {self.pair.family}",
+                Message(
+                    "a viscosity of {viscosity} and a fluid of family {family}",
+                    viscosity=self.viscosity,
+                    family=self.pair.family,
+                ),
                 where="pair",
                 allowed='a viscosity and a fluid, or None and "dry"',
             )

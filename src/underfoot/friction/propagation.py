@@ -10,6 +10,7 @@ from scipy.special import ndtri
 
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 LOGNORMAL_ABOVE = 1.0 / 3.0
 """Relative spread from which a positive quantity is drawn from a log-normal: a normal one would
@@ -81,7 +82,7 @@ def propagate_spread(
     centre: dict[str, float] = {}
     for name, quantity in inputs.items():
         if quantity.value is None or not math.isfinite(quantity.value):
-            raise InputError(f"has no value: {quantity.reason}", where=name)
+            raise InputError(Message("has no value: {reason}", reason=quantity.reason), where=name)
         centre[name] = quantity.value
     generator = np.random.default_rng(seed)
     drawn = dict(joint or {}) | {

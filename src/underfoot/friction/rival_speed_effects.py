@@ -34,7 +34,9 @@ def modulus_exponent(modulus: Callable[[Any], Any], low: float, high: float) -> 
     """
     if not 0 < low < high:
         raise InputError(
-            f"{low:g} to {high:g} rad/s", where="modulus_exponent", allowed="0 < low < high"
+            Message("{low:g} to {high:g} rad/s", low=low, high=high),
+            where="modulus_exponent",
+            allowed="0 < low < high",
         )
     ratio = np.abs(modulus(np.array([low, high])))
     return max(float(np.log(ratio[1] / ratio[0])) / math.log(high / low), 0.0)

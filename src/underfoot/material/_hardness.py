@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import RangeError
+from underfoot.core.remark import Message
 
 
 def checked_hardness(shore_a: ArrayLike) -> Any:
@@ -15,7 +16,7 @@ def checked_hardness(shore_a: ArrayLike) -> Any:
     if not np.all(good):
         wrong = np.atleast_1d(hardness)[~np.atleast_1d(good)][0]
         raise RangeError(
-            f"Shore A hardness {wrong:g}",
+            Message("Shore A hardness {wrong:g}", wrong=wrong),
             where="shore_a",
             allowed="0 to below 100",
             remedy="A harder material has no Shore A value: enter its modulus",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,9 @@ def _settle(curve: Any, axis: str, **quantities: str) -> None:
     kelvin = curve.temperature
     if kelvin is not None and not (np.isfinite(kelvin) and kelvin > 0.0):
         raise DataError(
-            f"temperature {kelvin:g} K", where="temperature", allowed="kelvin, above 0 K"
+            Message("temperature {temperature:g} K", temperature=kelvin),
+            where="temperature",
+            allowed="kelvin, above 0 K",
         )
 
 
@@ -75,20 +78,28 @@ def checked_curve(
         )
     if x.size < fewest:
         words = {3: "three", 4: "four"}[fewest]
-        raise DataError(f"{x.size} points", where=quantity, allowed=f"{words} points or more")
+        raise DataError(
+            Message("{size} points", size=x.size),
+            where=quantity,
+            allowed=Message("{wording} points or more", wording=words),
+        )
     for name, array in ((axis, x), (quantity, y)):
         missing = np.flatnonzero(~np.isfinite(array))
         if missing.size:
             raise DataError(
-                f"{missing.size} of {array.size} values are missing, the first at row "
-                f"{missing[0] + 1}",
+                Message(
+                    "{size} of {array_size} values are missing, the first at row {missing}",
+                    size=missing.size,
+                    array_size=array.size,
+                    missing=missing[0] + 1,
+                ),
                 where=name,
                 remedy="Remove the rows, or repair them at their source",
             )
         wrong = np.flatnonzero(array <= 0.0)
         if wrong.size:
             raise DataError(
-                f"row {wrong[0] + 1} is {array[wrong[0]]:g}",
+                Message("row {wrong} is {array:g}", wrong=wrong[0] + 1, array=array[wrong[0]]),
                 where=name,
                 allowed="values above 0",
                 remedy="Leave out the start (t = 0) and readings below the instrument's noise",
@@ -98,7 +109,12 @@ def checked_curve(
         if falling.size:
             i = int(falling[0])
             raise DataError(
-                f"time goes from {x[i]:g} s to {x[i + 1]:g} s at row {i + 2}",
+                Message(
+                    "time goes from {before:g} s to {after:g} s at row {row}",
+                    before=x[i],
+                    after=x[i + 1],
+                    row=i + 2,
+                ),
                 where="time",
                 allowed="ascending times",
                 remedy="Sort the rows, and keep only one of two readings at the same time",

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, text, to_si
+from underfoot.core.remark import Message
 
 from .spectrum import RelaxationSpectrum
 
@@ -84,9 +85,10 @@ def _numbers(line: str, where: str) -> list[float]:
         ]
     except ValueError:
         raise DataError(
-            f'"{text.excerpt(line.strip())}" is no card of numbers', where=where,
+            Message('"{line}" is no card of numbers', line=text.excerpt(line.strip())),
+            where=where,
             allowed="fields of ten columns, or commas",
-        ) from None  # fmt: skip
+        ) from None
 
 
 def _dyna(content: str, where: str) -> Parts:
@@ -101,8 +103,13 @@ def _dyna(content: str, where: str) -> Parts:
                 if g == 0.0:
                     continue
                 if beta < 0.0 or g < 0.0:
-                    raise InputError(f"a term of {g:g} with a rate of {beta:g}", where=where,
-                                     allowed="moduli and rates of 0 or more")  # fmt: skip
+                    raise InputError(
+                        Message(
+                            "a term of {modulus:g} with a rate of {rate:g}", modulus=g, rate=beta
+                        ),
+                        where=where,
+                        allowed="moduli and rates of 0 or more",
+                    )
                 if beta == 0.0:
                     rest += g
                 else:
@@ -146,8 +153,11 @@ def _abaqus(content: str, where: str) -> Parts:
                 )
             shares = [row[0] for row in values]
             if min(shares) < 0.0 or sum(shares) > 1.0 + 1e-6:
-                raise InputError(f"shares of the modulus at once that sum to {sum(shares):g}",
-                                 where=where, allowed="0 or more, together 1 at most")  # fmt: skip
+                raise InputError(
+                    Message("shares of the modulus at once that sum to {sum:g}", sum=sum(shares)),
+                    where=where,
+                    allowed="0 or more, together 1 at most",
+                )
             left = max(1.0 - sum(shares), 0.0)
             if at_rest and left == 0.0:
                 raise DataError("a modulus at rest, and shares that leave none", where=where)
@@ -211,8 +221,11 @@ def _febio(content: str, where: str) -> Parts:
         elif "E" in parts and "v" in parts:
             rest = parts["E"] / (2.0 * (1.0 + parts["v"]))
         else:
-            raise DataError(f'an elastic part "{kind}" that is not read', where=where,
-                            allowed="neo-Hookean, isotropic elastic, Mooney-Rivlin")  # fmt: skip
+            raise DataError(
+                Message('an elastic part "{kind}" that is not read', kind=kind),
+                where=where,
+                allowed="neo-Hookean, isotropic elastic, Mooney-Rivlin",
+            )
         terms = [values.get(f"g{n}", 0.0) * rest for n in numbers]
         rest *= values.get("g0", 1.0)
         if min(terms, default=0.0) < 0.0:
@@ -226,9 +239,12 @@ def _value(part: Any, where: str) -> float:
         return float((part.text or "0").split(",")[0])
     except ValueError:
         raise DataError(
-            f'"{text.excerpt(part.text)}" in <{part.tag}> is not a number', where=where
+            Message(
+                '"{text}" in <{tag}> is not a number', text=text.excerpt(part.text), tag=part.tag
+            ),
+            where=where,
         ) from None
 
 
 def _none(wanted: str, where: str) -> DataError:
-    return DataError(f"the deck holds no {wanted}", where=where)
+    return DataError(Message("the deck holds no {name}", name=wanted), where=where)

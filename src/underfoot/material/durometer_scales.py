@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from underfoot.core import InputError
+from underfoot.core.remark import Message
 from underfoot.core.typed import split_quantity
 
 
@@ -91,13 +92,17 @@ def durometer_reading(text: str, *, where: str = "") -> DurometerReading:
     names = ", ".join(f'"62 {each.name}"' for each in SCALES)
     if reading is None or scale is None:
         raise InputError(
-            f'"{text}" is no hardness on a known scale',
+            Message('"{text}" is no hardness on a known scale', text=text),
             where=where,
             allowed=f'62, "62 A", {names}',
         )
     if not scale.low <= value <= scale.high:
         raise InputError(
-            f"{value:g} {scale.name} is outside the readings that convert to Shore A",
+            Message(
+                "{value:g} {name} is outside the readings that convert to Shore A",
+                value=value,
+                name=scale.name,
+            ),
             where=where,
             allowed=f"{scale.low:g} to {scale.high:g} {scale.name}",
             remedy='Read the hardness in Shore A, or give the measured modulus (modulus = "5 MPa")',

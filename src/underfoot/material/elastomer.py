@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, RangeError
+from underfoot.core.remark import Message
 
 from .spectrum import RelaxationSpectrum
 
@@ -70,7 +71,7 @@ def check_poisson_ratio(poisson_ratio: float) -> None:
     """Refuse a Poisson ratio that no stable isotropic material has."""
     if not (np.isfinite(poisson_ratio) and -1.0 < poisson_ratio <= 0.5):
         raise RangeError(
-            f"Poisson ratio {poisson_ratio:g}",
+            Message("Poisson ratio {poisson_ratio:g}", poisson_ratio=poisson_ratio),
             where="poisson_ratio",
             allowed="above -1, at most 0.5 (rubber: 0.49 to 0.5)",
         )
@@ -101,12 +102,16 @@ class Elastomer:
         if not isinstance(self.modulus, RelaxationSpectrum):
             if not (np.isfinite(self.modulus) and self.modulus > 0.0):
                 raise InputError(
-                    f"modulus {self.modulus:g} Pa", where="modulus", allowed="above 0 Pa"
+                    Message("modulus {modulus:g} Pa", modulus=self.modulus),
+                    where="modulus",
+                    allowed="above 0 Pa",
                 )
             object.__setattr__(self, "modulus", float(self.modulus))
         if self.density is not None and not (np.isfinite(self.density) and self.density > 0.0):
             raise InputError(
-                f"density {self.density:g} kg/m^3", where="density", allowed="above 0 kg/m^3"
+                Message("density {density:g} kg/m^3", density=self.density),
+                where="density",
+                allowed="above 0 kg/m^3",
             )
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, RangeError, unknown_name
+from underfoot.core.remark import Message
 
 from .elastomer import Elastomer, young_from_shear
 from .spectrum import RelaxationSpectrum
@@ -101,7 +102,11 @@ def power_law_spectrum(
     |E*|, at eight frequencies a decade from 1 / longest_time to 1 / shortest_time.
     """
     if not (np.isfinite(modulus) and modulus > 0.0):
-        raise InputError(f"modulus {modulus:g} Pa", where="modulus", allowed="above 0 Pa")
+        raise InputError(
+            Message("modulus {modulus:g} Pa", modulus=modulus),
+            where="modulus",
+            allowed="above 0 Pa",
+        )
     if not 0.0 < exponent < 1.0:
         raise RangeError(f"exponent {exponent:g}", where="exponent", allowed="between 0 and 1")
     if not 0.0 < shortest_time < longest_time < np.inf:

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import Breach, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import scalar_or_array
+from underfoot.core.remark import Message
 
 from ._hardness import checked_hardness
 
@@ -61,7 +62,7 @@ def shore_a_gent(youngs_modulus: ArrayLike) -> Any:
         raise RangeError(
             "modulus below that of Shore A 0, or missing",
             where="youngs_modulus",
-            allowed=f"{lowest:.3g} Pa or more",
+            allowed=Message("{lowest:.3g} Pa or more", lowest=lowest),
         )
     ratio = modulus * 0.137505 / 0.0981e6
     return scalar_or_array(np.maximum((254.0 * ratio - 56.0) / (7.62336 + 2.54 * ratio), 0.0))

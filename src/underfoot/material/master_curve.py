@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, RangeError
 from underfoot.core.arrays import scalar_or_array
+from underfoot.core.remark import Message
 
 from .curves import DynamicSweep, RelaxationCurve, minimum_on
 from .spectrum_fit import SpectrumFit, fit_dynamic, fit_relaxation
@@ -116,9 +117,12 @@ class WlfShift(_ShiftLaw):
         away = np.asarray(temperature, dtype=float) - self.reference_temperature
         if not np.all(self.c2 + away > 0.0):
             raise RangeError(
-                f"temperature {np.min(temperature):g} K",
+                Message("temperature {temperature:g} K", temperature=np.min(temperature)),
                 where="temperature",
-                allowed=f"above {self.reference_temperature - self.c2:g} K, the pole of this WLF",
+                allowed=Message(
+                    "above {reference_temperature:g} K, the pole of this WLF",
+                    reference_temperature=self.reference_temperature - self.c2,
+                ),
             )
         return scalar_or_array(-self.c1 * away / (self.c2 + away))
 
@@ -140,7 +144,9 @@ class ArrheniusShift(_ShiftLaw):
         t = np.asarray(temperature, dtype=float)
         if not np.all(t > 0.0):
             raise RangeError(
-                f"temperature {np.min(t):g} K", where="temperature", allowed="above 0 K"
+                Message("temperature {temperature:g} K", temperature=np.min(t)),
+                where="temperature",
+                allowed="above 0 K",
             )
         factor = self.activation_energy / (GAS_CONSTANT * np.log(10.0))
         return scalar_or_array(factor * (1.0 / t - 1.0 / self.reference_temperature))
@@ -195,9 +201,11 @@ def _checked(
     t, s = np.asarray(temperatures, dtype=float), np.asarray(shifts, dtype=float)
     if t.ndim != 1 or t.shape != s.shape or np.unique(t).size < least:
         raise DataError(
-            f"{t.size} temperatures and {s.size} shift factors",
+            Message("{size} temperatures and {s_size} shift factors", size=t.size, s_size=s.size),
             where="shift factors",
-            allowed=f"the same number of each, {least} different temperatures or more",
+            allowed=Message(
+                "the same number of each, {least} different temperatures or more", least=least
+            ),
         )
     if not (np.all(np.isfinite(t)) and np.all(np.isfinite(s)) and np.all(t > 0.0)):
         raise DataError(
@@ -346,12 +354,18 @@ def _reduced(x: Sequence[np.ndarray], shifts: ShiftTable, sign: float = 1.0) -> 
 def _by_temperature(tests: Sequence[Test]) -> tuple[list[Test], np.ndarray]:
     if len(tests) < 2:
         raise DataError(
-            f"{len(tests)} temperature(s)", where="master curve", allowed="two temperatures or more"
+            Message("{count} temperature(s)", count=len(tests)),
+            where="master curve",
+            allowed="two temperatures or more",
         )
     known = [(test.temperature, i) for i, test in enumerate(tests) if test.temperature is not None]
     if len(known) < len(tests):
         raise DataError(
-            f"{len(tests) - len(known)} of {len(tests)} tests have no temperature",
+            Message(
+                "{count} of {total} tests have no temperature",
+                count=len(tests) - len(known),
+                total=len(tests),
+            ),
             where="master curve",
             allowed="a temperature in K for each test",
         )
@@ -360,7 +374,9 @@ def _by_temperature(tests: Sequence[Test]) -> tuple[list[Test], np.ndarray]:
     if np.any(np.diff(temperatures) <= 0.0):
         twice = temperatures[int(np.flatnonzero(np.diff(temperatures) <= 0.0)[0])]
         raise DataError(
-            f"two tests at {twice:g} K", where="master curve", remedy="Average or drop one of them"
+            Message("two tests at {twice:g} K", twice=twice),
+            where="master curve",
+            remedy="Average or drop one of them",
         )
     return [tests[i] for _, i in known], temperatures
 
@@ -376,9 +392,13 @@ def _shift_table(
         reference = float(temperatures[temperatures.size // 2])
     if not temperatures[0] <= reference <= temperatures[-1]:
         raise RangeError(
-            f"reference temperature {reference:g} K",
+            Message("reference temperature {reference:g} K", reference=reference),
             where="reference_temperature",
-            allowed=f"{temperatures[0]:g} K to {temperatures[-1]:g} K, the temperatures tested",
+            allowed=Message(
+                "{coldest:g} K to {warmest:g} K, the temperatures tested",
+                coldest=temperatures[0],
+                warmest=temperatures[-1],
+            ),
             remedy="Make the master curve inside, then move the spectrum with the fitted law",
         )
     steps, errors, mismatch = [], [], []
@@ -391,8 +411,11 @@ def _shift_table(
         gap = max(x[i].min(), x[i + 1].min() + step) - min(x[i].max(), x[i + 1].max() + step)
         if apart or gap > 0.0:
             raise DataError(
-                f"the moduli at {temperatures[i]:.2f} K and {temperatures[i + 1]:.2f} K do not "
-                "overlap",
+                Message(
+                    "the moduli at {colder:.2f} K and {warmer:.2f} K do not overlap",
+                    colder=temperatures[i],
+                    warmer=temperatures[i + 1],
+                ),
                 where="master curve",
                 remedy="Test a temperature between them, or widen the frequencies",
             )

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, InputError, text, to_si
+from underfoot.core.remark import Message
 
 from .curves import DynamicSweep, RelaxationCurve
 from .decks import is_deck, read_deck
@@ -158,9 +159,13 @@ def _sweeps(tables: Sequence[FileTable]) -> list[DynamicSweep]:
         _refuse_strains(table, w)
         if w.size > FEWEST and np.ptp(w) < 1e-3 * w.max():
             raise DataError(
-                f"one frequency, {w[0] / (2 * np.pi):.3g} Hz, in all {w.size} rows: no spectrum",
+                Message(
+                    "one frequency, {frequency:.3g} Hz, in all {rows} rows: no spectrum",
+                    frequency=w[0] / (2 * np.pi),
+                    rows=w.size,
+                ),
                 where=table.where,
-                allowed=f"{FEWEST} frequencies or more at each temperature",
+                allowed=Message("{fewest} frequencies or more at each temperature", fewest=FEWEST),
                 remedy="Test several frequencies at each temperature of a ramp (multi-frequency)",
             )
         found += [
@@ -191,8 +196,12 @@ def _refuse_strains(table: FileTable, w: np.ndarray) -> None:
         max(each) > OTHER_STRAIN * min(each) for each in repeated
     ):
         raise DataError(
-            f"each frequency was tested at several strains, {column.name} {strain.min():g} to "
-            f"{strain.max():g}",
+            Message(
+                "each frequency was tested at several strains, {name} {min:g} to {max:g}",
+                name=column.name,
+                min=strain.min(),
+                max=strain.max(),
+            ),
             where=table.where,
             allowed="one strain",
             remedy="Keep the rows of one strain, near that of use: a filled rubber is softer the "
@@ -240,8 +249,12 @@ def _refuse_other_tangent(ratio: np.ndarray, tangent: np.ndarray, where: str) ->
         apart = float(np.median(np.abs(np.log(ratio / tangent))))
     if apart > np.log(OTHER_TANGENT):
         raise DataError(
-            f"loss over storage modulus is {np.median(ratio):.3g} in the middle, the loss factor "
-            f"beside them {np.median(tangent):.3g}",
+            Message(
+                "loss over storage modulus is {quotient:.3g} in the middle, the loss factor "
+                "beside them {loss_factor:.3g}",
+                quotient=np.median(ratio),
+                loss_factor=np.median(tangent),
+            ),
             where=where,
             remedy="Correct the unit of the moduli or of the loss factor, or remove one column",
         )
@@ -326,7 +339,11 @@ def _series(
     wrong = np.flatnonzero(values < 0.0)
     if wrong.size and fraction is None:
         raise InputError(
-            f"term {wrong[0] + 1} (line {table.lines[wrong[0]]}) is negative",
+            Message(
+                "term {wrong} (line {line}) is negative",
+                wrong=wrong[0] + 1,
+                line=table.lines[wrong[0]],
+            ),
             where=where,
             allowed="terms of 0 or more",
             remedy="Fit the series again with terms of 0 or more: a negative one stores energy",
@@ -358,7 +375,10 @@ def _constant(table: FileTable, column: FileColumn | None) -> float | None:
     )
     values = whole.si(whole.columns[0])
     if values.size == 0 or np.ptp(values) > 1e-9 * abs(values[0]):
-        raise DataError(f"the column {column.name} holds more than one modulus", where=table.where)
+        raise DataError(
+            Message("the column {name} holds more than one modulus", name=column.name),
+            where=table.where,
+        )
     return float(values[0])
 
 
@@ -376,7 +396,12 @@ def _times(table: FileTable) -> np.ndarray:
     wrong = np.flatnonzero(~(tau > 0.0))
     if wrong.size:
         raise InputError(
-            f"{column.name} {column.cells[wrong[0]]} in line {table.lines[wrong[0]]}",
+            Message(
+                "{name} {cell} in line {line}",
+                name=column.name,
+                cell=column.cells[wrong[0]],
+                line=table.lines[wrong[0]],
+            ),
             where=table.where,
             allowed="relaxation times above 0, inf for the modulus at rest",
         )
@@ -406,7 +431,7 @@ def _prony(
     if fractions:
         if not (np.all(np.isfinite(terms)) and np.all(terms >= 0.0) and total <= 1.0 + 1e-6):
             raise DataError(
-                f"fractions of the instantaneous modulus sum to {total:g}",
+                Message("fractions of the instantaneous modulus sum to {total:g}", total=total),
                 where=where,
                 allowed="fractions of 0 or more that sum to 1 at most",
                 remedy="If they are fractions of the equilibrium modulus, give absolute terms",
@@ -422,7 +447,12 @@ def _prony(
     elif from_start:
         if level - total < -1e-6 * level:
             raise DataError(
-                f"the terms sum to {total:g} Pa, more than the instantaneous modulus {level:g} Pa",
+                Message(
+                    "the terms sum to {total:g} Pa, more than the instantaneous modulus "
+                    "{level:g} Pa",
+                    total=total,
+                    level=level,
+                ),
                 where=where,
             )
         level = max(level - total, 0.0)
@@ -433,7 +463,7 @@ def _toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text.decode_text(text.existing(path).read_bytes(), str(path)))
     except tomllib.TOMLDecodeError as error:
-        raise DataError(f"not valid TOML: {error}", where=str(path)) from error
+        raise DataError(Message("not valid TOML: {error}", error=error), where=str(path)) from error
 
 
 def _given_ratio(path: Path) -> float | None:
@@ -448,7 +478,9 @@ def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
     kind = data.get("modulus", "young")
     if kind not in ("young", "shear"):
         raise InputError(
-            f'"{kind}" is not a kind of modulus', where="modulus", allowed='"young" or "shear"'
+            Message('"{kind}" is not a kind of modulus', kind=kind),
+            where="modulus",
+            allowed='"young" or "shear"',
         )
     items: list[dict[str, Any]] = data.get("term", [])
     if not items:
@@ -460,7 +492,11 @@ def _prony_toml(path: Path) -> tuple[RelaxationSpectrum, bool]:
     def values(key: str, unit: str) -> np.ndarray:
         for i, item in enumerate(items, 1):
             if key not in item:
-                raise DataError(f"term {i} has no {key}", where=str(path), allowed=f"{key} = text")
+                raise DataError(
+                    Message("term {term} has no {name}", term=i, name=key),
+                    where=str(path),
+                    allowed=f"{key} = text",
+                )
         return np.array(
             [to_si(t[key], unit, where=f"term {i}.{key}") for i, t in enumerate(items, 1)]
         )

@@ -152,7 +152,11 @@ class RelaxationSpectrum(Presentable):
     def scaled(self, factor: float, *, source: str | None = None) -> Self:
         """Return the spectrum with every modulus times ``factor`` (> 0)."""
         if not (np.isfinite(factor) and factor > 0.0):
-            raise InputError(f"factor {factor:g}", where="factor", allowed="a positive number")
+            raise InputError(
+                Message("factor {factor:g}", factor=factor),
+                where="factor",
+                allowed="a positive number",
+            )
         return type(self)(
             self.equilibrium_modulus * factor,
             self.term_moduli * factor,
@@ -165,7 +169,9 @@ class RelaxationSpectrum(Presentable):
         """Return the spectrum at another temperature: every time times ``shift_factor`` (a_T)."""
         if not (np.isfinite(shift_factor) and shift_factor > 0.0):
             raise InputError(
-                f"shift factor {shift_factor:g}", where="shift_factor", allowed="a positive number"
+                Message("shift factor {shift_factor:g}", shift_factor=shift_factor),
+                where="shift_factor",
+                allowed="a positive number",
             )
         return type(self)(
             self.equilibrium_modulus,
@@ -188,20 +194,26 @@ class RelaxationSpectrum(Presentable):
 def _check(equilibrium: float, moduli: np.ndarray, times: np.ndarray) -> None:
     if moduli.ndim != 1 or times.ndim != 1 or moduli.size != times.size:
         raise InputError(
-            f"{moduli.size} term moduli and {times.size} relaxation times",
+            Message(
+                "{size} term moduli and {times_size} relaxation times",
+                size=moduli.size,
+                times_size=times.size,
+            ),
             where="RelaxationSpectrum",
             allowed="two one-dimensional arrays of the same length",
         )
     if not (np.isfinite(equilibrium) and equilibrium >= 0.0):
         raise InputError(
-            f"equilibrium modulus {equilibrium:g} Pa",
+            Message("equilibrium modulus {modulus:g} Pa", modulus=equilibrium),
             where="equilibrium_modulus",
             allowed="a finite modulus of 0 Pa or more",
         )
     bad = np.flatnonzero(~(np.isfinite(moduli) & (moduli >= 0.0)))
     if bad.size:
         raise InputError(
-            f"term {bad[0] + 1} has the modulus {moduli[bad[0]]:g} Pa",
+            Message(
+                "term {bad} has the modulus {moduli:g} Pa", bad=bad[0] + 1, moduli=moduli[bad[0]]
+            ),
             where="term_moduli",
             allowed="finite moduli of 0 Pa or more",
             remedy="A negative term gives energy back: refit with non-negative terms",
@@ -209,7 +221,9 @@ def _check(equilibrium: float, moduli: np.ndarray, times: np.ndarray) -> None:
     bad = np.flatnonzero(~(np.isfinite(times) & (times > 0.0)))
     if bad.size:
         raise InputError(
-            f"term {bad[0] + 1} has the relaxation time {times[bad[0]]:g} s",
+            Message(
+                "term {bad} has the relaxation time {time:g} s", bad=bad[0] + 1, time=times[bad[0]]
+            ),
             where="relaxation_times",
             allowed="finite times above 0 s",
         )

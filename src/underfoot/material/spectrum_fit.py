@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import InputError, RangeError
+from underfoot.core.remark import Message
 
 from .curves import checked_curve
 from .spectrum import RelaxationSpectrum
@@ -71,7 +72,9 @@ def check_terms(per_decade: int) -> None:
     """Refuse less than one term a decade."""
     if per_decade < 1:
         raise RangeError(
-            f"{per_decade} terms a decade", where="terms_per_decade", allowed="1 or more"
+            Message("{per_decade} terms a decade", per_decade=per_decade),
+            where="terms_per_decade",
+            allowed="1 or more",
         )
 
 
@@ -168,7 +171,9 @@ class SpectrumFit(Judged):
                 allowed="a one-dimensional array above 0 rad/s",
             )
         if not 0.0 < level < 1.0:
-            raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")
+            raise InputError(
+                Message("level {level:g}", level=level), where="level", allowed="between 0 and 1"
+            )
         pairs = list(zip(self.samples, self.sample_times, strict=True))
         tails = [0.5 * (1.0 - level), 0.5 * (1.0 + level)]
         storage, loss = (
@@ -360,7 +365,9 @@ def reduce_spectrum(
     low, high = frequency_range
     if not 0.0 < low < high < np.inf:
         raise InputError(
-            f"{low:g} to {high:g} rad/s", where="frequency_range", allowed="0 < lowest < highest"
+            Message("{low:g} to {high:g} rad/s", low=low, high=high),
+            where="frequency_range",
+            allowed="0 < lowest < highest",
         )
     check_terms(terms_per_decade)
     w = np.geomspace(low, high, max(round(12 * np.log10(high / low)), 6) + 1)

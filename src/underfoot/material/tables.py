@@ -16,6 +16,7 @@ from underfoot.core.numbers_text import (
     units_in_cells,
     without_units,
 )
+from underfoot.core.remark import Message
 
 SYMBOLS: dict[str, str] = {
     symbol: quantity
@@ -147,10 +148,13 @@ class FileTable:
         names = [*quantities, *shown]
         near = (nearest_match(column.name, names) for column in self.columns)
         raise DataError(
-            f"no column for {' or '.join(quantities)} among "
-            f"{', '.join(text.excerpt(column.name) for column in self.columns)}",
+            Message(
+                "no column for {quantities} among {columns}",
+                quantities=" or ".join(quantities),
+                columns=", ".join(text.excerpt(column.name) for column in self.columns),
+            ),
             where=self.where,
-            allowed=f"one named {', '.join(names[:6])}",
+            allowed=Message("one named {name}", name=", ".join(names[:6])),
             nearest=next(filter(None, near), None),
         )
 
@@ -162,7 +166,11 @@ class FileTable:
             for line, cell in zip(self.lines, column.cells, strict=True):
                 if not _is_number(cell, (column.form,)):
                     raise DataError(
-                        f'"{text.excerpt(cell)}" in line {line} is not a number',
+                        Message(
+                            '"{text}" in line {line} is not a number',
+                            text=text.excerpt(cell),
+                            line=line,
+                        ),
                         where=self.where,
                         allowed="numbers",
                     ) from None
@@ -172,8 +180,14 @@ class FileTable:
         missing = np.flatnonzero(np.isnan(values) if infinite else ~np.isfinite(values))
         if missing.size:
             raise DataError(
-                f"{missing.size} of {values.size} values are missing in the column {column.name}, "
-                f"the first in line {self.lines[missing[0]]}",
+                Message(
+                    "{size} of {values_size} values are missing in the column {name}, the "
+                    "first in line {line}",
+                    size=missing.size,
+                    values_size=values.size,
+                    name=column.name,
+                    line=self.lines[missing[0]],
+                ),
                 where=self.where,
                 remedy="Remove the rows, or repair them at their source",
             )
@@ -196,7 +210,10 @@ class FileTable:
             raise DataError(
                 "no unit is given",
                 where=where,
-                allowed=f"a unit of {unit} in the heading, in a row below it, or as an argument",
+                allowed=Message(
+                    "a unit of {unit} in the heading, in a row below it, or as an argument",
+                    unit=unit,
+                ),
                 remedy="Moduli take theirs from --unit MPa" if unit == "Pa" else None,
             )
         zero, one = (_factor(n, written, unit, where) for n in (0, 1))
@@ -227,7 +244,10 @@ class FileTable:
         if written != "MHz" and unit in _CYCLES:
             if angular and column.name.casefold() not in ("w", "omega", "ω"):
                 raise DataError(
-                    f'an angular frequency in "{written}": name and unit contradict each other',
+                    Message(
+                        'an angular frequency in "{written}": name and unit contradict each other',
+                        written=written,
+                    ),
                     where=where,
                     allowed="an angular frequency in rad/s or 1/s, a frequency in Hz",
                     remedy="Name the column frequency, or give its unit as rad/s",
@@ -512,7 +532,11 @@ class _Draft:
                 return
         if self.after is not None:
             raise DataError(
-                f'"{text.excerpt(self.after[1])}" in line {self.after[0]} is not a number',
+                Message(
+                    '"{text}" in line {line} is not a number',
+                    text=text.excerpt(self.after[1]),
+                    line=self.after[0],
+                ),
                 where=where,
                 allowed="numbers",
             )
@@ -525,7 +549,12 @@ class _Draft:
             if separator == "," and len(cells) in (2 * width, 2 * width - 1):
                 hint = "Commas seem to be both separator and decimal sign: export with semicolons"
             raise DataError(
-                f"line {number} has {len(cells)} values for {width} headings",
+                Message(
+                    "line {number} has {count} values for {width} headings",
+                    number=number,
+                    count=len(cells),
+                    width=width,
+                ),
                 where=where,
                 remedy=hint,
             )
@@ -550,7 +579,10 @@ class _Draft:
         twice = [name for name in names if names.count(name) > 1 and quantity_of(name)]
         if twice:
             raise DataError(
-                f"a heading occurs twice: {text.excerpt(', '.join(names), 200)}", where=where
+                Message(
+                    "a heading occurs twice: {names}", names=text.excerpt(", ".join(names), 200)
+                ),
+                where=where,
             )
         quantities = [quantity_of(name) for name in names]
         numeric = [k for k, q in zip(kept, quantities, strict=True) if q is not None]
@@ -619,7 +651,10 @@ def _temperature(
             if name.strip() == "T":
                 if not _is_number(value):
                     raise DataError(
-                        f'the temperature "{text.excerpt(value)}" is not a number', where=where
+                        Message(
+                            'the temperature "{text}" is not a number', text=text.excerpt(value)
+                        ),
+                        where=where,
                     )
                 forms = [form for form in _FORMS if _is_number(value, (form,))]
                 return _factor(forms[0].number(value), "degC", "K", where)

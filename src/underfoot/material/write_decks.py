@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from underfoot.core import InputError, to_si
+from underfoot.core.remark import Message
 
 from .elastomer import bulk_modulus, shear_from_young
 from .spectrum import LEAST_AT_REST, RelaxationSpectrum
@@ -60,7 +61,7 @@ def deck_text(
     ]
     if len(terms) > MOST_TERMS[form]:
         raise InputError(
-            f"{len(terms)} terms",
+            Message("{count} terms", count=len(terms)),
             where="series",
             allowed=f"at most {MOST_TERMS[form]} in a material of {form}",
             remedy="Give fewer terms (underfoot.material.reduced)",
@@ -91,7 +92,9 @@ def write_deck(path: Path, series: RelaxationSpectrum, **more: float | str) -> N
             allowed=", ".join(f"{end} ({one})" for end, one in FORMS.items()),
         )
     if path.exists():
-        raise InputError(f"{path} exists", where=str(path), remedy="Give another name")
+        raise InputError(
+            Message("{out} exists", out=path), where=str(path), remedy="Give another name"
+        )
     path.write_text(deck_text(series, form, **more), encoding="utf-8")  # pyright: ignore[reportArgumentType]
 
 

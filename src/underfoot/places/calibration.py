@@ -259,7 +259,7 @@ def calibrated_floor(
         beside, law = case.friction.floor_readings(), case.friction.unread(resolve_context(case))
     if any(floor_reading.machine == device for floor_reading in beside):
         raise InputError(
-            f"the case holds what {device.title} read of this floor",
+            Message("the case holds what {title} read of this floor", title=device.title),
             where="--machine",
             allowed="a machine whose reading is not in the case",
             remedy="Write the mean of its readings into the case, which counts it by itself",
@@ -365,7 +365,7 @@ def _narrowed(
             draws = read_pair_draws(path)
     if twice := [reading.machine.title for reading in readings if was_read(draws, reading.machine)]:
         raise InputError(
-            f"holds what {twice[0]} read of this floor, and so does the case",
+            Message("holds what {twice} read of this floor, and so does the case", twice=twice[0]),
             where="friction.draws_file",
             remedy="Leave the reading out of the case, or the file",
         )

@@ -17,6 +17,7 @@ from scipy.special import log_ndtr, ndtri
 
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.friction import PairDraws, packaged_pair_draws
 from underfoot.friction.pair_contact import (
     DRY_PART,
@@ -194,7 +195,11 @@ class PlaceDraws:
         left = min(effective, np.unique(self.constants.constants.kappa_0[rows]).size)
         if left < FEWEST:
             raise InputError(
-                f"only {left:.0f} of {self.count} draws agree with this reading and those before",
+                Message(
+                    "only {left:.0f} of {count} draws agree with this reading and those before",
+                    left=left,
+                    count=self.count,
+                ),
                 where=where,
                 remedy="Check value and unit, kind (value, lower, upper) and what it was read on; "
                 "leave out a reading that contradicts the others",

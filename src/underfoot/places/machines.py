@@ -253,10 +253,15 @@ class Machine:
         fluid = machine_fluid(name or self.fluids[0], where)
         if fluid.name not in self.fluids:
             raise InputError(
-                f"a {self.title.lower()} does not read {fluid.name}",
+                Message(
+                    "a {title} does not read {name}", title=self.title.lower(), name=fluid.name
+                ),
                 where=where,
                 allowed=", ".join(self.fluids),
-                remedy=f"Outside {self.standard} the model of the machine is not held to anything",
+                remedy=Message(
+                    "Outside {standard} the model of the machine is not held to anything",
+                    standard=self.standard,
+                ),
             )
         return fluid
 
@@ -270,7 +275,11 @@ class Machine:
             raise InputError(f"{reading!r}", where=where, allowed="a number")
         if not self.scale.least < reading <= self.most:
             raise RangeError(
-                f"{reading:g} is no reading of the {self.title.lower()}",
+                Message(
+                    "{reading:g} is no reading of the {title}",
+                    reading=reading,
+                    title=self.title.lower(),
+                ),
                 where=where,
                 allowed=f"above {self.scale.least:g}, at most {self.most:g} {self.scale.unit}",
                 remedy="Check machine and unit: a pendulum prints PTV (36), a ramp degrees (12), a "

@@ -189,7 +189,7 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     today = [shoe.name for shoe in shoes if shoe.present]
     if len(today) > 1:
         raise InputError(
-            f"{len(today)} shoes: {', '.join(today)}",
+            Message("{count} shoes: {today}", count=len(today), today=", ".join(today)),
             where="shoe.present",
             allowed="one shoe, with which changes are compared",
         )
@@ -285,7 +285,10 @@ def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
     entries = table.get(key)
     if not isinstance(entries, list) or not entries:
         raise InputError(
-            "is missing", where=key, allowed=f"tables [[{key}]]", remedy=f"Write [[{key}]] and name"
+            "is missing",
+            where=key,
+            allowed=f"tables [[{key}]]",
+            remedy=Message("Write [[{key}]] and name", key=key),
         )
     for number, entry in enumerate(entries, start=1):
         _check_keys(entry, key, f"{key} {number}")
@@ -305,7 +308,7 @@ def _listed(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
 
 def _check_keys(table: Any, section: str, where: str) -> None:
     if not isinstance(table, Mapping):
-        raise InputError(f"{table!r} is no table", where=where or "PLACE")
+        raise InputError(Message("{entry} is no table", entry=repr(table)), where=where or "PLACE")
     for key in table:
         if key not in KEYS[section]:
             raise unknown_name("key", key, KEYS[section], where=where or "PLACE")
@@ -336,7 +339,7 @@ def _shares(table: Any, where: str) -> Mapping[str, float]:
 def _adds_to_one(shares: Sequence[float], where: str, remedy: str) -> None:
     if abs(sum(shares) - 1) > 0.005:
         raise InputError(
-            f"the shares add to {sum(shares):.3g}",
+            Message("the shares add to {sum:.3g}", sum=sum(shares)),
             where=where,
             allowed="shares of all steps, which add to 1",
             remedy=remedy or None,
@@ -367,9 +370,12 @@ def _floor(
     slope = to_si(entry.get("slope", "0 deg"), "rad", where=f"{where}.slope")
     if not 0 <= slope <= STEEPEST_RAMP:
         raise RangeError(
-            f"{math.degrees(slope):.3g} deg is no floor that people walk on as on the level",
+            Message(
+                "{degrees:.3g} deg is no floor that people walk on as on the level",
+                degrees=math.degrees(slope),
+            ),
             where=f"{where}.slope",
-            allowed=f"0 deg to {math.degrees(STEEPEST_RAMP):.0f} deg",
+            allowed=Message("0 deg to {degrees:.0f} deg", degrees=math.degrees(STEEPEST_RAMP)),
             remedy="Stairs and steeper ramps need their own required friction",
         )
     section: dict[str, Any] = {key: entry[key] for key in ("from", "roughness") if key in entry}
@@ -424,7 +430,7 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             )
         if not 0 < rate * months < 20e-3:
             raise RangeError(
-                f"{1e3 * rate * months:.3g} mm worn off",
+                Message("{rate:.3g} mm worn off", rate=1000.0 * rate * months),
                 where=f"{where}.wear_per_month",
                 allowed="above 0, below 20 mm in all its months",
             )

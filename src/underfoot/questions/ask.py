@@ -6,6 +6,7 @@ from underfoot.case import Case
 from underfoot.core import InputError, unknown_name
 from underfoot.core.presentation import Presentable
 from underfoot.core.registry import find_offer, offers
+from underfoot.core.remark import Message
 
 
 def ask(question: str, case: Case, **settings: Any) -> Presentable:
@@ -24,7 +25,11 @@ def ask(question: str, case: Case, **settings: Any) -> Presentable:
     answer = function(case, **settings)
     if not isinstance(answer, Presentable):
         raise InputError(
-            f"{offers('questions')[question]} answers with {type(answer).__name__}",
+            Message(
+                "{offer} answers with {name}",
+                offer=offers("questions")[question],
+                name=type(answer).__name__,
+            ),
             allowed="an object derived from underfoot.core.presentation.Presentable",
         )
     return answer

@@ -205,7 +205,11 @@ def rough_contact(
         waves = [last * 2.0**n for n in range(4, -1, -1) if last * 2.0**n < 0.5 * side]
         if len(waves) < 2:
             raise InputError(
-                f"waves from {last:.3g} m on a side of {side:.3g} m: nothing to compare",
+                Message(
+                    "waves from {last:.3g} m on a side of {side:.3g} m: nothing to compare",
+                    last=last,
+                    side=side,
+                ),
                 where="--cutoffs",
                 remedy="Take more --points or a surface with several scales",
             )
@@ -426,14 +430,18 @@ def _spectrum(path: Path) -> tuple[Any, str, list[str]]:
             sweeps = material.read_dynamic(path)
         except DataError as second:
             raise DataError(
-                f"{path} is neither a Prony series ({first.what}) nor a dynamic sweep "
-                f"({second.what})",
+                Message(
+                    "{path} is neither a Prony series ({what}) nor a dynamic sweep ({second_what})",
+                    path=path,
+                    what=first.what,
+                    second_what=second.what,
+                ),
                 where="--spectrum",
                 allowed="TOML or CSV with tau and E_i; CSV with frequency, E' and E''",
             ) from second
     if len(sweeps) > 1:
         raise DataError(
-            f"{path} holds sweeps at {len(sweeps)} temperatures",
+            Message("{path} holds sweeps at {count} temperatures", path=path, count=len(sweeps)),
             where="--spectrum",
             allowed="one temperature",
             remedy="Make a master curve first (underfoot.material.dynamic_master_curve)",

@@ -339,7 +339,7 @@ def risk_assessment(
         present = result
     else:
         raise InputError(
-            f"the result of {result.name!r} is not of this case",
+            Message("the result of {name} is not of this case", name=repr(result.name)),
             where="result",
             remedy="Run the case as it is, without objects",
         )

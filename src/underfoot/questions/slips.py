@@ -491,7 +491,9 @@ def measured_rcof(path: Path) -> MeasuredRcof:
     if np.ptp(apart) < SAME_RCOF:
         alike = f"{len(apart)} {'persons' if several else 'steps'}, all alike"
         raise InputError(
-            f"RCOF of {alike if len(apart) > 1 else 'one step'}: there is no spread",
+            Message(
+                "RCOF of {alike}: there is no spread", alike=alike if len(apart) > 1 else "one step"
+            ),
             where=str(path),
             remedy="Record more steps, or set risk.rcof_mean and risk.rcof_sd",
         )

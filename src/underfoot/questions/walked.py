@@ -10,7 +10,8 @@ from itertools import pairwise
 
 from underfoot.core import InputError, to_si
 from underfoot.core.remark import Message
-from underfoot.core.units import metres, si_unit
+from underfoot.core.unit_text import metres
+from underfoot.core.units import si_unit
 
 LANDING_LOAD = 180.0
 """N on a shoe that slides at heel contact (Iraqi et al. 2018, doi 10.1016/j.jbiomech.2018.04.018,
@@ -134,9 +135,11 @@ def _volume_at(depth: float, volumes: Sequence[float], lost: Sequence[float]) ->
         if d0 < depth <= d1 * (1 + 1e-9):
             return v0 + (v1 - v0) * (depth - d0) / (d1 - d0)
     raise InputError(
-        f"the pair has lost {depth * 1e3:g} mm, the series does not pass that",
+        Message(
+            "the pair has lost {depth:g} mm, the series does not pass that", depth=depth * 1000.0
+        ),
         where="--worn-pair",
-        allowed=f"at most {max(lost) * 1e3:.3g} mm (--to)",
+        allowed=Message("at most {lost:.3g} mm (--to)", lost=max(lost) * 1000.0),
     )
 
 

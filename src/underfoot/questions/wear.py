@@ -16,7 +16,7 @@ from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.presentation import Presentable, Table, percent
 from underfoot.core.progress import part
 from underfoot.core.remark import NOTHING, Amount, Message, Remark
-from underfoot.core.units import tread_unit
+from underfoot.core.unit_text import tread_unit
 
 from .outcomes import CaseOutcome, outcomes
 from .sensitivity import OPEN_INPUTS, OpenInput, open_inputs, variants
@@ -441,7 +441,9 @@ def wear_series(
     if mode not in MODES:
         raise unknown_name("mode", mode, MODES, where="mode")
     if steps < 2:
-        raise InputError(f"{steps} steps make no series", where="steps", allowed="2 or more")
+        raise InputError(
+            Message("{steps} steps make no series", steps=steps), where="steps", allowed="2 or more"
+        )
     if mode == "archard" and case.shoe.outsole is not None:
         raise InputError(
             "wear by pressure and sliding needs a parametric sole",
@@ -458,14 +460,18 @@ def wear_series(
     limit = 5.0 if limit is None else limit
     if not 0 < limit < force:
         raise InputError(
-            f"a limit of {limit:g} N is not below the load",
+            Message("a limit of {limit:g} N is not below the load", limit=limit),
             where="limit",
-            allowed=f"above 0 N and below {force:g} N (motion.normal_force)",
+            allowed=Message("above 0 N and below {force:g} N (motion.normal_force)", force=force),
         )
     cases = worn_cases(case, mode, steps, deepest)
     if pair is not None and pair.lost > (end := cases[-1].shoe.wear.depth) * (1 + 1e-9):
         raise InputError(
-            f"the pair has lost {display(pair.lost, 'm')}, the series ends at {display(end, 'm')}",
+            Message(
+                "the pair has lost {lost}, the series ends at {end}",
+                lost=display(pair.lost, "m"),
+                end=display(end, "m"),
+            ),
             where="pair",
             remedy="Let the series go on (--to).",
         )
@@ -605,9 +611,11 @@ def worn_cases(case: Case, mode: str, steps: int, deepest: float | None) -> list
         if not 0 < end < thickness:
             most = display(thickness, "m")
             raise InputError(
-                f"wear of {display(end, 'm')} is none, or deeper than the sole",
+                Message("wear of {end} is none, or deeper than the sole", end=display(end, "m")),
                 where="deepest",
-                allowed=f"above 0 mm and below {most} (shoe.sole.outsole_thickness)",
+                allowed=Message(
+                    "above 0 mm and below {most} (shoe.sole.outsole_thickness)", most=most
+                ),
             )
         states = [{"depth": end * part} for part in map(float, share)]
         if mode != "walk":

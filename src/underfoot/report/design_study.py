@@ -19,7 +19,7 @@ from underfoot.core.fields import Fields
 from underfoot.core.html import data_address, environment, new_figure, png
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Table, percent
-from underfoot.core.units import display_unit
+from underfoot.core.unit_text import display_unit
 from underfoot.explore import Study, StudyResult
 from underfoot.explore.effects import Effects, effects
 from underfoot.explore.goals import AnyGoal, Goal
@@ -67,7 +67,7 @@ def shown_study(result: StudyResult, soles: Mapping[int, Fields] | None = None) 
         if plan.method.kind != "sensitivity" or plan.method.on == "surrogate":
             models = result.surrogates(goals)
     except UnderfootError as error:
-        missing = str(error)
+        missing = error.message
     own = (plan, result.jobs, result.records, result.sessions)
     return ShownStudy(*own, soles=soles or {}, models=models, indices=indices, missing=missing)
 

@@ -18,6 +18,7 @@ from underfoot.core.html import data_address, png
 from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Presentable
 from underfoot.core.registry import find_offer
+from underfoot.core.remark import Message
 
 from .writing import Writer, Written, data_writers, write_folder
 
@@ -80,7 +81,7 @@ def plot(shown: object, *args: Any, **options: Any) -> Figure:
 def named_figure(makers: FigureMakers, kind: str, name: str | None = None) -> Figure:
     """Return the figure of a name among several, the first without a name."""
     if not makers:
-        raise InputError(f"nothing of a {kind} can be drawn", where="plot")
+        raise InputError(Message("nothing of a {kind} can be drawn", kind=kind), where="plot")
     if name is not None and name not in makers:
         raise unknown_name("figure", name, makers, where="plot")
     return makers[name or next(iter(makers))]()
@@ -131,7 +132,9 @@ def write_report(
     if chosen is not None:
         return chosen(shown, folder, overwrite=overwrite, **options)
     if not isinstance(shown, Presentable):
-        raise InputError(f"a {type(shown).__name__} has no report", where="write_report")
+        raise InputError(
+            Message("a {name} has no report", name=type(shown).__name__), where="write_report"
+        )
     data = files(shown) | (further or {})
     return write_shown(shown, folder, data, partial(page_text, shown), overwrite=overwrite)
 

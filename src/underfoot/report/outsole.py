@@ -19,7 +19,7 @@ from underfoot.core.html import data_address, new_figure
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Part, Presentable, Table
 from underfoot.core.remark import Message
-from underfoot.core.units import tread_unit, unit_system
+from underfoot.core.unit_text import tread_unit, unit_system
 from underfoot.shoe import SoleSurface
 from underfoot.shoe.files import FileOutsole, FileSettings
 from underfoot.shoe.tread_measures import (

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
-from underfoot.core.units import display_unit
+from underfoot.core.unit_text import display_unit
 
 HEIGHT_NAMES = ("clearance", "height")
 _NOT_DRAWN = ("pressed_height", "cell_area", "cell_film_area")

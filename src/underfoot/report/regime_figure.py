@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import InputError
 from underfoot.core.html import new_figure
+from underfoot.core.remark import Message
 from underfoot.film import RegimeMap
 from underfoot.film.regimes import LAMBDA_LIMITS, SHARE_LIMITS
 
@@ -44,9 +45,15 @@ def regime_figure(
     for name, viscosity in fluids.items():
         if not low <= viscosity <= high:
             raise InputError(
-                f"{name} ({viscosity * 1e3:.3g} mPa s) is not on the map",
+                Message(
+                    "{name} ({viscosity:.3g} mPa s) is not on the map",
+                    name=name,
+                    viscosity=viscosity * 1000.0,
+                ),
                 where="fluids",
-                allowed=f"{low * 1e3:.3g} to {high * 1e3:.3g} mPa s",
+                allowed=Message(
+                    "{low:.3g} to {high:.3g} mPa s", low=low * 1000.0, high=high * 1000.0
+                ),
                 remedy="Draw the map over more viscosities.",
             )
     figure = new_figure(10.5, 5.2)

@@ -16,6 +16,7 @@ from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.fields import Fields
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import quantity_text
+from underfoot.core.remark import Message
 
 from .designed_sole import DesignedSole
 from .drawn_sole import DrawnSole, drawn_sole
@@ -144,7 +145,7 @@ def export_result(
     write = WRITERS.get(path.suffix.lower().lstrip("."))
     if write is None:
         raise InputError(
-            f'"{path.suffix}" is no kind of file for a sole with fields',
+            Message('"{suffix}" is no kind of file for a sole with fields', suffix=path.suffix),
             where="--to",
             allowed=", ".join(WRITERS),
         )

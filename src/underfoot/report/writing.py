@@ -131,7 +131,7 @@ def _failure(path: Path, write: Writer) -> str:
 
 def _reason(error: Exception) -> str:
     if isinstance(error, UnderfootError):
-        return str(error)
+        return error.message
     if isinstance(error, OSError):
         remedy = _REMEDIES.get(error.errno or 0, "choose another folder")
         return f"{(error.strerror or str(error)).lower()}; {remedy}."

@@ -13,6 +13,7 @@ from underfoot.core.arrays import AnyArray
 from underfoot.core.checks import host_array, positive
 from underfoot.core.checks import poisson_ratio as check_poisson_ratio
 from underfoot.core.device import free_memory
+from underfoot.core.remark import Message
 from underfoot.core.threads import namespace
 
 
@@ -77,8 +78,12 @@ def checked_contact_input(
         rows, columns = xp.nonzero(~xp.isfinite(h))
         first = int(rows[0]), int(columns[0])
         raise InputError(
-            f"{rows.shape[0]} of {shape[0] * shape[1]} heights are missing or infinite, "
-            f"the first at {first}",
+            Message(
+                "{count} of {total} heights are missing or infinite, the first at {first}",
+                count=rows.shape[0],
+                total=shape[0] * shape[1],
+                first=first,
+            ),
             where="height",
             allowed="a finite height at every node",
             remedy="Fill or cut them away first (underfoot.surface.filled)",
@@ -255,7 +260,7 @@ def _as_floats(height: Any) -> tuple[Any, bool]:
         return floats, bool(xp.all(xp.isfinite(floats)))
     except (TypeError, ValueError, RuntimeError) as error:
         what = f"the heights ({type(height).__name__} of {height.dtype}) can't be read as doubles"
-        raise InputError(f"{what} ({error})", **refused) from error
+        raise InputError(Message("{what} ({error})", what=what, error=error), **refused) from error
 
 
 def _single_number(name: str, value: Any) -> None:

@@ -20,6 +20,7 @@ from scipy.spatial import KDTree
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from ._kernels.tread_pattern import outline_distance
 from .lettering import Lettering
@@ -251,8 +252,10 @@ def free_land(
         held = np.maximum(held, nodes.opened(np.minimum(-least, most), _CORE * smallest_channel))
     near = " or ".join(f"{land:.2f}" for land in reached if 0 < land < 1)
     raise InputError(
-        f"no cut of these waves has {share:.0%} of land and both smallest widths",
-        allowed=f"a land of {near} is near" if near else "none at any land",
+        Message(
+            "no cut of these waves has {share:.0%} of land and both smallest widths", share=share
+        ),
+        allowed=Message("a land of {near} is near", near=near) if near else "none at any land",
         remedy="Take smaller lug_width or channel_width, a larger cell, or other coefficients",
     )
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from underfoot.core import Breach, ConvergenceError, InputError, ValidityRange, breaches
 from underfoot.core.arrays import Array, Mask
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.remark import Message
 
 from ._kernels.regions import distance_to, nearest_true
 from .cut_cells import Cells, cut_cells
@@ -150,9 +151,16 @@ def _check_grid(
     smallest = min(sole.length, sole.width)
     if smallest < CELLS_WANTED * spacing:
         raise InputError(
-            f"the plan form is {smallest * 1e3:g} mm small, the grid spacing {spacing * 1e3:g} mm",
+            Message(
+                "the plan form is {smallest:g} mm small, the grid spacing {spacing:g} mm",
+                smallest=smallest * 1000.0,
+                spacing=spacing * 1000.0,
+            ),
             where="grid.spacing",
-            allowed=f"at most {smallest / CELLS_WANTED * 1e3:.3g} mm for this plan form",
+            allowed=Message(
+                "at most {smallest:.3g} mm for this plan form",
+                smallest=smallest / CELLS_WANTED * 1000.0,
+            ),
         )
 
 
@@ -253,10 +261,23 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
         cells = width / spacing
         if cells < CELLS_REFUSED * (1 - 1e-9):
             raise InputError(
-                f"the {name} of {width * 1e3:g} mm spans {cells:.2g} cells of {spacing * 1e3:g} mm",
+                Message(
+                    "the {name} of {width:g} mm spans {cells:.2g} cells of {spacing:g} mm",
+                    name=name,
+                    width=width * 1000.0,
+                    cells=cells,
+                    spacing=spacing * 1000.0,
+                ),
                 where=where,
-                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
-                remedy=f"Use a grid spacing of {width / CELLS_WANTED * 1e3:.3g} mm or less",
+                allowed=Message(
+                    "at least {least:g} cells, {wanted:g} for a result to trust",
+                    least=CELLS_REFUSED,
+                    wanted=CELLS_WANTED,
+                ),
+                remedy=Message(
+                    "Use a grid spacing of {spacing:.3g} mm or less",
+                    spacing=width / CELLS_WANTED * 1000.0,
+                ),
             )
         unresolved += _few_cells(f"cells of the grid across the {name}", cells)
     return unresolved
@@ -490,11 +511,25 @@ def resolution_breaches(surface: SoleSurface, spacing: float) -> list[Breach]:
         # the width itself is known within half a cell of the height map
         if half + surface.spacing / 2 < CELLS_REFUSED * spacing * (1 - 1e-9):
             raise InputError(
-                f"half of the {name} area of {surface.name} is narrower than {half * 1e3:.2g} mm, "
-                f"{half / spacing:.2g} cells of {spacing * 1e3:g} mm",
+                Message(
+                    "half of the {name} area of {surface} is narrower than {width:.2g} mm, "
+                    "{cells:.2g} cells of {spacing:g} mm",
+                    name=name,
+                    surface=surface.name,
+                    width=half * 1000.0,
+                    cells=half / spacing,
+                    spacing=spacing * 1000.0,
+                ),
                 where="grid.spacing",
-                allowed=f"at least {CELLS_REFUSED:g} cells, {CELLS_WANTED:g} for a result to trust",
-                remedy=f"Use a grid spacing of {half / CELLS_WANTED * 1e3:.2g} mm or less",
+                allowed=Message(
+                    "at least {least:g} cells, {wanted:g} for a result to trust",
+                    least=CELLS_REFUSED,
+                    wanted=CELLS_WANTED,
+                ),
+                remedy=Message(
+                    "Use a grid spacing of {spacing:.2g} mm or less",
+                    spacing=half / CELLS_WANTED * 1000.0,
+                ),
             )
         cells = (narrow + surface.spacing / 2) / spacing
         unresolved += _few_cells(

@@ -10,6 +10,7 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.remark import Message
 
 from .tread import ArcChannel, Tread
 
@@ -190,8 +191,11 @@ def check_depths(shape: SoleShape) -> None:
         part = getattr(shape, name)
         if part is not None and part.depth >= shape.outsole_thickness:
             raise InputError(
-                f"depth {part.depth * 1e3:g} mm goes through the outsole of "
-                f"{shape.outsole_thickness * 1e3:g} mm",
+                Message(
+                    "depth {depth:g} mm goes through the outsole of {outsole_thickness:g} mm",
+                    depth=part.depth * 1000.0,
+                    outsole_thickness=shape.outsole_thickness * 1000.0,
+                ),
                 where=f"{name}.depth",
                 allowed="less than heel.outsole_thickness",
             )
@@ -235,9 +239,15 @@ class Heel(SoleShape):
         for name in ("rear_radius", "front_radius", "edge_radius"):
             if getattr(self, name) > limit:
                 raise InputError(
-                    f"{getattr(self, name) * 1e3:g} mm doesn't fit the plan form",
+                    Message(
+                        "{edge_radius:g} mm doesn't fit the plan form",
+                        edge_radius=getattr(self, name) * 1000.0,
+                    ),
                     where=f"heel.{name}",
-                    allowed=f"at most {limit * 1e3:g} mm (half its width and half its length)",
+                    allowed=Message(
+                        "at most {limit:g} mm (half its width and half its length)",
+                        limit=limit * 1000.0,
+                    ),
                 )
         check_depths(self)
 

@@ -12,6 +12,7 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.remark import Message
 
 from ._kernels import tread_pattern
 from .lettering import Lettering
@@ -63,9 +64,15 @@ class Sipes:
         between(self.angle, -most, most, "sipes.angle", "-180 deg to 180 deg")
         if self.width >= self.spacing / 2:
             raise InputError(
-                f"slits of {self.width * 1e3:g} mm every {self.spacing * 1e3:g} mm leave no lug",
+                Message(
+                    "slits of {width:g} mm every {spacing:g} mm leave no lug",
+                    width=self.width * 1000.0,
+                    spacing=self.spacing * 1000.0,
+                ),
                 where="sipes.width",
-                allowed=f"below {self.spacing / 2e-3:g} mm (half of sipes.spacing)",
+                allowed=Message(
+                    "below {spacing:g} mm (half of sipes.spacing)", spacing=self.spacing / 0.002
+                ),
             )
 
     def channel_distance(self, x: Array, y: Array) -> Array:
@@ -95,7 +102,9 @@ class Groove:
     def __post_init__(self) -> None:
         positive(self.width, "groove.width")
         if not self.length > 0:
-            raise InputError(f"{self.length} m is no length", where="groove.length")
+            raise InputError(
+                Message("{length} m is no length", length=self.length), where="groove.length"
+            )
 
     def channel_distance(self, x: Array, y: Array) -> Array:
         """Return the distance (m) into the groove: positive in it, negative beside it."""
@@ -187,9 +196,15 @@ class Tread:
         between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
         if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
             raise InputError(
-                f"a wall of {self.ring_width * 1e3:g} mm leaves no hollow",
+                Message(
+                    "a wall of {ring_width:g} mm leaves no hollow",
+                    ring_width=self.ring_width * 1000.0,
+                ),
                 where="tread.ring_width",
-                allowed=f"below {self.lug_width / 2e-3:g} mm (half of tread.lug_width)",
+                allowed=Message(
+                    "below {lug_width:g} mm (half of tread.lug_width)",
+                    lug_width=self.lug_width / 0.002,
+                ),
             )
         not_negative(self.edge_chamfer, "tread.edge_chamfer")
         if self.edge_radius > 0 and self.edge_chamfer > 0:
@@ -199,15 +214,25 @@ class Tread:
             size = getattr(self, name)
             if self.depth > 0 and size > rounding:
                 raise InputError(
-                    f"{name.replace('_', ' ')} {size * 1e3:g} mm doesn't fit on the lug",
+                    Message(
+                        "{name} {size:g} mm doesn't fit on the lug",
+                        name=name.replace("_", " "),
+                        size=size * 1000.0,
+                    ),
                     where=f"tread.{name}",
-                    allowed=f"at most {rounding * 1e3:g} mm (the depth and half the lug width)",
+                    allowed=Message(
+                        "at most {rounding:g} mm (the depth and half the lug width)",
+                        rounding=rounding * 1000.0,
+                    ),
                 )
         if self.sipes is not None and self.sipes.depth > self.depth * (1 + 1e-9) > 0:
             raise InputError(
-                f"sipes of {self.sipes.depth * 1e3:g} mm are deeper than the tread",
+                Message(
+                    "sipes of {depth:g} mm are deeper than the tread",
+                    depth=self.sipes.depth * 1000.0,
+                ),
                 where="sipes.depth",
-                allowed=f"at most {self.depth * 1e3:g} mm (tread.depth)",
+                allowed=Message("at most {depth:g} mm (tread.depth)", depth=self.depth * 1000.0),
             )
 
     @property
@@ -370,10 +395,12 @@ class ArcChannel:
         not_negative(self.depth, "arc_channel.depth")
         if self.width / 2 >= min(self.position, self.radius):
             raise InputError(
-                f"width {self.width * 1e3:g} mm is too large for its place",
+                Message("width {width:g} mm is too large for its place", width=self.width * 1000.0),
                 where="arc_channel.width",
-                allowed=f"below {2e3 * min(self.position, self.radius):g} mm "
-                "(twice the smaller of position and radius)",
+                allowed=Message(
+                    "below {position:g} mm (twice the smaller of position and radius)",
+                    position=2000.0 * min(self.position, self.radius),
+                ),
             )
 
     def channel_distance(self, x: Array, y: Array) -> Array:

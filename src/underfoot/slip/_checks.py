@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from underfoot.core import Breach, InputError, RangeError, ValidityRange, breaches
 from underfoot.core.arrays import Array, scalar_or_array
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 
 LARGEST_ACOF = 5.0
 LOG_SLOPE_SD, FIFTY_PERCENT_SD = 0.2, 0.05
@@ -42,7 +43,9 @@ def _within(value: ArrayLike, largest: float, where: str) -> Array:
         raise InputError("a value is not a finite number", where=where)
     if ((array < 0) | (array > largest)).any():
         raise RangeError(
-            f"{array.min():g} to {array.max():g}", where=where, allowed=f"0 to {largest:g}"
+            Message("{low:g} to {high:g}", low=array.min(), high=array.max()),
+            where=where,
+            allowed=f"0 to {largest:g}",
         )
     return array
 

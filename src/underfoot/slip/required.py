@@ -11,6 +11,7 @@ import numpy as np
 
 from underfoot.core import RangeError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 from ._checks import check_required_friction, deviation
 
@@ -49,7 +50,7 @@ class RcofPopulation:
             raise RangeError(
                 f"{self.sd:g}",
                 where="rcof_sd",
-                allowed=f"at most {LARGEST_SD:g} (it is about 0.03)",
+                allowed=Message("at most {largest_sd:g} (it is about 0.03)", largest_sd=LARGEST_SD),
             )
 
     def on_slope(self, slope: float, deviation: float = 0.0) -> RcofPopulation:

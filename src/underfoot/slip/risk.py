@@ -139,7 +139,10 @@ def slip_risk(
         acof = SourcedValue(float(np.asarray(acof, dtype=float)))
     chosen: SlipModel = ReportG6() if model is None else model
     if acof.value is None:
-        raise InputError(f"the available friction was not determined: {acof.reason}", where="acof")
+        raise InputError(
+            Message("the available friction was not determined: {reason}", reason=acof.reason),
+            where="acof",
+        )
     most = min(
         float(acof.value), LARGEST_ACOF
     )  # as of draws: what a stiff fluid shears with is more
@@ -238,7 +241,11 @@ def needed_acof(
 
     if excess(0.0) < 0 or excess(LARGEST_ACOF) > 0:
         raise InputError(
-            f"a risk of {risk:g} is reached by no ACOF between 0 and {LARGEST_ACOF:g}",
+            Message(
+                "a risk of {risk:g} is reached by no ACOF between 0 and {largest_acof:g}",
+                risk=risk,
+                largest_acof=LARGEST_ACOF,
+            ),
             where="risk",
             remedy="Check the required friction of the population",
         )

@@ -7,6 +7,7 @@ import numpy as np
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, choice, not_negative, positive
+from underfoot.core.remark import Message
 from underfoot.core.sparse import BACK_ENDS, back_end
 from underfoot.shoe.geometry import SoleMap
 
@@ -32,13 +33,16 @@ def check_setup(
     for name in ("most_newton", "most_time_steps"):
         if getattr(settings, name) < 1:
             raise InputError(
-                f"{getattr(settings, name)} allows no step",
+                Message("{settings} allows no step", settings=getattr(settings, name)),
                 where=f"settings.{name}",
                 allowed="1 or more",
             )
     if not -math.inf < settings.cavity_pressure <= 0:
         raise InputError(
-            f"{settings.cavity_pressure:g} Pa is above the pressure of the air or not finite",
+            Message(
+                "{cavity_pressure:g} Pa is above the pressure of the air or not finite",
+                cavity_pressure=settings.cavity_pressure,
+            ),
             where="settings.cavity_pressure",
             allowed="0 Pa or less",
         )
@@ -59,9 +63,9 @@ def check_setup(
         )
     if np.shape(self_compliance) != clearance.shape:
         raise InputError(
-            f"the compliance has shape {np.shape(self_compliance)}",
+            Message("the compliance has shape {shape}", shape=np.shape(self_compliance)),
             where="compliance",
-            allowed=f"the shape of the sole, {clearance.shape}",
+            allowed=Message("the shape of the sole, {shape}", shape=clearance.shape),
         )
     if not (np.isfinite(self_compliance).all() and (self_compliance > 0).all()):
         raise InputError(
@@ -79,9 +83,13 @@ def check_times(settings: SolverSettings) -> None:
     positive(settings.end_time, "settings.end_time", "s")
     if settings.end_time < settings.rise_time:
         raise InputError(
-            f"the run ends at {settings.end_time} s, before the load is up",
+            Message(
+                "the run ends at {end_time} s, before the load is up", end_time=settings.end_time
+            ),
             where="settings.end_time",
-            allowed=f"at least settings.rise_time, {settings.rise_time} s",
+            allowed=Message(
+                "at least settings.rise_time, {rise_time} s", rise_time=settings.rise_time
+            ),
         )
 
 
@@ -97,6 +105,10 @@ def check_demand(
     positive(duration, "settings.rise_time" if rising else "duration", "s")
     (positive if rising else not_negative)(normal_force, "normal_force", "N")
     if not math.isfinite(speed):
-        raise InputError(f"{speed} is not finite", where="speed", allowed="a finite speed, m/s")
+        raise InputError(
+            Message("{value} is not finite", value=speed),
+            where="speed",
+            allowed="a finite speed, m/s",
+        )
     if shoe_angle is not None:
         between(shoe_angle, -LARGEST_ANGLE, LARGEST_ANGLE, "shoe_angle", "-60 deg to 60 deg")

@@ -19,6 +19,7 @@ import scipy.sparse as sp
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.shoe.cut_cells import CutCells
 from underfoot.shoe.geometry import SoleMap
 
@@ -377,14 +378,21 @@ def lug_height(sole: SoleMap) -> Array:
 
 def _check_positive(value: float, where: str) -> None:
     if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{value} is not positive", where=where, allowed="a finite value above 0")
+        raise InputError(
+            Message("{value} is not positive", value=value),
+            where=where,
+            allowed="a finite value above 0",
+        )
 
 
 def _check_elastic(modulus: float, poisson_ratio: float) -> None:
     _check_positive(modulus, "modulus")
     if not 0 <= poisson_ratio <= 0.5:
         raise InputError(
-            f"Poisson's ratio {poisson_ratio} is outside the physical range",
+            Message(
+                "Poisson's ratio {poisson_ratio} is outside the physical range",
+                poisson_ratio=poisson_ratio,
+            ),
             where="poisson_ratio",
             allowed="0 to 0.5",
         )

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from underfoot.core import InputError
+from underfoot.core.remark import Message
 
 AT_REST = 130e6
 """Bytes of the program with its libraries."""
@@ -51,11 +52,15 @@ def refuse_too_large(cost: Cost, *, most_memory: float, where: str, spacing: flo
         return
     coarser = spacing * math.sqrt(cost.memory / max(most_memory - AT_REST, 1e6)) * 1.05
     raise InputError(
-        f"{cost}: more memory than allowed",
+        Message("{cost}: more memory than allowed", cost=cost),
         where=where,
-        allowed=f"up to {megabytes(most_memory)} (numerics.most_memory)",
-        remedy=f"Use a grid spacing of {coarser * 1e3:.2g} mm or more, or raise "
-        "numerics.most_memory",
+        allowed=Message(
+            "up to {megabytes} (numerics.most_memory)", megabytes=megabytes(most_memory)
+        ),
+        remedy=Message(
+            "Use a grid spacing of {coarser:.2g} mm or more, or raise numerics.most_memory",
+            coarser=coarser * 1000.0,
+        ),
     )
 
 

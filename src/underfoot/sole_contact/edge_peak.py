@@ -75,7 +75,9 @@ def peak_pressure(
 
     if pressure.shape != sole.land.shape:
         raise InputError(
-            f"pressure has shape {pressure.shape}", where="pressure", allowed=f"{sole.land.shape}"
+            Message("pressure has shape {shape}", shape=pressure.shape),
+            where="pressure",
+            allowed=f"{sole.land.shape}",
         )
     reach = math.sqrt(averaging_area / math.pi) / sole.spacing
     count = math.floor(reach)

@@ -9,6 +9,7 @@ import numpy as np
 
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.geometry import SoleMap
@@ -46,22 +47,26 @@ class MotionHistory:
             values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != shape or values.ndim != 1 or values.size < 2:
                 raise InputError(
-                    f"{name} has shape {values.shape}",
+                    Message("{label} has shape {shape}", label=name, shape=values.shape),
                     where=f"history.{name}",
-                    allowed=f"one row as long as time, {shape}, of 2 or more",
+                    allowed=Message("one row as long as time, {shape}, of 2 or more", shape=shape),
                 )
             if not np.isfinite(values).all():
                 raise InputError("a value is not finite", where=f"history.{name}")
             object.__setattr__(self, name, values)
         if self.time[0] != 0 or not (np.diff(self.time) > 0).all():
             raise InputError(
-                f"time goes from {self.time[0]:g} s and must rise",
+                Message("time goes from {time:g} s and must rise", time=self.time[0]),
                 where="history.time",
                 allowed="0 first, then rising",
             )
         if (self.normal_force < 0).any() or not (self.normal_force > 0).any():
             raise InputError(
-                f"the load goes from {self.normal_force.min():g} to {self.normal_force.max():g} N",
+                Message(
+                    "the load goes from {min:g} to {max:g} N",
+                    min=self.normal_force.min(),
+                    max=self.normal_force.max(),
+                ),
                 where="history.normal_force",
                 allowed="0 N or more, somewhere above",
             )

@@ -11,6 +11,7 @@ from scipy import sparse
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
+from underfoot.core.remark import Message
 
 _SOURCE = "pocket at uniform pressure in the computed film, Eq. (27)"
 GAP_CAP = 0.3e-3
@@ -113,10 +114,16 @@ def floor_sensor_reading(
     for name, count in (("scans", scans), ("offsets", offsets)):
         if int(count) != count or count < 1:
             raise InputError(
-                f"{count} is no count", where=f"sensor.{name}", allowed="a whole number, 1 or more"
+                Message("{given} is no count", given=count),
+                where=f"sensor.{name}",
+                allowed="a whole number, 1 or more",
             )
     if offsets % 2 == 0:
-        raise InputError(f"{offsets} is even", where="sensor.offsets", allowed="an odd number")
+        raise InputError(
+            Message("{offsets} is even", offsets=offsets),
+            where="sensor.offsets",
+            allowed="an odd number",
+        )
     spacing = float(along[1] - along[0])
     reach = 0.5 * inlet_diameter + spacing
     count = math.ceil((along[-1] - along[0] + 2 * reach) / sampling_step) + 1
@@ -264,7 +271,11 @@ def _checked_maps(
     shape = (along.size, across.size)
     if along.ndim != 1 or across.ndim != 1 or min(shape) < 2:
         raise InputError(
-            f"x has shape {along.shape}, y {across.shape}",
+            Message(
+                "x has shape {shape}, y {across_shape}",
+                shape=along.shape,
+                across_shape=across.shape,
+            ),
             where="floor_sensor_reading",
             allowed="two rows of at least 2 cell centres",
         )
@@ -275,7 +286,9 @@ def _checked_maps(
         )
     for name, array in (("fluid_pressure", pressure), ("film_thickness", gap)):
         if array.shape != shape:
-            raise InputError(f"shape {array.shape}", where=name, allowed=f"{shape}")
+            raise InputError(
+                Message("shape {shape}", shape=array.shape), where=name, allowed=f"{shape}"
+            )
     if not np.isfinite(pressure).all():
         raise InputError("a pressure is not finite", where="fluid_pressure")
     if np.isnan(gap).any():

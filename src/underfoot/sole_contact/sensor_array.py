@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
+from underfoot.core.remark import Message
 
 from .reading import GAP_CAP, conductance_over_cube, lag_pressure, over_places, pocket_pressure
 
@@ -33,7 +34,9 @@ class SensorArray:
         for name in ("rows", "columns"):
             if getattr(self, name) < 1:
                 raise InputError(
-                    f"{getattr(self, name)} is no count", where=f"array.{name}", allowed="1 or more"
+                    Message("{given} is no count", given=getattr(self, name)),
+                    where=f"array.{name}",
+                    allowed="1 or more",
                 )
         positive(self.spacing, "array.spacing")
         not_negative(self.inlet_diameter, "array.inlet_diameter")
@@ -113,13 +116,20 @@ def array_reading(
         raise InputError("time must rise", where="time", allowed="two or more rising instants, s")
     if place.shape != time.shape or not (len(fluid_pressure) == len(film_thickness) == time.size):
         raise InputError(
-            f"{time.size} instants, {place.size} places, {len(fluid_pressure)} pressure and "
-            f"{len(film_thickness)} film maps",
+            Message(
+                "{instants} instants, {places} places, {pressures} pressure and {films} film maps",
+                instants=time.size,
+                places=place.size,
+                pressures=len(fluid_pressure),
+                films=len(film_thickness),
+            ),
             where="array_reading",
             allowed="as many of each",
         )
     if offsets < 1 or offsets % 2 == 0:
-        raise InputError(f"{offsets} is even", where="offsets", allowed="an odd number")
+        raise InputError(
+            Message("{offsets} is even", offsets=offsets), where="offsets", allowed="an odd number"
+        )
     positive(threshold, "threshold")
     positive(sampling_interval, "sampling_interval")
     if not_negative(compliance, "compliance"):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import ConvergenceError, InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.rough_contact.pressure_gap_law import PressureGapLaw
 from underfoot.shoe.ball_joint import BallJoint, rolled_height
 from underfoot.shoe.cut_cells import CutCells
@@ -308,9 +309,9 @@ class SlidingSole:
         march = self._march
         if state.pressure.shape != march.state.pressure.shape:
             raise InputError(
-                f"a state of {state.pressure.size} cells",
+                Message("a state of {size} cells", size=state.pressure.size),
                 where="take_over",
-                allowed=f"{march.state.pressure.size}, those of this sole",
+                allowed=Message("{size}, those of this sole", size=march.state.pressure.size),
             )
         march.state, march.film, march.step = state, film, first_step
         self._load, self._speed = mark.load, mark.speed
@@ -428,10 +429,18 @@ class SlidingSole:
         stretch = abs(math.cos(angle) / math.cos(self._map_angle) - 1)
         if stretch > MOST_STRETCH:
             raise InputError(
-                f"a shoe angle of {math.degrees(angle):.3g} deg stretches a grid made at "
-                f"{math.degrees(self._map_angle):.3g} deg by {stretch:.0%}",
+                Message(
+                    "a shoe angle of {angle:.3g} deg stretches a grid made at "
+                    "{grid_angle:.3g} deg by {stretch:.0%}",
+                    angle=math.degrees(angle),
+                    grid_angle=math.degrees(self._map_angle),
+                    stretch=stretch,
+                ),
                 where="shoe_angle",
-                allowed=f"angles whose cosine is within {MOST_STRETCH:.0%} of the map's",
+                allowed=Message(
+                    "angles whose cosine is within {most_stretch:.0%} of the map's",
+                    most_stretch=MOST_STRETCH,
+                ),
                 remedy="Make the map at the middle of the angles",
             )
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match, to_si
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 
 RQ_PER_RA = math.sqrt(math.pi / 2)
 """Rq / Ra of Gaussian heights: stands in where a source prints Ra."""
@@ -169,7 +170,9 @@ def read_source(path: Path) -> Source:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise DataError(f"the file cannot be read ({error})", where=str(path)) from error
+        raise DataError(
+            Message("the file cannot be read ({strerror})", strerror=error), where=str(path)
+        ) from error
     for key in HEAD:
         if not isinstance(table.get(key), str) or not table[key].strip():
             raise DataError(

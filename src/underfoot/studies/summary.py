@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from underfoot.core import InputError
+from underfoot.core.remark import Message
 
 from .runner import PublishedStudyResult
 from .statements import studies
@@ -120,7 +121,9 @@ def read_results(folder: Path) -> list[PublishedStudyResult]:
     texts = [path.read_text(encoding="utf-8") for path in paths if path.is_file()]
     if not texts:
         allowed = "a folder that `underfoot studies run --out` wrote"
-        raise InputError(f"{folder} holds no study", where="FOLDER", allowed=allowed)
+        raise InputError(
+            Message("{folder} holds no study", folder=folder), where="FOLDER", allowed=allowed
+        )
     return [PublishedStudyResult.from_dict(json.loads(text)) for text in texts]
 
 

@@ -15,6 +15,7 @@ from underfoot.block.prony_march import (
 )
 from underfoot.core import Cancelled, InputError, Progress, Status, silent
 from underfoot.core.checks import choice, host_array
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 from underfoot.rough_contact._kernels.complementarity import ContactState, Search, solved_contacts
 from underfoot.rough_contact._kernels.krylov import Workspace
@@ -389,7 +390,7 @@ def _check_material(modulus: Any, speed: float) -> None:
             )
     if not modulus.equilibrium_modulus > 0.0:
         raise InputError(
-            f"equilibrium modulus {modulus.equilibrium_modulus} Pa",
+            Message("equilibrium modulus {modulus} Pa", modulus=modulus.equilibrium_modulus),
             where="modulus",
             allowed="above 0 Pa: a liquid can't carry the mean pressure",
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import DataError, text
+from underfoot.core.remark import Message
 
 from .heights import HeightMap, Profile
 from .instruments import UNIT_OPTIONS, UNREADABLE, complete, length_factor, spacings_of
@@ -50,16 +51,20 @@ def read_array(
     named = [name for name in flat if name.casefold() in _HEIGHTS] or list(flat)
     if len(named) != 1:
         raise DataError(
-            f"fields of a model: {', '.join(flat) or 'none of numbers'}",
+            Message("fields of a model: {flat}", flat=", ".join(flat) or "none of numbers"),
             where=where,
-            allowed=f"one called {', '.join(_HEIGHTS)}, or one alone",
+            allowed=Message("one called {heights}, or one alone", heights=", ".join(_HEIGHTS)),
             remedy='Dump the heights as well: model["surface"] = surface',
         )
     (name,) = named
     heights, spacing_y = flat[name], None
     if heights.ndim not in (1, 2) or heights.dtype.kind not in "fiu":
         raise DataError(
-            f"an array of shape {heights.shape} and kind {heights.dtype}",
+            Message(
+                "an array of shape {shape} and kind {dtype}",
+                shape=heights.shape,
+                dtype=heights.dtype,
+            ),
             where=where,
             allowed="real heights, (n,) or (nx, ny)",
         )

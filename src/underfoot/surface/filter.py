@@ -3,7 +3,8 @@
 import numpy as np
 
 from underfoot.core import DataError, InputError
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .heights import HeightMap, check_length
 from .prepare import Surface
@@ -75,18 +76,28 @@ def _split(surface: Surface, cutoff: float, ends: str) -> tuple[Surface, Surface
     coarsest = max(surface.spacings)
     if cutoff < 2.0 * coarsest * (1.0 - 1e-9):
         raise InputError(
-            f"cut-off {metres(cutoff)} on a spacing of {metres(coarsest)}",
+            Message(
+                "cut-off {cutoff} on a spacing of {spacing}",
+                cutoff=metres(cutoff),
+                spacing=metres(coarsest),
+            ),
             where="cutoff",
-            allowed=f"at least two spacings, {metres(2.0 * coarsest)}",
+            allowed=Message("at least two spacings, {metres}", metres=metres(2.0 * coarsest)),
         )
     drop = ends == "drop"
     lost = [weights(h, cutoff, 0.5).size // 2 if drop else 0 for h in surface.spacings]
     for n, h, rim in zip(surface.heights.shape, surface.spacings, lost, strict=True):
         if n - 2 * rim < 2 or not holds(n * h, cutoff):
             raise DataError(
-                f"a length of {metres(n * h)} is too short for the cut-off {metres(cutoff)}",
+                Message(
+                    "a length of {length} is too short for the cut-off {cutoff}",
+                    length=metres(n * h),
+                    cutoff=metres(cutoff),
+                ),
                 where="cutoff",
-                allowed=f"more than {(2.0 if ends == 'drop' else 1.0) * cutoff:g} m",
+                allowed=Message(
+                    "more than {cutoff:g} m", cutoff=(2.0 if ends == "drop" else 1.0) * cutoff
+                ),
                 remedy='Take a shorter cut-off, a longer measurement, or ends="regression"',
             )
     long = surface.heights

@@ -6,7 +6,8 @@ from collections.abc import Callable
 import numpy as np
 
 from underfoot.core import InputError, RangeError
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .heights import HeightMap, check_length
 from .spectrum import IsotropicSpectrum
@@ -118,7 +119,7 @@ def _check_wave(n: int, spacing: float, wavelength: float, axis: str) -> None:
         raise InputError(
             f"wavelength {metres(wavelength)} on a spacing of {metres(spacing)}",
             where="wavelength",
-            allowed=f"at least two spacings, {metres(2.0 * spacing)}",
+            allowed=Message("at least two spacings, {metres}", metres=metres(2.0 * spacing)),
         )
 
 
@@ -179,7 +180,7 @@ def self_affine(
         raise RangeError(
             f"longest wavelength {metres(long_cutoff)} on a side of {metres(side)}",
             where="long_cutoff",
-            allowed=f"at most {metres(side)}",
+            allowed=Message("at most {most}", most=metres(side)),
             remedy="Take more points, or a shorter longest wavelength",
         )
     if short_cutoff < 2.0 * spacing * (1.0 - slack):

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
 from underfoot.core.checks import host_array
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 
 class Heights:
@@ -27,7 +28,7 @@ class Heights:
         heights = np.array(given, dtype=float)
         if heights.ndim != self.axes or min(heights.shape) < 2:
             raise InputError(
-                f"heights of shape {heights.shape}",
+                Message("heights of shape {shape}", shape=heights.shape),
                 where="heights",
                 allowed=f"{'(n,)' if self.axes == 1 else '(nx, ny)'}, 2 or more",
             )
@@ -149,9 +150,9 @@ class Profile(Heights):
         inside = (x >= start - slack) & (x <= end + slack)
         if start < -slack or end > x[-1] + 0.5 * self.spacing + slack or inside.sum() < 2:
             raise InputError(
-                f"part from {metres(start)} to {metres(end)}",
+                Message("part from {start} to {end}", start=metres(start), end=metres(end)),
                 where="section",
-                allowed=f"within 0 m to {metres(x[-1])}, two points or more",
+                allowed=Message("within 0 m to {metres}, two points or more", metres=metres(x[-1])),
             )
         done = f"cut to {metres(start)} to {metres(end)}"
         return self.changed(self.heights[inside], done, periodic=False)
@@ -163,8 +164,12 @@ def check_heights(heights: np.ndarray) -> None:
     if bad.any():
         first = tuple(int(i) for i in np.argwhere(bad)[0])
         raise InputError(
-            f"{int(bad.sum())} of {heights.size} heights are missing or infinite, "
-            f"the first at {first}",
+            Message(
+                "{count} of {total} heights are missing or infinite, the first at {first}",
+                count=int(bad.sum()),
+                total=heights.size,
+                first=first,
+            ),
             where="heights",
             allowed="a finite height at every point",
             remedy="Fill them (underfoot.surface.filled) or cut them away; the result then says so",
@@ -208,19 +213,26 @@ def profile_from_positions(
     x, z = np.asarray(positions, dtype=float), np.asarray(heights, dtype=float)
     if x.ndim != 1 or x.shape != z.shape or x.size < 2:
         raise DataError(
-            f"{x.size} positions and {z.size} heights",
+            Message("{size} positions and {z_size} heights", size=x.size, z_size=z.size),
             where=where,
             allowed="the same number of each, two or more",
         )
     if not np.all(np.isfinite(x)):
-        raise DataError(f"{int(np.sum(~np.isfinite(x)))} positions are missing", where=where)
+        raise DataError(
+            Message("{sum} positions are missing", sum=int(np.sum(~np.isfinite(x)))), where=where
+        )
     steps = np.diff(x)
     if np.all(steps < 0.0):
         x, z, steps = x[::-1], z[::-1], -steps[::-1]
     if np.any(steps <= 0.0) and not (np.all(steps >= 0.0) and rounding > 0.0):
         i = int(np.flatnonzero(steps <= 0.0)[0])
         raise DataError(
-            f"position {i + 2} ({metres(x[i + 1])}) does not follow {metres(x[i])}",
+            Message(
+                "position {number} ({position}) does not follow {before}",
+                number=i + 2,
+                position=metres(x[i + 1]),
+                before=metres(x[i]),
+            ),
             where=where,
             allowed="ascending positions",
         )
@@ -232,7 +244,11 @@ def profile_from_positions(
     if off > max(0.01 * spacing, rounding * (1.0 + 1e-6)):
         if not resample:
             raise DataError(
-                f"positions are uneven: up to {metres(off)} off a grid of {metres(spacing)}",
+                Message(
+                    "positions are uneven: up to {most} off a grid of {spacing}",
+                    most=metres(off),
+                    spacing=metres(spacing),
+                ),
                 where=where,
                 remedy="Export evenly spaced positions, or ask for resampling in Python "
                 "(resample=True); the result then says so",

@@ -12,7 +12,8 @@ import numpy as np
 from underfoot.core import DataError, InputError, text, to_si
 from underfoot.core.missing import mask_of_codes
 from underfoot.core.optional import optional_module
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .heights import HeightMap, Profile, profile_from_positions
 from .prepare import fill_missing_heights
@@ -50,7 +51,9 @@ def length_factor(unit: str, where: str) -> float:
         return to_si(f"1 {name}", "m", where=where)
     except InputError as error:
         raise DataError(
-            f'"{unit.strip()[:20]}" is no unit of length' if len(unit.strip()) > 20 else error.what,
+            Message('"{unit}" is no unit of length', unit=unit.strip()[:20])
+            if len(unit.strip()) > 20
+            else error.what,
             where=where,
             allowed="a unit of length: nm, um, mm, m",
             nearest=error.nearest,
@@ -136,8 +139,11 @@ def read_instrument(
         return found
     known = next((name for magic, name in _OTHER_THINGS.items() if head.startswith(magic)), None)
     if known:
-        raise DataError(f"the file is {known}: no heights of a surface", where=str(path),
-                        remedy=f"Export the scan as {_EXPORTS}")  # fmt: skip
+        raise DataError(
+            Message("the file is {known}: no heights of a surface", known=known),
+            where=str(path),
+            remedy=f"Export the scan as {_EXPORTS}",
+        )
     return _by_library(path, length_unit, resample, fill_missing)
 
 
@@ -151,9 +157,9 @@ def _measured(
     reach = max(n * side for n, side in zip(heights.shape, sides, strict=True))
     if reach > LARGEST:
         raise DataError(
-            f"the scan is {metres(reach)} long",
+            Message("the scan is {metres} long", metres=metres(reach)),
             where=where,
-            allowed=f"up to {metres(LARGEST)}",
+            allowed=Message("up to {most}", most=metres(LARGEST)),
             remedy=UNIT_OPTIONS,
         )
     heights, notes = complete(heights, fill_missing, where)
@@ -186,8 +192,13 @@ def _gsf(
     start = end + 4 - end % 4  # one to four zero bytes fill the head up
     if columns < 2 or rows < 1 or len(data) - start != 4 * columns * rows:
         raise DataError(
-            f"cut short or damaged: {len(data) - start} bytes of heights for {columns} by {rows} "
-            "points of 4 bytes",
+            Message(
+                "cut short or damaged: {count} bytes of heights for {columns} by {rows} "
+                "points of 4 bytes",
+                count=len(data) - start,
+                columns=columns,
+                rows=rows,
+            ),
             where=where,
             remedy="Copy or export it again",
         )
@@ -198,7 +209,11 @@ def _gsf(
     ):
         unit = given or fields.get(name)
         if not unit:
-            raise DataError(f"its head has no {name}", where=where, remedy=f"Name it: {option} um")
+            raise DataError(
+                Message("its head has no {name}", name=name),
+                where=where,
+                remedy=Message("Name it: {option} um", option=option),
+            )
         factors.append(length_factor(unit, where))
     field = np.frombuffer(data, "<f4", columns * rows, start).reshape(rows, columns)
     heights = field.astype(float).T * factors[1]
@@ -233,8 +248,11 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
         raise DataError("a damaged archive", where=str(path), remedy="Copy it again") from error
     if unpacked > max(MOST_UNPACKED, 200 * path.stat().st_size):
         raise DataError(
-            f"the archive unpacks to {unpacked / 1e6:.0f} MB, {unpacked / path.stat().st_size:.0f} "
-            "times its size: no scan",
+            Message(
+                "the archive unpacks to {size:.0f} MB, {times:.0f} times its size: no scan",
+                size=unpacked / 1000000.0,
+                times=unpacked / path.stat().st_size,
+            ),
             where=str(path),
             remedy="Export it again",
         )
@@ -295,9 +313,11 @@ def _trusted(read: Callable[[], Any], name: str, path: Path) -> Any:
 def _unread(name: str, path: Path) -> DataError:
     others = _EXPORTS.replace(f"{name}, ", "")
     return DataError(
-        f"a damaged {name} file, or one with a part that the format does not allow",
+        Message(
+            "a damaged {name} file, or one with a part that the format does not allow", name=name
+        ),
         where=str(path),
-        remedy=f"Copy or export it again, or as {others}",
+        remedy=Message("Copy or export it again, or as {others}", others=others),
     )
 
 

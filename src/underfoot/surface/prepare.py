@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .heights import HeightMap, Heights
 
@@ -34,9 +35,14 @@ def fill_missing_heights(
         return z, "no heights were missing"
     if count > largest_share * z.size:
         raise DataError(
-            f"{count} of {z.size} heights are missing ({100 * count / z.size:.1f} %)",
+            Message(
+                "{count} of {total} heights are missing ({percent:.1f} %)",
+                count=count,
+                total=z.size,
+                percent=100 * count / z.size,
+            ),
             where="heights",
-            allowed=f"up to {100 * largest_share:g} %",
+            allowed=Message("up to {largest_share:g} %", largest_share=100 * largest_share),
             remedy="Measure again, cut the part away, or raise the share knowingly",
         )
     if z.ndim == 1:
@@ -83,7 +89,9 @@ def level_surface(surface: Surface, degree: int = 1) -> Surface:
         InputError: Degree negative, or more coefficients than heights.
     """
     if degree < 0:
-        raise InputError(f"degree {degree}", where="degree", allowed="0 or more")
+        raise InputError(
+            Message("degree {degree}", degree=degree), where="degree", allowed="0 or more"
+        )
     z = surface.heights
     axes = [np.linspace(-1.0, 1.0, n) for n in z.shape]
     if surface.axes == 1:
@@ -95,7 +103,9 @@ def level_surface(surface: Surface, degree: int = 1) -> Surface:
         basis = full.reshape(z.size, -1)[:, total <= degree]
     if basis.shape[1] >= z.size:
         raise InputError(
-            f"{basis.shape[1]} coefficients for {z.size} heights", where="degree", allowed="fewer"
+            Message("{shape} coefficients for {size} heights", shape=basis.shape[1], size=z.size),
+            where="degree",
+            allowed="fewer",
         )
     coefficients, *_ = np.linalg.lstsq(basis, z.ravel(), rcond=None)
     form = {0: "mean", 1: "line" if z.ndim == 1 else "plane"}.get(

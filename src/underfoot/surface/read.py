@@ -15,7 +15,8 @@ from underfoot.core.numbers_text import (
     number_forms,
     one_unit,
 )
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .arrays import SPACING, is_array, read_array
 from .heights import HeightMap, Profile, profile_from_positions
@@ -99,7 +100,12 @@ def read_numbers(path: Path | str) -> TextNumbers:
     for (i, _), row in zip(body, rows, strict=True):
         if len(row) != width:
             raise DataError(
-                f"line {i} has {len(row)} values, the first row has {width}",
+                Message(
+                    "line {line} has {count} values, the first row has {width}",
+                    line=i,
+                    count=len(row),
+                    width=width,
+                ),
                 where=where,
                 remedy="Values are missing or a decimal comma is taken for a separator",
             )
@@ -114,7 +120,11 @@ def read_numbers(path: Path | str) -> TextNumbers:
             except ValueError:
                 k, cell = next((k, cell) for k, cell in enumerate(cells) if not _holds(cell, form))
                 raise DataError(
-                    f'"{text.excerpt(cell)}" in line {body[k][0]} is not a number',
+                    Message(
+                        '"{text}" in line {line} is not a number',
+                        text=text.excerpt(cell),
+                        line=body[k][0],
+                    ),
                     where=where,
                     allowed="numbers",
                 ) from None
@@ -223,7 +233,7 @@ def read_profile(
     columns = data.rows.shape[1]
     if columns > 2:
         raise DataError(
-            f"the file has {columns} columns",
+            Message("the file has {columns} columns", columns=columns),
             where=data.where,
             allowed="positions and heights, or heights alone",
             remedy="A map is read with read_map",
@@ -391,14 +401,18 @@ def _grid(
         jumps = np.diff(levels)
         levels = levels[np.concatenate([[True], jumps > 1e-6 * max(np.ptp(values), 1e-300)])]
         if levels.size < 2:
-            raise DataError(f"all points have the same {name}", where=data.where)
+            raise DataError(Message("all points have the same {name}", name=name), where=data.where)
         step = (levels[-1] - levels[0]) / (levels.size - 1)
         place = np.rint((values - levels[0]) / step).astype(int)
         off = np.abs(values - levels[0] - place * step).max()
         if off > max(0.01 * step, rounding * (1.0 + 1e-6)):
             raise DataError(
-                f"{name} is uneven: up to {metres(off * to_length)} off a grid of "
-                f"{metres(step * to_length)}",
+                Message(
+                    "{name} is uneven: up to {most} off a grid of {spacing}",
+                    name=name,
+                    most=metres(off * to_length),
+                    spacing=metres(step * to_length),
+                ),
                 where=data.where,
                 remedy="Export the measurement on a regular grid",
             )
@@ -411,8 +425,12 @@ def _grid(
         raise DataError("a point is given more than once", where=data.where)
     if z.size < 0.5 * filled_in.size:
         raise DataError(
-            f"x, y and z of {z.size} points are no map: a grid of their places has "
-            f"{filled_in.size}",
+            Message(
+                "x, y and z of {size} points are no map: a grid of their places has "
+                "{filled_in_size}",
+                size=z.size,
+                filled_in_size=filled_in.size,
+            ),
             where=data.where,
             remedy="For a profile export positions and heights alone",
         )
@@ -427,7 +445,7 @@ def _refuse_one_for_all(
     """Refuse to guess which column a lone unit belongs to."""
     if columns > 1 and len(units) == 1 and (length is None or height is None):
         raise DataError(
-            f'one unit ("{units[0]}") for {columns} columns',
+            Message('one unit ("{unit}") for {columns} columns', unit=units[0], columns=columns),
             where=data.where,
             allowed="a unit for positions and one for heights, as in: x [mm]; z [um]",
             remedy="Give both units",
@@ -442,7 +460,7 @@ def _factor(unit: str | None, heading_units: list[str], data: TextNumbers, name:
             "no unit of length in the heading",
             where=data.where,
             allowed="for example: x [mm]; z [um]",
-            remedy=f"Give the {name.replace('_', ' ')}",
+            remedy=Message("Give the {name}", name=name.replace("_", " ")),
         )
     return length_factor(heading_units[0], data.where)
 
@@ -491,7 +509,12 @@ def read_dektak(path: Path | str) -> tuple[Profile, tuple[InstrumentResult, ...]
             rows.append((float(cells[0]), float(cells[1])))
         except (ValueError, IndexError):
             raise DataError(
-                f'no position and height in line {number}: "{line[:40]}"', where=str(path)
+                Message(
+                    'no position and height in line {number}: "{line}"',
+                    number=number,
+                    line=line[:40],
+                ),
+                where=str(path),
             ) from None
     x, z = np.array(rows).T
     radius = next((line for line in lines[:start] if line.startswith("Stylus")), "")
@@ -531,7 +554,7 @@ def _results(header: list[str], where: str) -> tuple[InstrumentResult, ...]:
 def _length(text: str, where: str) -> float:
     match = _QUANTITY.match(text)
     if match is None or not match.group(2):
-        raise DataError(f'"{text}" is not a length', where=where)
+        raise DataError(Message('"{text}" is not a length', text=text), where=where)
     return float(match.group(1).replace(",", ".")) * length_factor(match.group(2), where)
 
 

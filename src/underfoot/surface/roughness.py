@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, RangeError
-from underfoot.core.units import metres
+from underfoot.core.remark import Message
+from underfoot.core.unit_text import metres
 
 from .filter import long_waves, short_waves
 from .heights import (
@@ -163,9 +164,17 @@ def level_roughness(
     if rough.heights.size < wanted:
         lost = profile.length - rough.heights.size * profile.spacing
         raise DataError(
-            f"the profile is {metres(profile.length)} long, the filter uses {metres(lost)} of it",
+            Message(
+                "the profile is {length} long, the filter uses {used} of it",
+                length=metres(profile.length),
+                used=metres(lost),
+            ),
             where="profile",
-            allowed=f"{sections} sections of {metres(long_cutoff)} and what the filter uses",
+            allowed=Message(
+                "{sections} sections of {metres} and what the filter uses",
+                sections=sections,
+                metres=metres(long_cutoff),
+            ),
             remedy='Take fewer sections, a shorter cut-off, or ends="regression"',
         )
     start = (rough.heights.size - wanted) // 2
@@ -224,21 +233,27 @@ def _check(
     if standard not in STANDARDS:
         raise InputError(f'"{standard}"', where="standard", allowed=", ".join(STANDARDS))
     if sections < 1:
-        raise InputError(f"{sections} sections", where="sections", allowed="1 or more")
+        raise InputError(
+            Message("{sections} sections", sections=sections), where="sections", allowed="1 or more"
+        )
     limit = shortest_derivable_wavelength(profile)
     if long_cutoff < 2.0 * limit.wavelength:
         raise RangeError(
-            f"long cut-off {metres(long_cutoff)}",
+            Message("long cut-off {metres}", metres=metres(long_cutoff)),
             where="long_cutoff",
-            allowed=f"at least twice the resolution of {metres(limit.wavelength)} ({limit.reason})",
+            allowed=Message(
+                "at least twice the resolution of {metres} ({reason})",
+                metres=metres(limit.wavelength),
+                reason=limit.reason,
+            ),
         )
     if short_cutoff is None:
         return
     if not short_cutoff < long_cutoff:
         raise InputError(
-            f"short cut-off {metres(short_cutoff)}",
+            Message("short cut-off {metres}", metres=metres(short_cutoff)),
             where="short_cutoff",
-            allowed=f"below {metres(long_cutoff)}",
+            allowed=Message("below {limit}", limit=metres(long_cutoff)),
         )
     _check_short_cutoff(short_cutoff, limit)
 
@@ -246,7 +261,7 @@ def _check(
 def _check_short_cutoff(cutoff: float, limit: Resolution) -> None:
     if cutoff < limit.wavelength * (1.0 - 1e-9):
         raise RangeError(
-            f"short cut-off {metres(cutoff)} is below what was measured",
+            Message("short cut-off {metres} is below what was measured", metres=metres(cutoff)),
             where="short_cutoff",
             allowed=f"{metres(limit.wavelength)} or more ({limit.reason})",
         )

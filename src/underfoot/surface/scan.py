@@ -302,7 +302,9 @@ def read_scan(
         raise DataError(
             unlikely,
             where=str(path),
-            allowed=f"{display(NO_FLOOR, 'm')} to {display(NO_ROUGHNESS, 'm')}",
+            allowed=Message(
+                "{low} to {high}", low=display(NO_FLOOR, "m"), high=display(NO_ROUGHNESS, "m")
+            ),
             remedy='Name the unit of the heights (height_unit = "mm"), or write rq yourself',
         )
     even = surface if surface.periodic else flat
@@ -346,9 +348,15 @@ def _cutoff(
     if given is not None:
         if not holds(length, given):
             raise DataError(
-                f"a scan of {display(length, 'm')} for a cut-off of {display(given, 'm')}",
+                Message(
+                    "a scan of {length} for a cut-off of {given}",
+                    length=display(length, "m"),
+                    given=display(given, "m"),
+                ),
                 where=where,
-                allowed=f"at most {display(length, 'm')}; a standard takes six cut-offs",
+                allowed=Message(
+                    "at most {length}; a standard takes six cut-offs", length=display(length, "m")
+                ),
                 remedy="Measure a longer part, or leave the cut-off out to take the longest that "
                 "fits",
             )
@@ -356,11 +364,16 @@ def _cutoff(
     fitting = [cutoff for cutoff in CUTOFFS if holds(length, cutoff) and cutoff >= 4 * resolved]
     if not fitting:
         raise DataError(
-            f"a scan of {display(length, 'm')} that resolves waves of "
-            f"{display(resolved, 'm')} holds no cut-off",
+            Message(
+                "a scan of {length} that resolves waves of {resolved} holds no cut-off",
+                length=display(length, "m"),
+                resolved=display(resolved, "m"),
+            ),
             where=where,
-            allowed=f"{', '.join(display(cutoff, 'm') for cutoff in CUTOFFS)}: at most the length, "
-            "at least four of the shortest waves",
+            allowed=Message(
+                "{cutoffs}: at most the length, at least four of the shortest waves",
+                cutoffs=", ".join(display(cutoff, "m") for cutoff in CUTOFFS),
+            ),
             remedy="Measure a longer part, or with a smaller spacing",
         )
     if fitting[0] == CUTOFFS[0]:

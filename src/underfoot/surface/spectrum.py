@@ -9,7 +9,7 @@ from scipy.special import digamma
 
 from underfoot.core import InputError, SourcedValue
 from underfoot.core.remark import Message
-from underfoot.core.units import metres
+from underfoot.core.unit_text import metres
 
 from .heights import HeightMap, Heights, check_heights, shortest_reliable_wavelength
 from .prepare import level_surface
@@ -103,9 +103,11 @@ class IsotropicSpectrum(_Spectrum):
         inside = (self.wavenumber >= low * (1 - 1e-12)) & (self.wavenumber <= high * (1 + 1e-12))
         if not inside.any():
             raise InputError(
-                f"no wave number from {low:g} to {high:g} rad/m",
+                Message("no wave number from {low:g} to {high:g} rad/m", low=low, high=high),
                 where="within",
-                allowed=f"{self.wavenumber[0]:g} to {self.wavenumber[-1]:g} rad/m",
+                allowed=Message(
+                    "{low:g} to {high:g} rad/m", low=self.wavenumber[0], high=self.wavenumber[-1]
+                ),
             )
         return replace(
             self,
@@ -384,7 +386,9 @@ def correlation_length(
         InputError: Level outside 0 to 1, or not reached within half the length.
     """
     if not 0.0 < level < 1.0:
-        raise InputError(f"level {level:g}", where="level", allowed="between 0 and 1")
+        raise InputError(
+            Message("level {level:g}", level=level), where="level", allowed="between 0 and 1"
+        )
     lag, value = autocorrelation(surface, axis=axis)
     below = np.flatnonzero(value <= level)
     if below.size == 0:
@@ -472,7 +476,7 @@ def asperities(moments: SpectralMoments) -> Asperities:
     alpha = moments.bandwidth
     if alpha < 1.5 * (1.0 - 1e-6):
         raise InputError(
-            f"bandwidth parameter {alpha:.3g}",
+            Message("bandwidth parameter {alpha:.3g}", alpha=alpha),
             where="moments",
             allowed="1.5 or more, as every isotropic random surface has",
             remedy="A wave or a ridged surface has no summits in this sense",

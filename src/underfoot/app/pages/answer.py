@@ -18,7 +18,6 @@ from ..components import (
     SoleView,
     folded_section,
     interruption,
-    package_label,
     scale,
     sentences,
     table,
@@ -27,6 +26,7 @@ from ..components import (
 )
 from ..inputs import Input, sliders
 from ..jobs import DONE, QueuedTask
+from ..labels import package_label
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant, no_variant, variant_bar
 from . import repair, wear

@@ -11,7 +11,8 @@ from nicegui import ui
 from underfoot.case import Case, assumptions, unit_at
 from underfoot.core import display
 
-from ..components import interruption, package_label, show_refillable, task_line
+from ..components import interruption, show_refillable, task_line
+from ..labels import package_label
 from ..session import Session
 
 EFFECTS = "underfoot.app.work:effects"

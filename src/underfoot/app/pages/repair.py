@@ -16,6 +16,7 @@ from underfoot.core.errors import UnderfootError
 from underfoot.core.files import checksum
 
 from ..components import drop_zone
+from ..labels import package_label
 from ..project import Project
 from ..session import Session
 from ..uploads import PLACES
@@ -91,7 +92,7 @@ def _card(session: Session, name: str, error: UnderfootError, mended: Callable[[
         for each in lacking:
             _choices(session, name, each, mended)
         if not lacking:
-            ui.label(str(error)).classes("soft")
+            package_label(error.message).classes("soft")
             ui.label(text("repair.undo"))
 
 

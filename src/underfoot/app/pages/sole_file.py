@@ -11,10 +11,11 @@ from nicegui import ui
 
 from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
-from underfoot.core.remark import is_assumed
+from underfoot.core.remark import Message, is_assumed
 from underfoot.core.worker import Job
 
-from ..components import SoleView, drop_zone, package_label, sentences, table
+from ..components import SoleView, drop_zone, sentences, table
+from ..labels import package_label
 from ..session import Session
 from ..text import as_json
 from ..uploads import revision, revisions
@@ -191,6 +192,6 @@ class _Inspection:
         """Give variants the shoe that a case of the file has; what a person set of it stays."""
         project = self.session.project
         if not project.inside(self.path).is_file():
-            raise InputError(f"there is no file {self.path}", where="sole")
+            raise InputError(Message("there is no file {path}", path=self.path), where="sole")
         for name in names:  # undo brings back what was drawn with sliders
             project.take_sole(name, shoe)

@@ -20,11 +20,13 @@ from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.files import whole_file
 from underfoot.core.typed import split_quantity
-from underfoot.core.units import display, to_si
+from underfoot.core.unit_text import display
+from underfoot.core.units import to_si
 
 from ..components import SoleView, interruption, sentences, task_line, title
 from ..inputs import read_count, read_field, whole_number
 from ..jobs import QueuedTask
+from ..labels import package_label
 from ..project import NAME
 from ..session import Session, address, problem_parts
 from ..variant_bar import new_variant
@@ -285,7 +287,7 @@ class _Study:
         self.checked.clear()
         with self.checked:
             for kind, words in problem_parts(problem) if problem else ():
-                ui.label(words).classes(f"problem-{kind}")
+                package_label(words).classes(f"problem-{kind}")
             if sheet:
                 ui.label(" ".join(sheet["headline"])).classes("lead")
                 sentences(sheet["cautions"], "soft")

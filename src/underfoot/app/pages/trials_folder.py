@@ -14,8 +14,9 @@ from underfoot.core import InputError
 from underfoot.core.errors import UnderfootError
 from underfoot.core.remark import join_lines
 
-from ..components import package_label, sentences, table, task_line, title
+from ..components import sentences, table, task_line, title
 from ..jobs import QueuedTask
+from ..labels import package_label
 from ..session import Session
 from ..trials_study import TrialsFolder
 

@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from underfoot.core import InputError
-from underfoot.core.remark import from_stored
+from underfoot.core.remark import Message, from_stored
 from underfoot.core.units import to_si
 
 from ..components import interruption, sentences, show_refillable, table, task_line
@@ -61,7 +61,7 @@ def _filled(session: Session, name: str, again: Any) -> None:
 def _above_0(session: Session, typed: str, *, unit: str, usual: str) -> float:
     value = to_si(typed, unit, where="", usual=usual, comma=session.text.comma)
     if value <= 0:
-        raise InputError(f"{typed} is nothing", allowed="above 0")
+        raise InputError(Message("{typed} is nothing", typed=typed), allowed="above 0")
     return value
 
 

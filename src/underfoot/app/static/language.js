@@ -116,25 +116,36 @@ function isKnown(part, depth) {
   return isOwn(part) || !/[A-Za-z]{4}/.test(part) || inLanguage(part, depth + 1) !== withDecimals(part) || exactWords.has(part.trim());
 }
 
-// A message of the package: the template of its code in the language, with its values.
-function messageInLanguage({ about, code, values }) {
-  const template = spoken.messages[code] ?? code;
-  const said = template.replace(/\{(\w+)(?::([^}]*))?\}/g, (_, name, form) => valueInLanguage(values[name], form));
+// A message of the package: the template of its code in the language, with its values; what has
+// no template is a text like any other. What stands in quotes is as somebody wrote it.
+const FIELD = /\{(\w+)(?::([^}]*))?\}/g, asWritten = (value) => value;
+function messageInLanguage(message) {
+  const { about, code, values } = message;
+  const said = isKnownCode(code) ? filled(spoken.messages[code] ?? code, values) : inLanguage(filled(code, values, asWritten));
   return about ? `${isOwn(about) ? about : inLanguage(about)}: ${said}` : said;
 }
 
-function valueInLanguage(value, form = "") {
-  if (Array.isArray(value)) return value.map((each) => valueInLanguage(each)).join(form || ", ");
+// A template without words is the same in all languages.
+function isKnownCode(code) { return code in spoken.messages || !/[A-Za-z]{2}/.test(code.replace(FIELD, "")); }
+
+function filled(template, values, put = (value) => (isOwn(value) ? value : inLanguage(value))) {
+  return template.replace(FIELD, (field, name, form, at) => {
+    const quoted = /["„“]$/.test(template.slice(0, at)) && /^["“”]/.test(template.slice(at + field.length));
+    return valueIn(values[name], form, quoted ? asWritten : put);
+  });
+}
+
+function valueIn(value, form = "", put = asWritten) {
+  if (Array.isArray(value)) return value.map((each) => valueIn(each, "", put)).join(form || ", ");
   if (form.includes("|")) return form.split("|")[value === "1" ? 0 : 1];
-  const said = typeof value === "object" ? messageInLanguage(value) : isOwn(value) ? value : inLanguage(value);
+  const said = typeof value !== "object" ? put(value) : put === asWritten ? filled(value.code, value.values, put) : messageInLanguage(value);
   return form === "capital" ? capital(said) : form === "small" ? said[0].toLowerCase() + said.slice(1) : said;
 }
 
-// The text of an element that holds template and values; a template without words is the same in all.
+// The text of an element that holds template and values.
 function elementInLanguage(element, text) {
   const message = element.dataset.message && JSON.parse(element.dataset.message);
-  const known = message && (message.code in spoken.messages || !/[A-Za-z]{2}/.test(message.code.replace(/\{\w+[^}]*\}/g, "")));
-  return known ? messageInLanguage(message).replaceAll(" %", "\u00a0%") : inLanguage(text);
+  return message && isKnownCode(message.code) ? messageInLanguage(message).replaceAll(" %", "\u00a0%") : inLanguage(text);
 }
 
 function speakAll(root) {

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core.files import whole_file
-from underfoot.core.units import SYSTEMS
+from underfoot.core.unit_text import SYSTEMS
 
 FOLDER = files("underfoot.app.text")
 LANGUAGE_VARIABLE = "UNDERFOOT_LANGUAGE"

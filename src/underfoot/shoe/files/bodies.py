@@ -238,9 +238,11 @@ def _other(name: str) -> bool:
 
 def _no_outsole(names: list[str], where: str) -> DataError:
     return DataError(
-        f"by its name no body of the file is an outsole: {_listed(names)}",
+        Message("by its name no body of the file is an outsole: {names}", names=_listed(names)),
         where=where,
-        remedy=f'Export the outsole; or choose a body by its name, --solid "{names[0]}"',
+        remedy=Message(
+            'Export the outsole; or choose a body by its name, --solid "{name}"', name=names[0]
+        ),
     )
 
 

@@ -189,7 +189,9 @@ def _meshed(path: Path, kind: str, unit: str) -> Mesh:
         shape = geometry.shape
         if not list(shape.faces):
             raise DataError(
-                f"the {kind} file holds no surfaces (only curves, points or nothing)",
+                Message(
+                    "the {kind} file holds no surfaces (only curves, points or nothing)", kind=kind
+                ),
                 where=str(path),
                 remedy="Export the outsole as a solid",
             )
@@ -235,7 +237,9 @@ def _meshed(path: Path, kind: str, unit: str) -> Mesh:
                 )
     if triangles.shape[0] == 0:
         raise DataError(
-            f"the surfaces of the {kind} file could not be turned into triangles",
+            Message(
+                "the surfaces of the {kind} file could not be turned into triangles", kind=kind
+            ),
             where=str(path),
             remedy="Export the outsole as STL from the design software",
         )
@@ -257,7 +261,11 @@ def _geometry(occ: Any, path: Path, kind: str) -> Any:
             return occ.OCCGeometry(str(known))
         except Exception as error:  # netgen raises one class of its own for everything
             raise DataError(
-                f"the {kind} file cannot be read: no geometry in it, or it is cut short or damaged",
+                Message(
+                    "the {kind} file cannot be read: no geometry in it, or it is cut short "
+                    "or damaged",
+                    kind=kind,
+                ),
                 where=str(path),
                 remedy="Export the outsole again as STEP AP214 or AP242",
             ) from error

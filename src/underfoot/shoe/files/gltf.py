@@ -54,7 +54,9 @@ class _Asset:
         try:
             self.json: dict[str, Any] = json.loads(data)
         except (ValueError, RecursionError) as error:
-            raise self._error(f"the GLB file's description is no JSON ({error})") from error
+            raise self._error(
+                Message("the GLB file's description is no JSON ({error})", error=error)
+            ) from error
         self.format = "GLB" if self.chunk is not None or path.suffix == ".glb" else "GLTF"
         self.unmet: dict[Unmet, None] = {}
         self.faces = 0
@@ -66,9 +68,21 @@ class _Asset:
             roots = self._roots()
             bodies = [body for n in roots for body in self._node(n, np.eye(4), (), True, ())]
         except KeyError as error:
-            raise self._error(f"the {self.format} file lacks {error}, which it needs") from error
+            raise self._error(
+                Message(
+                    "the {format} file lacks {error}, which it needs",
+                    format=self.format,
+                    error=error,
+                )
+            ) from error
         except (IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
-            raise self._error(f"the {self.format} file contradicts itself ({error})") from error
+            raise self._error(
+                Message(
+                    "the {format} file contradicts itself ({error})",
+                    format=self.format,
+                    error=error,
+                )
+            ) from error
         unit, remarks = self._unit(bodies)
         return MeshFile(self.format, bodies, unit, tuple(self.unmet), remarks)
 
@@ -76,10 +90,16 @@ class _Asset:
         version, length = np.frombuffer(data, "<u4", 2, 4) if len(data) >= 20 else (0, 0)
         if version != 2:
             raise self._error(
-                f"it is GLB of version {version}", "Export it as glTF 2.0", allowed="version 2"
+                Message("it is GLB of version {version}", version=version),
+                "Export it as glTF 2.0",
+                allowed="version 2",
             )
         if length > len(data):
-            raise self._error(f"it is cut short: {len(data)} bytes of {length}")
+            raise self._error(
+                Message(
+                    "it is cut short: {count} bytes of {length}", count=len(data), length=length
+                )
+            )
         place, text = 12, b""
         while place + 8 <= length:
             size, kind = (int(n) for n in np.frombuffer(data, "<u4", 2, place))
@@ -98,14 +118,16 @@ class _Asset:
         version = str(self.json.get("asset", {}).get("version", ""))
         if not version.startswith("2."):
             raise self._error(
-                f'it is glTF of version "{version}"', "Export it as glTF 2.0", allowed="version 2"
+                Message('it is glTF of version "{version}"', version=version),
+                "Export it as glTF 2.0",
+                allowed="version 2",
             )
         required = set(self.json.get("extensionsRequired", ()))
         for name in sorted(required | set(self.json.get("extensionsUsed", ()))):
             # where packing is no demand, the numbers lie there unpacked too
             done = name not in required if name in _PACKED else name in _DONE
             if not done and not name.startswith(_LOOKS):
-                self._unmet(f"extension {name}", name in required)
+                self._unmet(Message("extension {name}", name=name), name in required)
 
     def _unmet(self, what: str, required: bool) -> None:
         packed = any(name in what for name in _PACKED)
@@ -126,7 +148,9 @@ class _Asset:
         self, number: int, place: Array, names: tuple[str, ...], shown: bool, above: tuple[int, ...]
     ) -> Iterator[FileBody]:
         if number in above:
-            raise self._error(f"its nodes hold each other: {number} is within itself")
+            raise self._error(
+                Message("its nodes hold each other: {number} is within itself", number=number)
+            )
         node = self.json["nodes"][number]
         extensions = node.get("extensions", {})
         place = place @ _local(node)
@@ -142,7 +166,11 @@ class _Asset:
                     self.faces += faces.shape[0]
                     if self.faces > MOST_UNFOLDED:
                         raise self._error(
-                            f"the {self.format} file unfolds to more than {MOST_UNFOLDED} faces",
+                            Message(
+                                "the {format} file unfolds to more than {most} faces",
+                                format=self.format,
+                                most=MOST_UNFOLDED,
+                            ),
                             "Export the outsole alone, once",
                         )
                     own = name or str(mesh.get("name", ""))
@@ -185,7 +213,9 @@ class _Asset:
             first = np.full(max(0, order.size - 2), order[0] if order.size else 0)
             faces = np.stack([order[1:-1], order[2:], first], axis=1)
         else:
-            raise self._error(f"a primitive has the mode {mode}", allowed="0 to 6")
+            raise self._error(
+                Message("a primitive has the mode {mode}", mode=mode), allowed="0 to 6"
+            )
         return vertices, faces
 
     def _unpacked(self, packed: dict[str, Any], shape: dict[str, Any]) -> tuple[Array, Any]:
@@ -196,10 +226,16 @@ class _Asset:
             own = mesh.get_attribute_by_unique_id(packed["attributes"]["POSITION"])
             vertices, faces = np.asarray(own["data"]), np.asarray(mesh.faces)
         except Exception as error:  # whatever its parser meets
-            raise self._error(f"its mesh packed by Draco is damaged ({error})") from error
+            raise self._error(
+                Message("its mesh packed by Draco is damaged ({error})", error=error)
+            ) from error
         if vertices.shape[0] != shape["count"]:
             raise self._error(
-                f"Draco unpacks {vertices.shape[0]} vertices, {shape['count']} are promised"
+                Message(
+                    "Draco unpacks {shape} vertices, {count} are promised",
+                    shape=vertices.shape[0],
+                    count=shape["count"],
+                )
             )
         if shape.get("normalized"):
             vertices = _normalised(vertices)
@@ -222,7 +258,7 @@ class _Asset:
         kind = np.dtype(_COMPONENTS[accessor["componentType"]])
         width, count = _WIDTHS[accessor["type"]], accessor["count"]
         if not 0 <= count <= 3 * MOST_UNFOLDED:
-            raise self._error(f"an accessor promises {count} values")
+            raise self._error(Message("an accessor promises {count} values", count=count))
         values = np.zeros((count, width), dtype=kind)
         if "bufferView" in accessor:
             values = self._rows(accessor, kind, width, count)
@@ -253,7 +289,7 @@ class _Asset:
         for name in _PACKED:  # its own numbers unpacked, unless they are a stand-in without bytes
             stand_in = buffer.get("extensions", {}).get(name, {}).get("fallback")
             if stand_in and "uri" not in buffer and name in accessor.get("extensions", {}):
-                self._unmet(f"extension {name}", required=True)
+                self._unmet(Message("extension {name}", name=name), required=True)
         begin = accessor.get("byteOffset", 0)
         data = self._buffer(accessor["buffer"])
         if begin < 0 or begin + accessor["byteLength"] > data.size:
@@ -275,7 +311,7 @@ class _Asset:
         beside = self.path.parent / unquote(uri)
         if not beside.is_file():
             raise self._error(
-                f'the file of its numbers "{uri}" is not there',
+                Message('the file of its numbers "{uri}" is not there', uri=uri),
                 "Put it beside the file, or export GLB, which holds all in one",
             )
         return np.fromfile(beside, dtype=np.uint8)

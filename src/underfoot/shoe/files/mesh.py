@@ -136,7 +136,11 @@ def assemble_mesh(file: MeshFile, where: str) -> Mesh:
     if required:
         names = ", ".join(dict.fromkeys(each.what for each in required))
         raise DataError(
-            f"the {file.format} file needs {names}, which is not read: its shape would be another",
+            Message(
+                "the {format} file needs {names}, which is not read: its shape would be another",
+                format=file.format,
+                names=names,
+            ),
             where=where,
             remedy=required[0].remedy,
         )
@@ -145,12 +149,16 @@ def assemble_mesh(file: MeshFile, where: str) -> Mesh:
     left = [body for body in filled if not (body.visible and body.kind == "model")]
     if left and not shown:
         raise DataError(
-            f"the {file.format} file shows no model: {_kinds(left)}",
+            Message(
+                "the {format} file shows no model: {kinds}", format=file.format, kinds=_kinds(left)
+            ),
             where=where,
             remedy="Make the outsole visible, or a part of the model, and export again",
         )
     if not shown:
-        raise DataError(f"the {file.format} file holds no faces", where=where)
+        raise DataError(
+            Message("the {format} file holds no faces", format=file.format), where=where
+        )
     for body in shown:
         _check(body, file.format, where)
     origin, remarks = _origin(shown, where)
@@ -182,7 +190,14 @@ def _check(body: FileBody, kind: str, where: str) -> None:
     if faces is not None and (faces.min() < 0 or faces.max() >= count):
         bad = int(faces.max()) if faces.max() >= count else int(faces.min())
         raise DataError(
-            f"a face of the {kind} file names vertex {bad} of {count}", where=where, remedy=AGAIN
+            Message(
+                "a face of the {kind} file names vertex {bad} of {count}",
+                kind=kind,
+                bad=bad,
+                count=count,
+            ),
+            where=where,
+            remedy=AGAIN,
         )
 
 
@@ -241,7 +256,9 @@ def _origin(bodies: Sequence[FileBody], where: str) -> tuple[Array, list[Message
         )
         if step > _TOO_COARSE * size:
             raise DataError(
-                f"{steps}: so far from the origin single precision loses the tread",
+                Message(
+                    "{steps}: so far from the origin single precision loses the tread", steps=steps
+                ),
                 where=where,
                 remedy="Move it to the origin in the program it comes from, and export again",
             )

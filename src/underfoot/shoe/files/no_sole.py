@@ -6,6 +6,7 @@ import numpy as np
 
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 
 from .._kernels.covering_discs import local_width
 from .._kernels.regions import pieces, without_holes
@@ -88,10 +89,13 @@ def check_tread(shape: Shape, has_tread: bool, where: str) -> None:
     """
     if not has_tread and shape.thickness > THICK:
         raise DataError(
-            f"it has no tread and is {shape.thickness * 1e3:.3g} mm thick, as a midsole or a block "
-            "is, and both its sides look alike",
+            Message(
+                "it has no tread and is {thickness:.3g} mm thick, as a midsole or a block "
+                "is, and both its sides look alike",
+                thickness=shape.thickness * 1000.0,
+            ),
             where=where,
-            allowed=f"a tread, or at most {THICK * 1e3:g} mm",
+            allowed=Message("a tread, or at most {thick:g} mm", thick=THICK * 1000.0),
             remedy='If it is an outsole without tread, state its ground side: --down "-z" (in a '
             'case: down = "-z")',
         )
@@ -131,10 +135,14 @@ def check_carried(
 
 def _no_sole(reason: str, where: str) -> DataError:
     return DataError(
-        f"this is no sole: {reason}",
+        Message("this is no sole: {reason}", reason=reason),
         where=where,
-        allowed=f"a sole or a piece of one, {NARROWEST * 1e3:.0f} to {WIDEST * 1e3:.0f} mm wide, "
-        "that stands on a floor",
+        allowed=Message(
+            "a sole or a piece of one, {narrowest:.0f} to {widest:.0f} mm wide, "
+            "that stands on a floor",
+            narrowest=NARROWEST * 1000.0,
+            widest=WIDEST * 1000.0,
+        ),
         remedy="Check that the file holds the outsole, its unit and where the ground is (--unit, "
         "--down)",
     )

@@ -118,7 +118,11 @@ def outsole_from_mesh(
     if len(matching) != 1:
         feet = " and ".join(shoe.foot or "not determined" for shoe in shoes)
         raise DataError(
-            f"the {chosen.side} shoe of the pair can't be told: the feet are {feet}",
+            Message(
+                "the {side} shoe of the pair can't be told: the feet are {feet}",
+                side=chosen.side,
+                feet=feet,
+            ),
             where=where,
             remedy="Export one shoe alone",
         )
@@ -344,7 +348,7 @@ def _region(
     piece = length <= HEEL[1]
     if chosen.region == "forepart" and piece:
         raise InputError(
-            f"a heel piece of {length * 1e3:.4g} mm has no forepart",
+            Message("a heel piece of {length:.4g} mm has no forepart", length=length * 1000.0),
             where="outsole.region",
             allowed='"heel" or "whole"',
         )
@@ -353,15 +357,23 @@ def _region(
         extent = length if piece else SHARES[chosen.region] * length
     if extent > length * (1 + 1e-9):
         raise InputError(
-            f"the region is {extent * 1e3:.4g} mm long, the sole only {length * 1e3:.4g} mm",
+            Message(
+                "the region is {extent:.4g} mm long, the sole only {length:.4g} mm",
+                extent=extent * 1000.0,
+                length=length * 1000.0,
+            ),
             where="outsole.region_length",
-            allowed=f"at most {length * 1e3:.4g} mm",
+            allowed=Message("at most {most:.4g} mm", most=length * 1000.0),
         )
     count = max(1, round(extent / spacing))
     cut = slice(height.shape[0] - count, None) if chosen.region == "forepart" else slice(0, count)
     if not np.isfinite(height[cut]).any():
         raise InputError(
-            f"nothing of the sole of {where} lies in the {chosen.region} region",
+            Message(
+                "nothing of the sole of {where} lies in the {region} region",
+                where=where,
+                region=chosen.region,
+            ),
             where="outsole.region",
             remedy="Check forward and region_length",
         )

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from .gltf import strip_faces
 from .mesh import AGAIN, FileBody, MeshFile
@@ -59,7 +60,9 @@ def read_ply(path: Path) -> MeshFile:
             else:
                 columns[element.name], place = _of_bytes(data, place, element, order)
     except (ValueError, IndexError, OverflowError) as error:
-        raise DataError(f"the PLY file is not read ({error})", where=where, remedy=AGAIN) from error
+        raise DataError(
+            Message("the PLY file is not read ({error})", error=error), where=where, remedy=AGAIN
+        ) from error
     vertex = columns.get("vertex", {})
     if not {"x", "y", "z"} <= set(vertex):
         raise DataError("the PLY file has no vertices with x, y and z", where=where, remedy=AGAIN)
@@ -109,7 +112,9 @@ def _heading(data: bytes, where: str) -> tuple[str, list[_Element], int]:
                 _TYPES.get(words[1])
             ]
             if None in kinds or len(kinds) > 2:
-                raise DataError(f'the PLY heading has "{line}"', where=where, remedy=AGAIN)
+                raise DataError(
+                    Message('the PLY heading has "{line}"', line=line), where=where, remedy=AGAIN
+                )
             *length, kind = (str(each) for each in kinds)
             elements[-1].properties.append(_Property(words[-1], kind, length[0] if length else ""))
     if order is None:

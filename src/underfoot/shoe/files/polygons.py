@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import DataError
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 
 Ints = NDArray[np.integer]
 
@@ -38,7 +39,12 @@ def triangulate_polygons(
     if corners.size and (corners.min() < 0 or corners.max() >= vertices.shape[0]):
         bad = corners[(corners < 0) | (corners >= vertices.shape[0])][0]
         raise DataError(
-            f"a face of the {kind} file names vertex {bad} of {vertices.shape[0]}, counted from 0",
+            Message(
+                "a face of the {kind} file names vertex {bad} of {shape}, counted from 0",
+                kind=kind,
+                bad=bad,
+                shape=vertices.shape[0],
+            ),
             where=where,
             remedy="It may be cut short or damaged: export the outsole again",
         )
@@ -117,7 +123,11 @@ def _within(vertices: Array, rings: Ints, numbers: Ints, where: str) -> tuple[In
         doubled = _shoelace(points[pieces])
         if not sound or abs(np.abs(doubled).sum() - own) > _SAME_AREA * own:
             raise DataError(
-                f"face {number + 1}, a polygon of {ring.size} corners, crosses itself",
+                Message(
+                    "face {number}, a polygon of {size} corners, crosses itself",
+                    number=number + 1,
+                    size=ring.size,
+                ),
                 where=where,
                 allowed="polygons whose sides meet at corners alone",
                 remedy="Mend it in the modelling program, or export triangles",

@@ -112,8 +112,12 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
         )
     if content is None:
         raise DataError(
-            f"the file is named {path.suffix} but holds no {promised}: it begins with "
-            f"{_first_characters(head)}",
+            Message(
+                "the file is named {suffix} but holds no {format}: it begins with {beginning}",
+                suffix=path.suffix,
+                format=promised,
+                beginning=_first_characters(head),
+            ),
             where=str(path),
             remedy="Export the outsole again as STL or STEP",
         )
@@ -122,7 +126,9 @@ def read_mesh(path: Path | str, unit: str = "auto") -> Mesh:
         raise DataError("the file holds no faces", where=str(path))
     bad = np.count_nonzero(~np.isfinite(mesh.triangles).all(axis=(1, 2)))
     if bad:
-        raise DataError(f"a corner of {bad} faces is no number", where=str(path), remedy=AGAIN)
+        raise DataError(
+            Message("a corner of {bad} faces is no number", bad=bad), where=str(path), remedy=AGAIN
+        )
     if content != promised:
         remark = Message(
             "The file is named {ending} but holds {content}; it was read as {content}.",
@@ -155,10 +161,14 @@ def _read(path: Path, content: str, unit: str) -> Mesh:
 
 def _head(path: Path) -> bytes:
     if path.is_dir():
-        raise InputError(f"{path} is a folder", where=str(path), allowed="a file")
+        raise InputError(
+            Message("{path} is a folder", path=path), where=str(path), allowed="a file"
+        )
     if path.exists() and not path.is_file():
         raise InputError(
-            f"{path} is no regular file (a pipe or a device)", where=str(path), allowed="a file"
+            Message("{path} is no regular file (a pipe or a device)", path=path),
+            where=str(path),
+            allowed="a file",
         )
     try:
         with path.open("rb") as stream:
@@ -166,10 +176,15 @@ def _head(path: Path) -> bytes:
     except FileNotFoundError as error:
         near = [other.name for other in path.parent.glob("*")] if path.parent.is_dir() else []
         raise InputError(
-            f"there is no file {path}", where=str(path), nearest=nearest_match(path.name, near)
+            Message("there is no file {path}", path=path),
+            where=str(path),
+            nearest=nearest_match(path.name, near),
         ) from error
     except OSError as error:
-        raise DataError(f"the file cannot be read ({error.strerror})", where=str(path)) from error
+        raise DataError(
+            Message("the file cannot be read ({strerror})", strerror=error.strerror),
+            where=str(path),
+        ) from error
     if not head:
         raise DataError("the file is empty", where=str(path), remedy="Export or copy it again")
     return head
@@ -190,7 +205,7 @@ def _format_of(head: bytes, path: Path) -> str | None:
     for beginning, name in _FOREIGN.items():
         if head.startswith(beginning):
             raise DataError(
-                f"this is a {name} file",
+                Message("this is a {name} file", name=name),
                 where=str(path),
                 allowed=FORMATS,
                 remedy="Export the outsole as STEP, or a scan as STL",
@@ -236,7 +251,7 @@ def _zipped(path: Path) -> str:
         return "3MF"
     shown = ", ".join(names[:5]) + (" ..." if len(names) > 5 else "")
     raise DataError(
-        f"the file is a ZIP archive that holds {shown or 'nothing'}",
+        Message("the file is a ZIP archive that holds {shown}", shown=shown or "nothing"),
         where=str(path),
         remedy="Unpack it and give the outsole's own file",
     )

@@ -10,6 +10,7 @@ import numpy as np
 from underfoot.core import DataError
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from .mesh import MOST_UNFOLDED, FileBody, MeshFile, Unmet
 
@@ -50,7 +51,9 @@ def read_rhino(path: Path) -> MeshFile:
     try:
         model = rhino.File3dm.Read(str(path))
     except Exception as error:
-        raise DataError(f"the 3DM file cannot be read ({error})", where=str(path)) from error
+        raise DataError(
+            Message("the 3DM file cannot be read ({error})", error=error), where=str(path)
+        ) from error
     if model is None:
         raise DataError(
             "the 3DM file cannot be read: it is cut short or damaged",
@@ -108,7 +111,7 @@ class _Reader:
             self.faces += faces.shape[0]
             if self.faces > MOST_UNFOLDED:
                 raise DataError(
-                    f"the 3DM file unfolds to more than {MOST_UNFOLDED} faces",
+                    Message("the 3DM file unfolds to more than {most} faces", most=MOST_UNFOLDED),
                     where=self.where,
                     remedy="Export the outsole alone, once",
                 )

@@ -61,7 +61,11 @@ class FileSettings:
                 raise unknown_name(name, str(getattr(self, name)), known, where=f"outsole.{name}")
         if {self.down, self.forward} <= {*DIRECTIONS} and self.down[1] == self.forward[1]:
             raise InputError(
-                f"down {self.down} and forward {self.forward} lie on one axis",
+                Message(
+                    "down {down} and forward {forward} lie on one axis",
+                    down=self.down,
+                    forward=self.forward,
+                ),
                 where="outsole.forward",
                 allowed="two different axes of the file",
             )
@@ -69,11 +73,13 @@ class FileSettings:
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0):
                 raise InputError(
-                    f"{value:g} is not positive", where=f"outsole.{name}", allowed="above 0"
+                    Message("{value:g} is not positive", value=value),
+                    where=f"outsole.{name}",
+                    allowed="above 0",
                 )
         if self.spacing < 2e-5:
             raise InputError(
-                f"{self.spacing * 1e3:g} mm is finer than any tread",
+                Message("{spacing:g} mm is finer than any tread", spacing=self.spacing * 1000.0),
                 where="outsole.spacing",
                 allowed="0.02 mm or more",
             )
@@ -120,7 +126,7 @@ def length_unit(
             raise InputError(
                 f"{by} the sole is {_length(length * unit)} long",
                 where=where,
-                allowed=f"20 mm to {_length(longest)}",
+                allowed=Message("20 mm to {length}", length=_length(longest)),
                 remedy=_suggestion(length, width),
             )
         return unit, Message(
@@ -130,7 +136,11 @@ def length_unit(
     if not likely:
         lengths = ", ".join(f"{_length(length * unit)} in {name}" for name, unit in UNITS.items())
         raise InputError(
-            f"no unit makes it a sole: its length of {length:.4g} would be {lengths}",
+            Message(
+                "no unit makes it a sole: its length of {length:.4g} would be {lengths}",
+                length=length,
+                lengths=lengths,
+            ),
             where=where,
             allowed="110 to 350 mm for a sole or forepart, 40 to 110 mm for a heel piece",
             remedy="State the unit if the length is right, or check that the file holds one "

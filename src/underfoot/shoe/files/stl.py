@@ -56,7 +56,11 @@ def read_stl(path: Path) -> MeshFile:
     whole = (size - _HEADER) // _RECORD
     if promised > whole:
         raise DataError(
-            f"the file is cut short: it promises {promised} faces and holds {max(whole, 0)}",
+            Message(
+                "the file is cut short: it promises {promised} faces and holds {count}",
+                promised=promised,
+                count=max(whole, 0),
+            ),
             where=str(path),
             remedy="Export or copy it again",
         )
@@ -99,7 +103,9 @@ def _text(path: Path) -> MeshFile:
     try:
         numbers = np.array(corners, dtype="S").astype(np.float64)
     except ValueError as error:
-        raise DataError(f"a corner is no number ({error})", where=str(path)) from error
+        raise DataError(
+            Message("a corner is no number ({error})", error=error), where=str(path)
+        ) from error
     numbers = numbers.reshape(-1, 3)
     remarks = ()
     if not re.search(rb"\bendsolid\b", data[-400:], re.IGNORECASE):
@@ -107,8 +113,11 @@ def _text(path: Path) -> MeshFile:
         sound = soundness(soup, str(path))
         if not sound.closed or sound.crowded_edges:
             raise DataError(
-                f"the text ends after {facets} facets without the end mark endsolid, and they "
-                "leave its surface open: it is cut short",
+                Message(
+                    "the text ends after {facets} facets without the end mark endsolid, and "
+                    "they leave its surface open: it is cut short",
+                    facets=facets,
+                ),
                 where=str(path),
                 remedy="Export or copy it again; where no facet is missing, add a last line "
                 "endsolid",

@@ -90,7 +90,11 @@ def read_obj(path: Path) -> MeshFile:
     if corners.size and corners.min() < 0:
         bad = int(np.argmin(corners))
         raise DataError(
-            f"a face names vertex {given[bad]}, and {known[bad]} are given before it",
+            Message(
+                "a face names vertex {given}, and {known} are given before it",
+                given=given[bad],
+                known=known[bad],
+            ),
             where=where,
             remedy=AGAIN,
         )
@@ -132,7 +136,9 @@ def _rows(lines: list[bytes], widths: set[int], what: str, where: str) -> Array:
             raise DataError(
                 f'{what} {number} is "{shown}"{comma}',
                 where=where,
-                allowed=f"{' or '.join(str(n) for n in sorted(widths))} numbers",
+                allowed=Message(
+                    "{widths} numbers", widths=" or ".join(str(n) for n in sorted(widths))
+                ),
                 remedy=AGAIN,
             )
     raise AssertionError
@@ -157,13 +163,17 @@ def _whole(text: bytes, count: int, lines: list[bytes], where: str) -> NDArray[n
     for number, line in enumerate(lines, start=1):
         if not all(re.fullmatch(rb"[-+]?\d+", word) for word in line.split()):
             shown = line.strip()[:60].decode("latin-1")
-            raise DataError(f'face {number} is "{shown}"', where=where, remedy=AGAIN)
+            raise DataError(
+                Message('face {number} is "{shown}"', number=number, shown=shown),
+                where=where,
+                remedy=AGAIN,
+            )
     raise DataError("a face names no whole number", where=where, remedy=AGAIN)
 
 
 def _without_faces(kind: str, content: str, where: str) -> DataError:
     return DataError(
-        f"the {kind} file holds {content}",
+        Message("the {kind} file holds {content}", kind=kind, content=content),
         where=where,
         remedy="Mesh the scan in the scanner's software and export it as STL or PLY",
     )
@@ -196,8 +206,14 @@ def read_off(path: Path) -> MeshFile:
         rows, polygons = lines[1 : 1 + vertex_count], lines[1 + vertex_count :][:face_count]
         if len(polygons) < face_count or min(vertex_count, face_count) < 0:
             raise DataError(
-                f"the OFF file promises {vertex_count} vertices and {face_count} faces, its lines "
-                f"hold {len(rows)} and {len(polygons)}",
+                Message(
+                    "the OFF file promises {vertices} vertices and {faces} faces, its lines "
+                    "hold {vertex_lines} and {face_lines}",
+                    vertices=vertex_count,
+                    faces=face_count,
+                    vertex_lines=len(rows),
+                    face_lines=len(polygons),
+                ),
                 where=where,
                 remedy=AGAIN,
             )
@@ -209,7 +225,9 @@ def read_off(path: Path) -> MeshFile:
             raise ValueError("a face has fewer corners than it says")
         flat = np.array([word for each in corners for word in each], dtype="S").astype(np.int64)
     except (ValueError, IndexError, OverflowError) as error:
-        raise DataError(f"the OFF file is not read ({error})", where=where, remedy=AGAIN) from error
+        raise DataError(
+            Message("the OFF file is not read ({error})", error=error), where=where, remedy=AGAIN
+        ) from error
     if not face_count:
         raise _without_faces("OFF", f"{vertex_count} points and no faces", where)
     if kind[4]:

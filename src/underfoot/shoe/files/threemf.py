@@ -14,6 +14,7 @@ import numpy as np
 from underfoot.core import DataError, nearest_match
 from underfoot.core.arrays import Array
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from .._kernels.elements import COMPLETE, MISSING, NO_NUMBER, OTHER, element_numbers
 from .mesh import AGAIN, MOST_UNFOLDED, FileBody, Kind, MeshFile, Unmet
@@ -150,7 +151,7 @@ class _Package:
         asked = [(self._key(item, start, "item"), item) for item in items]
         if sum(self._count(key, ()) for key, _ in asked) > MOST_UNFOLDED:
             raise self._error(
-                f"the 3MF file unfolds to more than {MOST_UNFOLDED} faces",
+                Message("the 3MF file unfolds to more than {most} faces", most=MOST_UNFOLDED),
                 "Export the outsole alone, once",
             )
         for key, item in asked:
@@ -160,7 +161,10 @@ class _Package:
         stated = {unit: part for part, unit in self.units.items()}
         if len(stated) > 1:
             words = " and ".join(f'"{unit}" in {part}' for unit, part in stated.items())
-            raise self._error(f"its parts contradict each other on the unit: {words}", _WITHOUT)
+            raise self._error(
+                Message("its parts contradict each other on the unit: {wording}", wording=words),
+                _WITHOUT,
+            )
         return MeshFile("3MF", bodies, UNITS[self.units[start]], tuple(self.unmet))
 
     def _start(self) -> str:
@@ -183,7 +187,7 @@ class _Package:
         part = joined.casefold()
         if part not in self.names:
             raise self._error(
-                f'the 3MF package has no part "{target}", which it names',
+                Message('the 3MF package has no part "{target}", which it names', target=target),
                 nearest=nearest_match(part, self.names),
             )
         return part
@@ -194,19 +198,31 @@ class _Package:
             entry.file_size > _SMALL and entry.file_size > MOST_PACKED * entry.compress_size
         ):
             raise self._error(
-                f"its part {name} unpacks from {entry.compress_size / 1e6:.3g} to "
-                f"{entry.file_size / 1e6:.4g} MB",
+                Message(
+                    "its part {name} unpacks from {compress_size:.3g} to {file_size:.4g} MB",
+                    name=name,
+                    compress_size=entry.compress_size / 1000000.0,
+                    file_size=entry.file_size / 1000000.0,
+                ),
                 "Export a coarser mesh (0.1 mm is fine enough), or as binary STL",
-                allowed=f"{MOST_INFLATED / 1e6:.0f} MB, and {MOST_PACKED} times its size",
+                allowed=Message(
+                    "{most:.0f} MB, and {times} times its size",
+                    most=MOST_INFLATED / 1000000.0,
+                    times=MOST_PACKED,
+                ),
             )
         try:
             return self.archive.read(entry)
         # zipfile raises NotImplementedError of a packing that it does not know, RuntimeError of a
         # password
         except (zipfile.BadZipFile, OSError, EOFError, NotImplementedError, RuntimeError) as error:
-            raise self._error(f"its part {name} cannot be unpacked ({error})") from error
+            raise self._error(
+                Message("its part {name} cannot be unpacked ({error})", name=name, error=error)
+            ) from error
         except Exception as error:  # zlib and lzma have errors of their own
-            raise self._error(f"its part {name} is damaged ({error})") from error
+            raise self._error(
+                Message("its part {name} is damaged ({error})", name=name, error=error)
+            ) from error
 
     def _xml(self, name: str, data: bytes | None = None) -> Any:
         etree = optional_module("lxml.etree", "cad", "Reading 3MF")
@@ -216,9 +232,13 @@ class _Package:
         try:
             root = etree.fromstring(self._data(name) if data is None else data, parser)
         except etree.XMLSyntaxError as error:
-            raise self._error(f"its part {name} is no XML ({error})") from error
+            raise self._error(
+                Message("its part {name} is no XML ({error})", name=name, error=error)
+            ) from error
         if root.getroottree().docinfo.doctype:
-            raise self._error(f"its part {name} has a document type, which 3MF forbids")
+            raise self._error(
+                Message("its part {name} has a document type, which 3MF forbids", name=name)
+            )
         return root
 
     def _root(self, part: str) -> Any:
@@ -236,11 +256,13 @@ class _Package:
         bare = data if b"<![CDATA[" in data else b"".join(self._without_lists(data, lists, name))
         root = self.roots[part] = self._xml(name, bare)
         if root.tag != f"{{{_CORE}}}model":
-            raise self._error(f"its part {name} is no 3MF model but {root.tag}")
+            raise self._error(
+                Message("its part {name} is no 3MF model but {tag}", name=name, tag=root.tag)
+            )
         unit = self.units[part] = root.get("unit", "millimeter")
         if unit not in UNITS:
             raise self._error(
-                f'"{unit}" is no unit of the 3MF format',
+                Message('"{unit}" is no unit of the 3MF format', unit=unit),
                 allowed=", ".join(UNITS),
                 nearest=nearest_match(unit, UNITS),
             )
@@ -248,9 +270,11 @@ class _Package:
         for each in root.iterfind(f"{{{_CORE}}}resources/{{{_CORE}}}object"):
             key = part, each.get("id", "")
             if not key[1]:
-                raise self._error(f"an object of {name} has no id")
+                raise self._error(Message("an object of {name} has no id", name=name))
             if key in self.objects:
-                raise self._error(f"two objects of {name} have the id {key[1]}")
+                raise self._error(
+                    Message("two objects of {name} have the id {key}", name=name, key=key[1])
+                )
             self.objects[key] = self._object(each, part, lists)
         return root
 
@@ -301,7 +325,13 @@ class _Package:
         tag, names = _LISTS[what]
         whole = mesh.find(f"{{{_CORE}}}{what}")
         if whole is None:
-            raise self._error(f"a mesh of {part} has no {what}, which the format requires")
+            raise self._error(
+                Message(
+                    "a mesh of {part} has no {what}, which the format requires",
+                    part=part,
+                    what=what,
+                )
+            )
         taken = whole.find(f"{{{_CORE}}}list")
         if taken is not None:
             return lists[int(taken.get("n"))]
@@ -322,10 +352,13 @@ class _Package:
                 space = root.nsmap.get(prefix)
                 if space is None:
                     raise self._error(
-                        f'the file requires an extension "{prefix}" and names no such namespace'
+                        Message(
+                            'the file requires an extension "{prefix}" and names no such namespace',
+                            prefix=prefix,
+                        )
                     )
                 if space not in _DONE:
-                    self._unmet(f"the 3MF extension {_title(space)}", required)
+                    self._unmet(Message("the 3MF extension {title}", title=_title(space)), required)
 
     def _unmet(self, what: str, required: bool) -> None:
         self.unmet[Unmet(what, required, _WITHOUT)] = None
@@ -334,7 +367,8 @@ class _Package:
         known = each.get("type", "model")
         if known not in _TYPES:
             raise self._error(
-                f'object {each.get("id")} is of the type "{known}"', allowed=", ".join(_TYPES)
+                Message('object {each} is of the type "{known}"', each=each.get("id"), known=known),
+                allowed=", ".join(_TYPES),
             )
         kind: Kind | None = _TYPES[known]
         for said in each.iterfind(f".//{{{_CORE}}}metadata"):
@@ -352,10 +386,14 @@ class _Package:
             numbers = self._listed(mesh, "triangles", lists, part)
             faces = numbers.astype(np.int32)
             if not np.array_equal(faces, numbers):
-                raise self._error(f"a triangle of {part} names a vertex by no whole number")
+                raise self._error(
+                    Message("a triangle of {part} names a vertex by no whole number", part=part)
+                )
             spaces = {str(child.tag).rpartition("}")[0][1:] for child in mesh}
             for space in sorted(spaces - set(_DONE)):
-                self._unmet(f"the 3MF extension {_title(space)}", required=False)
+                self._unmet(
+                    Message("the 3MF extension {title}", title=_title(space)), required=False
+                )
         elif parts is not None:
             for child in parts.iterfind(f"{{{_CORE}}}component"):
                 placed.append((self._key(child, part, "component"), self._transform(child)))
@@ -371,7 +409,13 @@ class _Package:
     def _key(self, each: Any, part: str, what: str) -> Key:
         number = each.get("objectid")
         if number is None:
-            raise self._error(f"{what} of {part} has no objectid, which the format requires")
+            raise self._error(
+                Message(
+                    "{what} of {part} has no objectid, which the format requires",
+                    what=what,
+                    part=part,
+                )
+            )
         path = each.get(f"{{{_PRODUCTION}}}path")
         return (self._part("/", path) if path else part), number
 
@@ -385,10 +429,13 @@ class _Package:
             matrix[:3] = values.reshape(4, 3).T
         except ValueError as error:
             raise self._error(
-                f'the transform "{text[:60]}" is not read', allowed="twelve numbers"
+                Message('the transform "{text}" is not read', text=text[:60]),
+                allowed="twelve numbers",
             ) from error
         if not np.isfinite(matrix).all() or np.linalg.det(matrix[:3, :3]) == 0:
-            raise self._error(f'the transform "{text[:60]}" flattens what it places')
+            raise self._error(
+                Message('the transform "{text}" flattens what it places', text=text[:60])
+            )
         return matrix
 
     def _of(self, key: Key) -> _Object:
@@ -396,7 +443,11 @@ class _Package:
         if key not in self.objects:
             there = [number for part, number in self.objects if part == key[0]]
             raise self._error(
-                f"{self.names[key[0]]} has no object {key[1]}, which is to be built",
+                Message(
+                    "{name} has no object {key}, which is to be built",
+                    name=self.names[key[0]],
+                    key=key[1],
+                ),
                 allowed=", ".join(there[:10]) or "no object is there",
             )
         return self.objects[key]
@@ -405,7 +456,7 @@ class _Package:
         """Return how many faces and parts an object unfolds to."""
         if key in above:
             ids = " in ".join(number for _, number in (*above[above.index(key) :], key))
-            raise self._error(f"its objects hold each other: {ids}", _WITHOUT)
+            raise self._error(Message("its objects hold each other: {ids}", ids=ids), _WITHOUT)
         if key not in self.counts:
             each = self._of(key)
             inner = (self._count(one, (*above, key)) + 1 for one, _ in each.parts)
@@ -477,7 +528,7 @@ class _Package:
         if not word:  # before there were types
             word = "parametermodifier" if said.get("modifier") == "1" else "modelpart"
         if word not in _VOLUMES:
-            self._unmet(f'a volume of the kind "{word}"', required=True)
+            self._unmet(Message('a volume of the kind "{word}"', word=word), required=True)
         name, kind = said.get("name", ""), _VOLUMES.get(word)
         if each.tag == "part":
             return _Volume(name, kind, component=each.get("id", ""))

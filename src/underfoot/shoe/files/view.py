@@ -62,9 +62,17 @@ def view(triangles: NDArray[np.float32], axes: Array, spacing: float) -> View:
     shape = tuple(max(1, math.ceil(float(high[n] - low[n]) / spacing - 0.02)) for n in range(2))
     if shape[0] * shape[1] > _MOST_CELLS:
         raise InputError(
-            f"{shape[0]} x {shape[1]} cells of {spacing * 1e3:g} mm are too many",
+            Message(
+                "{along} x {across} cells of {spacing:g} mm are too many",
+                along=shape[0],
+                across=shape[1],
+                spacing=spacing * 1000.0,
+            ),
             where="outsole.spacing",
-            allowed=f"{math.sqrt(math.prod(shape) / _MOST_CELLS) * spacing * 1e3:.2g} mm or more",
+            allowed=Message(
+                "{sqrt:.2g} mm or more",
+                sqrt=math.sqrt(math.prod(shape) / _MOST_CELLS) * spacing * 1000.0,
+            ),
         )
     # centred, so that the cells are the same for a mesh and its mirror image
     first = tuple(float(low[n] + high[n]) / 2 - (shape[n] - 1) / 2 * spacing for n in range(2))
@@ -144,7 +152,9 @@ def soundness(mesh: Mesh, where: str) -> Soundness:
     edges, faces, counts, volume = soup_keys(triangles, bits)
     degenerate, not_finite = int(counts[0]), int(counts[1])
     if degenerate + not_finite == faces.size:
-        raise DataError(f"none of its {faces.size} faces has an area", where=where)
+        raise DataError(
+            Message("none of its {size} faces has an area", size=faces.size), where=where
+        )
     edges.sort()
     open_edges, crowded, turned, touching = shared_edges(edges)
     return Soundness(
@@ -231,8 +241,13 @@ def _agreement(seen: View, sound: Soundness, mesh: Mesh, where: str) -> list[Mes
     ):  # fmt: skip
         if many > _MOST_APART * met:
             raise DataError(
-                f"{what} on {many / met:.0%} of the lines through it: its area by faces and by "
-                f"outline disagree, as where {cause}",
+                Message(
+                    "{what} on {many:.0%} of the lines through it: its area by faces and by "
+                    "outline disagree, as where {cause}",
+                    what=what,
+                    many=many / met,
+                    cause=cause,
+                ),
                 where=where,
                 allowed=f"{_MOST_APART:.0%}",
                 remedy="Export it again as STEP or, by another program, as triangles",

@@ -7,6 +7,7 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import not_negative, positive
+from underfoot.core.remark import Message
 
 from ..shape import Flat, HeelProfile, SoleShape, SoleWear, check_depths
 from ..tread import ArcChannel, Tread
@@ -45,21 +46,35 @@ class ShoeOutline:
             raise unknown_name("side", self.side, SIDES, where="heel.side")
         if self.waist_width > min(self.heel_width, self.ball_width):
             raise InputError(
-                f"the waist of {self.waist_width * 1e3:g} mm is wider than heel or ball",
+                Message(
+                    "the waist of {waist_width:g} mm is wider than heel or ball",
+                    waist_width=self.waist_width * 1000.0,
+                ),
                 where="heel.waist_width",
-                allowed=f"at most {min(self.heel_width, self.ball_width) * 1e3:g} mm",
+                allowed=Message(
+                    "at most {most:g} mm", most=min(self.heel_width, self.ball_width) * 1000.0
+                ),
             )
         if self.length < 2 * self.ball_width:
             raise InputError(
-                f"a sole of {self.length * 1e3:g} mm is too short for its ball width",
+                Message(
+                    "a sole of {length:g} mm is too short for its ball width",
+                    length=self.length * 1000.0,
+                ),
                 where="heel.length",
-                allowed=f"at least {2e3 * self.ball_width:g} mm (twice heel.ball_width)",
+                allowed=Message(
+                    "at least {ball_width:g} mm (twice heel.ball_width)",
+                    ball_width=2000.0 * self.ball_width,
+                ),
             )
         if 2 * HEEL_AT * self.length < 0.5 * self.heel_width:
             raise InputError(
-                f"a heel of {self.heel_width * 1e3:g} mm is too wide for the length",
+                Message(
+                    "a heel of {heel_width:g} mm is too wide for the length",
+                    heel_width=self.heel_width * 1000.0,
+                ),
                 where="heel.heel_width",
-                allowed=f"at most {4e3 * HEEL_AT * self.length:g} mm",
+                allowed=Message("at most {most:g} mm", most=4000.0 * HEEL_AT * self.length),
             )
 
     def arcs(self) -> Array:
@@ -111,8 +126,11 @@ class ToeSpring:
         positive(self.start, "heel.toe_start")
         if not self.height_at_tip < self.length - self.start:
             raise InputError(
-                f"a toe of {max(self.length - self.start, 0) * 1e3:g} mm cannot rise by "
-                f"{self.height_at_tip * 1e3:g} mm",
+                Message(
+                    "a toe of {length:g} mm cannot rise by {height_at_tip:g} mm",
+                    length=max(self.length - self.start, 0) * 1000.0,
+                    height_at_tip=self.height_at_tip * 1000.0,
+                ),
                 where="heel.toe_spring",
                 allowed="less than the length before heel.toe_start",
             )
@@ -177,9 +195,12 @@ class WholeSole(SoleShape):
         limit = self.outline.waist_width / 2
         if self.edge_radius > limit:
             raise InputError(
-                f"{self.edge_radius * 1e3:g} mm doesn't fit the plan form",
+                Message(
+                    "{edge_radius:g} mm doesn't fit the plan form",
+                    edge_radius=self.edge_radius * 1000.0,
+                ),
                 where="heel.edge_radius",
-                allowed=f"at most {limit * 1e3:g} mm (half of the waist)",
+                allowed=Message("at most {limit:g} mm (half of the waist)", limit=limit * 1000.0),
             )
         check_depths(self)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from ..shape import SoleShape
 from ..tread import LATTICES, ArcChannel
@@ -321,7 +322,11 @@ def _written(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
     volume /= MM**3
     if abs(volume / made.volume - 1) > tolerance:
         raise UnderfootError(
-            f"the file holds {volume * 1e6:.3f} cm3, the solid {made.volume * 1e6:.3f} cm3",
+            Message(
+                "the file holds {volume:.3f} cm3, the solid {solid:.3f} cm3",
+                volume=volume * 1000000.0,
+                solid=made.volume * 1000000.0,
+            ),
             where=str(path),
         )
     return volume, triangles

@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.checks import between, not_negative, positive
+from underfoot.core.remark import Message
 
 from ..shape import SoleShape
 
@@ -141,7 +142,7 @@ class WornMap:
     def __post_init__(self) -> None:
         if self.removed.shape != (self.x.size, self.y.size):
             raise InputError(
-                f"removed has shape {self.removed.shape}",
+                Message("removed has shape {shape}", shape=self.removed.shape),
                 where="wear.removed",
                 allowed=f"{(self.x.size, self.y.size)}",
             )

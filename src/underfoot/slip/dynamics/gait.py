@@ -13,6 +13,7 @@ import numpy as np
 
 from underfoot.core import InputError
 from underfoot.core.arrays import Array
+from underfoot.core.remark import Message
 from underfoot.core.text import decode_text, existing
 
 COLUMNS = (
@@ -70,10 +71,14 @@ class GaitHistory:
             object.__setattr__(self, label, values)
             if values.ndim != 1 or values.size < 5 or values.shape != np.shape(self.time):
                 raise InputError(
-                    f"{label} has shape {values.shape}", where=where, allowed="5 or more samples"
+                    Message("{label} has shape {shape}", label=label, shape=values.shape),
+                    where=where,
+                    allowed="5 or more samples",
                 )
             if not np.isfinite(values).all():
-                raise InputError(f"{label} holds values that are no numbers", where=where)
+                raise InputError(
+                    Message("{label} holds values that are no numbers", label=label), where=where
+                )
         if self.time[0] != 0 or not (np.diff(self.time) > 0).all():
             raise InputError(
                 "times do not rise from 0", where=where, allowed="seconds since heel contact"
@@ -82,14 +87,14 @@ class GaitHistory:
             raise InputError("the normal force is negative", where=where, allowed="0 or more")
         if self.normal.max() > 4:
             raise InputError(
-                f"the normal force reaches {self.normal.max():.3g} body weights",
+                Message("the normal force reaches {max:.3g} body weights", max=self.normal.max()),
                 where=where,
                 allowed="up to 4",
                 remedy="Divide it by body weight",
             )
         if np.abs(self.ratio).max() > 1.5:
             raise InputError(
-                f"the shear ratio reaches {np.abs(self.ratio).max():.3g}",
+                Message("the shear ratio reaches {max:.3g}", max=np.abs(self.ratio).max()),
                 where=where,
                 allowed="-1.5 to 1.5",
             )
@@ -167,7 +172,9 @@ def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:
     missing = [c for c in COLUMNS[:3] if not table or c not in table[0]]
     if missing:
         raise InputError(
-            f"the column {missing[0]} is missing", where=name, allowed=", ".join(COLUMNS)
+            Message("the column {missing} is missing", missing=missing[0]),
+            where=name,
+            allowed=", ".join(COLUMNS),
         )
     try:
         values = {c: np.array([float(row[c]) for row in table]) for c in COLUMNS[:3]}
@@ -176,7 +183,9 @@ def history_from_lines(lines: Iterable[str], name: str) -> GaitHistory:
             for cells in ([row.get(column) or "" for row in table] for column in COLUMNS[3:])
         )
     except (TypeError, ValueError) as error:
-        raise InputError(f"a cell is no number ({error})", where=name) from None
+        raise InputError(
+            Message("a cell is no number ({error})", error=error), where=name
+        ) from None
     return GaitHistory(
         name,
         values["time_s"],

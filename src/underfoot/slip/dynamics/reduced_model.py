@@ -12,6 +12,7 @@ from scipy.special import ndtri
 
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array, Mask
+from underfoot.core.remark import Message
 from underfoot.friction import FrictionLaw
 from underfoot.trials.walking.slips import SlipDefinition
 
@@ -114,7 +115,10 @@ class ReducedSole:
             raise InputError(
                 f"{self.viscosity} Pa s",
                 where="reduced.viscosity",
-                allowed=f"{self.fitted.viscosity:g} Pa s, of the slips it was fitted to",
+                allowed=Message(
+                    "{viscosity:g} Pa s, of the slips it was fitted to",
+                    viscosity=self.fitted.viscosity,
+                ),
                 remedy="Fit one to full slips in this fluid, or take the full model (SoleFoot)",
             )
 
@@ -351,7 +355,9 @@ def fitted_reduced(
     from scipy.optimize import least_squares
 
     if len(runs) < 3 or len(areas) < 3:
-        raise InputError(f"{len(runs)} runs", where="runs", allowed="3 or more")
+        raise InputError(
+            Message("{count} runs", count=len(runs)), where="runs", allowed="3 or more"
+        )
     area = _area_constants(areas, setting.shoe_angle)
     mean_pressure = 500.0 / area[0]
     speeds, cofs = cof_table(setting.friction, mean_pressure)

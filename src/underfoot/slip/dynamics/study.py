@@ -20,6 +20,7 @@ from underfoot.core import (
 )
 from underfoot.core.arrays import Array
 from underfoot.core.progress import part
+from underfoot.core.remark import Message
 from underfoot.friction import FrictionLaw, sampled_points
 
 from .full_model import ROOM, FullRun, Setting, full_runs
@@ -358,7 +359,11 @@ def slip_study(
     good = [r for r in runs if r.motion.status is Status.CONVERGED]
     if len(good) < max(4, len(runs) // 2):
         raise ConvergenceError(
-            f"only {len(good)} of {len(runs)} slips could be solved", where="slip", remedy=_REMEDY
+            Message(
+                "only {count} of {total} slips could be solved", count=len(good), total=len(runs)
+            ),
+            where="slip",
+            remedy=_REMEDY,
         )
     every = max(len(good) // max(held_out, 1), 2)
     tested = good[every - 1 :: every][:held_out]

@@ -8,6 +8,7 @@ import numpy as np
 from underfoot.core import InputError, unknown_name
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
+from underfoot.core.remark import Message
 
 from .gait import GaitHistory, packaged_histories
 
@@ -130,7 +131,9 @@ class Spread:
             raise InputError(f"{self.mean:g} ± {self.sd:g}", where="spread", allowed="sd 0 or more")
         if not self.low <= self.mean <= self.high:
             raise InputError(
-                f"a mean of {self.mean:g}", where="spread", allowed=f"{self.low:g} to {self.high:g}"
+                Message("a mean of {mean:g}", mean=self.mean),
+                where="spread",
+                allowed=Message("{low:g} to {high:g}", low=self.low, high=self.high),
             )
 
     def draw(self, count: int, generator: np.random.Generator) -> Array:
@@ -182,7 +185,9 @@ class Population:
     def __post_init__(self) -> None:
         if self.subjects < 1 or int(self.subjects) != self.subjects:
             raise InputError(
-                f"{self.subjects} subjects", where="slip.subjects", allowed="1 or more"
+                Message("{subjects} subjects", subjects=self.subjects),
+                where="slip.subjects",
+                allowed="1 or more",
             )
         if not self.histories:
             raise InputError("no gait history", where="slip.histories", allowed="1 or more")

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from underfoot.core import InputError, Progress, silent
+from underfoot.core.remark import Message
 from underfoot.core.sparse import schur_complement, upper_triangle
 
 from .mesh import SoleMesh
@@ -80,9 +81,12 @@ def land_compliance(
     for layer in (outsole, midsole):
         if layer is not None and layer.poisson_ratio > LARGEST_POISSON_RATIO:
             raise InputError(
-                f"Poisson's ratio {layer.poisson_ratio} makes these finite elements lock",
+                Message(
+                    "Poisson's ratio {poisson_ratio} makes these finite elements lock",
+                    poisson_ratio=layer.poisson_ratio,
+                ),
                 where="poisson_ratio",
-                allowed=f"at most {LARGEST_POISSON_RATIO}",
+                allowed=Message("at most {most}", most=LARGEST_POISSON_RATIO),
                 remedy='Use compliance.model = "layered"',
             )
     from scipy.linalg import cho_factor, cho_solve

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from underfoot.core import InputError
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from .plan import Plan
 
@@ -62,7 +63,7 @@ def sole_mesh(
         raise InputError(
             "the profile or its channels go through nine tenths of the outsole",
             where="thickness",
-            allowed=f"above {1e3 * float((over + lug).max()) / 0.9:.3g} mm",
+            allowed=Message("above {max:.3g} mm", max=1000.0 * float((over + lug).max()) / 0.9),
         )
     normal = np.array([-sine, 0.0, cosine])
     base = np.column_stack([points, height])

@@ -44,7 +44,11 @@ def steady_window(values: np.ndarray) -> SteadyWindow:
     """
     values = np.asarray(values, dtype=float)
     if len(values) < 10 * BATCH:
-        raise DataError(f"{len(values)} samples", where="steady window", allowed="50 or more")
+        raise DataError(
+            Message("{count} samples", count=len(values)),
+            where="steady window",
+            allowed="50 or more",
+        )
     if not np.isfinite(values).all():
         raise DataError("samples without a number", where="steady window")
     count = len(values) // BATCH

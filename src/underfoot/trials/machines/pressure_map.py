@@ -100,7 +100,9 @@ def pressure_scan(
     """
     where = trial.name
     if sensor.unit != "Pa":
-        raise DataError(f'the pressure is in "{sensor.unit}"', where=where, allowed="Pa")
+        raise DataError(
+            Message('the pressure is in "{unit}"', unit=sensor.unit), where=where, allowed="Pa"
+        )
     up = (axes or axes_of(trial)).up
     path, filled = bridge_gaps(marker.positions, round(0.1 * marker.rate))
     seen = np.asarray(np.isfinite(path).all(axis=1))
@@ -195,7 +197,9 @@ def pressure_map(
     estimated and said. Fewer than two scans, or two at one place, are a DataError.
     """
     if len(scans) < 2:
-        raise DataError(f"{len(scans)} scans are no map", allowed="two or more")
+        raise DataError(
+            Message("{count} scans are no map", count=len(scans)), allowed="two or more"
+        )
     if (spacing is not None and not spacing > 0) or not step > 0:
         raise InputError("spacing and step must be positive", where="pressure_map")
     ordered = tuple(sorted(scans, key=lambda scan: scan.lateral))

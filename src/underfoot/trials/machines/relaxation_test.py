@@ -64,7 +64,11 @@ def relaxation_reading(
     """
     where = trial.name
     if not thickness > 0:
-        raise InputError(f"thickness {thickness}", where="thickness", allowed="above 0")
+        raise InputError(
+            Message("thickness {thickness}", thickness=thickness),
+            where="thickness",
+            allowed="above 0",
+        )
     load = trial.channel(*((force,) if force else FORCE))
     travel = trial.channel(*((displacement,) if displacement else DISPLACEMENT))
     if load.unit not in ("N", "") or travel.unit not in ("m", ""):
@@ -116,7 +120,11 @@ def relaxation_reading(
             Message("unloading cut off {early:.3g} s after the peak", early=t[end] - t[peak])
         )
     if end - peak < 10:
-        raise DataError(f"only {end - peak} samples of hold", where=where, allowed="ten or more")
+        raise DataError(
+            Message("only {end} samples of hold", end=end - peak),
+            where=where,
+            allowed="ten or more",
+        )
     ramp_d, ramp_f = np.maximum.accumulate(d[begin : peak + 1]), f[begin : peak + 1]
     at = 0.02 * thickness
     if ramp_d[-1] <= at:

@@ -185,9 +185,11 @@ def stribeck_fit(
     distinct = np.unique(v)
     if len(distinct) < free + 1 or np.ptp(y) == 0:
         raise DataError(
-            f"{len(distinct)} different speeds for {free} parameters",
+            Message(
+                "{count} different speeds for {free} parameters", count=len(distinct), free=free
+            ),
             where="stribeck_fit",
-            allowed=f"at least {free + 1} speeds and a COF that varies",
+            allowed=Message("at least {free} speeds and a COF that varies", free=free + 1),
         )
     gaps = np.diff(np.concatenate(([0.0], distinct)))
     low, high = 0.05 * float(gaps[gaps > 0].min()), 1e3 * float(v.max())

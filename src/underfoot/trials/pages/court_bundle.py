@@ -179,9 +179,11 @@ def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
         reason = f"wrong or missing: {', '.join(lacking)}"
     others = [str(fault) for fault in faults if fault.about != SETTINGS]
     raise InputError(
-        f"is damaged ({reason}), so nothing can be made again",
+        Message("is damaged ({reason}), so nothing can be made again", reason=reason),
         where=str(bundle / SETTINGS),
-        allowed=f"the file that trials bundle wrote, an object with {', '.join(kinds)}",
+        allowed=Message(
+            "the file that trials bundle wrote, an object with {kinds}", kinds=", ".join(kinds)
+        ),
         remedy="Ask for the bundle as it was signed"
         + (f"; not as written are also: {'; '.join(others)}" if others else ""),
     )

@@ -25,7 +25,7 @@ from underfoot.core.presentation import p_text
 from underfoot.core.progress import part
 from underfoot.core.remark import NOTHING, Message, join_lines
 from underfoot.core.text import harmless
-from underfoot.core.units import plain_number
+from underfoot.core.unit_text import plain_number
 
 from ..study.tables import Role
 from .figures import SheetPage, TrialFigure, contact_sheets, sheets, trial_figures

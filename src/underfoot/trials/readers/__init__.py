@@ -6,6 +6,7 @@ from pathlib import Path
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.deprecation import package_names
 from underfoot.core.registry import find_offer
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial, file_checksum
 from .draft import RecordingDraft
@@ -119,7 +120,11 @@ def read_trial(
         words, remedy = f"the file holds {len(trials)} steps", "Choose one with step=1 ..."
         raise DataError(words, where=where, remedy=remedy)
     if not 1 <= (step or 1) <= len(trials):
-        raise DataError(f"there is no step {step}", where=where, allowed=f"1 to {len(trials)}")
+        raise DataError(
+            Message("there is no step {step}", step=step),
+            where=where,
+            allowed=f"1 to {len(trials)}",
+        )
     return trials[(step or 1) - 1]
 
 

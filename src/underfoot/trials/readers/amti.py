@@ -4,6 +4,8 @@ import struct
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
 from .draft import RecordingDraft
@@ -27,7 +29,14 @@ def read_netforce(draft: RecordingDraft) -> Trial:
         main = _MAIN.unpack_from(draft.data)
         count, more, rate, seconds = main[2], main[3], main[20], main[11]
         if not 0 < count + more < 64 or not 0 < rate < 1e6 or not 0 < seconds < 1e6:
-            raise draft.error(f"{count} plates, {rate} Hz and {seconds:g} s can't be")
+            raise draft.error(
+                Message(
+                    "{count} plates, {rate} Hz and {seconds:g} s can't be",
+                    count=count,
+                    rate=rate,
+                    seconds=seconds,
+                )
+            )
         at, heads = _MAIN.size, []
         for _ in range(count + more):
             heads.append(_INSTRUMENT.unpack_from(draft.data, at))
@@ -36,7 +45,9 @@ def read_netforce(draft: RecordingDraft) -> Trial:
         raise draft.error("truncated: the headers are not complete") from error
     widths = [head[4] for head in heads]
     if any(width != 6 for width in widths[:count]) or not all(0 <= w <= 32 for w in widths):
-        raise draft.error(f"plates of {widths} channels", allowed="six channels a plate")
+        raise draft.error(
+            Message("plates of {widths} channels", widths=widths), allowed="six channels a plate"
+        )
     raw = np.frombuffer(draft.data[at : at + (len(draft.data) - at) // 2 * 2], "<i2")
     samples = round(seconds * rate)
     if raw.size < samples * sum(widths):
@@ -51,7 +62,9 @@ def read_netforce(draft: RecordingDraft) -> Trial:
             values = -raw[:, first : first + width] * 1e6 / (sensitivity * settings)
         first += width
         if not np.isfinite(values).all():
-            raise draft.error(f"the calibration of instrument {number} is damaged")
+            raise draft.error(
+                Message("the calibration of instrument {number} is damaged", number=number)
+            )
         if number > count:
             continue
         for i, name in enumerate(_NAMES):

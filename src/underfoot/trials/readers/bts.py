@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from underfoot.core.remark import Message
+
 from ..recording.trial import Event, Trial, Vertical
 from .columns import trial_from_sheet
 from .draft import RecordingDraft
@@ -39,7 +41,9 @@ def read_bts(draft: RecordingDraft) -> Trial:
         return draft.trial("BTS events")
     if "Time" not in named:
         kind = header.get("type", "table")
-        raise draft.error(f'"{kind}" is no recording in time', remedy="Export tracks")
+        raise draft.error(
+            Message('"{kind}" is no recording in time', kind=kind), remedy="Export tracks"
+        )
     draft.count(header.get("frames", ""), len(numbers), "Frames")
     draft.up = Vertical((0.0, 1.0, 0.0), "y as BTS has it")
     unit = header.get("measure unit", "")

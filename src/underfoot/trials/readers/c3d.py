@@ -99,7 +99,7 @@ def parse(data: bytes | FileBytes, where: str) -> C3DFile:
     processor = data[start + 3]
     if processor not in _ENDIAN:
         raise DataError(
-            f"unknown processor type {processor}",
+            Message("unknown processor type {processor}", processor=processor),
             where=where,
             allowed="84 (Intel), 85 (DEC) or 86 (SGI/MIPS)",
             remedy="The file is damaged: export it again",
@@ -350,17 +350,25 @@ def _parameters(
 @np.errstate(invalid="ignore")
 def _value(data: bytes, processor: int, name: str, where: str) -> Any:
     if len(data) < 2:
-        raise DataError(f"damaged: parameter {name} has no value", where=where)
+        raise DataError(Message("damaged: parameter {name} has no value", name=name), where=where)
     kind = int.from_bytes(data[:1], "little", signed=True)
     shape = tuple(data[2 : 2 + data[1]])
     count = math.prod(shape)
     if data[1] > 7:  # the format's limit
-        raise DataError(f"damaged: parameter {name} has {data[1]} dimensions", where=where)
+        raise DataError(
+            Message("damaged: parameter {name} has {data} dimensions", name=name, data=data[1]),
+            where=where,
+        )
     if kind not in (-1, 1, 2, 4):
-        raise DataError(f"damaged: parameter {name} has the unknown type {kind}", where=where)
+        raise DataError(
+            Message("damaged: parameter {name} has the unknown type {kind}", name=name, kind=kind),
+            where=where,
+        )
     body = data[2 + len(shape) : 2 + len(shape) + count * abs(kind)]
     if len(shape) != data[1] or len(body) < count * abs(kind):
-        raise DataError(f"damaged: parameter {name} runs past its section", where=where)
+        raise DataError(
+            Message("damaged: parameter {name} runs past its section", name=name), where=where
+        )
     if kind == -1:
         width = shape[0] if shape else 1
         n = count // width if width else 0
@@ -489,14 +497,22 @@ def _plate(draft: RecordingDraft, raw: C3DFile, index: int, units: list[str], sc
     text = plates.KINDS.get(kind, f"type {kind}")
     try:
         if kind not in plates.CHANNELS:
-            raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
+            raise DataError(
+                Message("plate type {kind} is not supported", kind=kind), allowed="types 1 to 4"
+            )
         numbers = _of_plate(raw.whole_numbers("FORCE_PLATFORM", "CHANNEL"), index, "CHANNEL", 1)
         columns = numbers[: plates.CHANNELS[kind]] - 1
         if len(columns) < plates.CHANNELS[kind]:
-            raise DataError(f"{text} needs {plates.CHANNELS[kind]} channels")
+            raise DataError(
+                Message(
+                    "{text} needs {channels} channels", text=text, channels=plates.CHANNELS[kind]
+                )
+            )
         most = raw.analog.shape[1]
         if columns.max() >= most:
-            raise DataError(f"it names channel {int(columns.max()) + 1} of {most}")
+            raise DataError(
+                Message("it names channel {max} of {most}", max=int(columns.max()) + 1, most=most)
+            )
         if columns.min() < 0:
             raise DataError("it names a channel below 1")
         places = raw.numbers("FORCE_PLATFORM", "CORNERS")
@@ -604,7 +620,7 @@ def _of_plate(
         values = values[..., None]
     wanted = shape or values.shape[:-1]
     if len(wanted) != dimensions or values.shape[:-1] != wanted or index >= values.shape[-1]:
-        raise DataError(f"FORCE_PLATFORM:{name} does not describe it")
+        raise DataError(Message("FORCE_PLATFORM:{name} does not describe it", name=name))
     return values[..., index]
 
 

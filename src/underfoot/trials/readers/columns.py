@@ -184,7 +184,7 @@ def _column(sheet: Sheet, name: str) -> np.ndarray:
     key = name if name in sheet.numbers else folded.get(name.casefold().strip())
     if key is None:
         raise DataError(
-            f'there is no column "{name}" of numbers',
+            Message('there is no column "{name}" of numbers', name=name),
             where=sheet.name,
             allowed=", ".join(list(sheet.numbers)[:12]),
             nearest=nearest_match(name, sheet.numbers),
@@ -196,7 +196,10 @@ def _column(sheet: Sheet, name: str) -> np.ndarray:
 def _factor(unit: str, dimension: str, where: str) -> float:
     known = force_unit(unit) if dimension == "N" else si_unit(unit)
     if known is None or known[0] != dimension:
-        raise DataError(f'"{unit}" is not a known unit of {dimension}', where=where)
+        raise DataError(
+            Message('"{unit}" is not a known unit of {dimension}', unit=unit, dimension=dimension),
+            where=where,
+        )
     return known[1]
 
 
@@ -214,7 +217,9 @@ def _clock(draft: RecordingDraft, sheet: Sheet) -> None:
         if not draft.rate:
             raise draft.error(
                 "there is no time column and no sampling rate",
-                allowed=f"a column called time; found {', '.join(sheet.columns[:8])}",
+                allowed=Message(
+                    "a column called time; found {column}", column=", ".join(sheet.columns[:8])
+                ),
                 remedy='Say rate = "1000 Hz" or time = "..." under [file] in a profile. A table of '
                 "readings, a number a run, needs a protocol of readings: --protocol machine_cof",
             )
@@ -224,7 +229,7 @@ def _clock(draft: RecordingDraft, sheet: Sheet) -> None:
     written = profile.time_unit or sheet.units.get(name, "") or name * (name in _CLOCK_UNITS)
     unit = si_unit(written or "s")
     if unit is None or unit[0] != "s":
-        raise draft.error(f'the time column has the unit "{written}"')
+        raise draft.error(Message('the time column has the unit "{written}"', written=written))
     if not written:
         draft.notes.append("time without a unit: taken as s")
     draft.clock(values * unit[1], restarts=True)
@@ -236,7 +241,11 @@ def _clock_times(sheet: Sheet, name: str) -> np.ndarray:
     wrong = next((n for n, time in enumerate(times) if time is None), None)
     if wrong is not None:
         raise DataError(
-            f'"{sheet.texts[name][wrong]}" in the column "{name}" is no time',
+            Message(
+                '"{text}" in the column "{name}" is no time',
+                text=sheet.texts[name][wrong],
+                name=name,
+            ),
             where=sheet.name,
             allowed='seconds, or a clock as "10:15:20.001"',
         )

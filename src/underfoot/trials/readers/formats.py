@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 from underfoot.core.text import utf16_of
 
 
@@ -44,7 +45,7 @@ class TrialReader:
     def function(self, draft: Any) -> Any:
         """Return what the reader makes of a draft; a DataError for a format that is not read."""
         if not self.address:
-            raise DataError(f"{self.name} is not read", remedy=self.remedy)
+            raise DataError(Message("{name} is not read", name=self.name), remedy=self.remedy)
         module, _, name = self.address.partition(":")
         return getattr(import_module(module), name)(draft)
 

@@ -215,16 +215,18 @@ def read_fscan(draft: RecordingDraft) -> Trial:
         spacing = [float(header[f"{k}_SPACING"][0]) for k in ("ROW", "COL")]
         step = float(header["SECONDS_PER_FRAME"][0])
     except (KeyError, ValueError) as error:
-        raise draft.error(f"the header lacks {error}") from error
+        raise draft.error(Message("the header lacks {error}", error=error)) from error
     unit = si_unit((header.get("UNITS") or [""])[0])
     if unit is None or unit[0] != "Pa":
         raise draft.error(
-            f'the unit is "{" ".join(header.get("UNITS", []))}"',
+            Message('the unit is "{header}"', header=" ".join(header.get("UNITS", []))),
             allowed="a unit of pressure",
             remedy="Calibrate, and export pressures",
         )
     if not 0 < rows * columns < 1e5 or not 0 < step < 10:
-        raise draft.error(f"{rows} x {columns} cells, {step} s")
+        raise draft.error(
+            Message("{rows} x {columns} cells, {step} s", rows=rows, columns=columns, step=step)
+        )
     if len(begins) * rows * columns > _MOST_CELLS:
         raise draft.error("larger than any recording")
     saturated, frames = 0, []
@@ -233,7 +235,9 @@ def read_fscan(draft: RecordingDraft) -> Trial:
         cells = [[c.strip() for c in line.split(",")][:columns] for line in body]
         if len(cells) < rows or any(len(row) < columns for row in cells):
             where = f"{draft.name}, line {at + 1}"
-            raise DataError(f"truncated: frame {number} is not complete", where=where)
+            raise DataError(
+                Message("truncated: frame {number} is not complete", number=number), where=where
+            )
         saturated += sum(cell.upper() == "B" for row in cells for cell in row)
         frames.append([[float(c) if is_number(c) else np.nan for c in row] for row in cells])
     pressure = np.array(frames) * unit[1]

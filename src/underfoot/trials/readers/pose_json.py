@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from underfoot.core.remark import Message
 from underfoot.core.text import decode_text
 
 from ..recording.trial import Event, Trial
@@ -57,7 +58,7 @@ def read_pose_json(draft: RecordingDraft) -> Trial:
         rows = [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of]
         places[str(name)] = values = np.array(rows, dtype=float)
         if values.ndim != 2 or values.shape[1] != 3 or values.size > _MOST:
-            raise draft.error(f"{name} has no three coordinates a frame")
+            raise draft.error(Message("{name} has no three coordinates a frame", name=name))
     if len({len(v) for v in places.values()}) != 1:
         raise draft.error("points have different numbers of frames")
     written = str(top.get("unit", top.get("units", "")))
@@ -97,7 +98,8 @@ def _events(draft: RecordingDraft, top: Mapping[str, Any]) -> tuple[Event, ...]:
             when = float(one["frame"]) / rate
         if not isinstance(when, int | float) or not np.isfinite(when):
             raise draft.error(
-                f"event {number} has no time", allowed='"time" in s, or "frame" and "fps"'
+                Message("event {number} has no time", number=number),
+                allowed='"time" in s, or "frame" and "fps"',
             )
         side = str(one.get("side", one.get("foot", ""))).casefold()
         side = {"l": "left", "r": "right"}.get(side, side)
@@ -118,7 +120,7 @@ def _from_frames(
     times = []
     for number, frame in enumerate(frames):
         if not isinstance(frame, Mapping):
-            raise draft.error(f"frame {number + 1} is no object")
+            raise draft.error(Message("frame {number} is no object", number=number + 1))
         own = _points(frame)
         if own is None:
             own = _open_pose(draft, frame)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from underfoot.core import InputError, nearest_match, to_si
+from underfoot.core.remark import Message
 
 from ..recording.marker_names import checked_landmark
 from ..recording.tester_calibration import TesterCalibration
@@ -80,9 +81,13 @@ def read_profile(path: Path) -> TrialsProfile:
     try:
         data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
-        raise InputError(f"can't read the profile: {error.strerror}", where=str(path)) from error
+        raise InputError(
+            Message("can't read the profile: {strerror}", strerror=error.strerror), where=str(path)
+        ) from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"the profile is not valid TOML: {error}", where=str(path)) from error
+        raise InputError(
+            Message("the profile is not valid TOML: {error}", error=error), where=str(path)
+        ) from error
     return profile_from(data, where=path.name)
 
 
@@ -94,10 +99,17 @@ def profile_from(data: Mapping[str, Any], *, where: str = "profile") -> TrialsPr
     for key, axis in axes.items():
         if axis not in _DIRECTIONS:
             allowed = ", ".join(_DIRECTIONS)
-            raise InputError(f'"{axis}" is no axis', where=f"{where}.axes.{key}", allowed=allowed)
+            raise InputError(
+                Message('"{axis}" is no axis', axis=axis),
+                where=f"{where}.axes.{key}",
+                allowed=allowed,
+            )
     header = file.get("header_line")
     if header is not None and (not isinstance(header, int) or header < 1):
-        raise InputError(f"{header!r} is no line number", where=f"{where}.file.header_line")
+        raise InputError(
+            Message("{header} is no line number", header=repr(header)),
+            where=f"{where}.file.header_line",
+        )
 
     def each(name: str, read: Callable[[object, str], T]) -> dict[str, T]:
         return {str(key): read(v, f"{where}.{name}.{key}") for key, v in parts[name].items()}
@@ -135,7 +147,7 @@ def _known(data: Mapping[str, Any], allowed: tuple[str, ...], where: str) -> Non
     for key in data:
         if key not in allowed:
             raise InputError(
-                f'unknown key "{key}"',
+                Message('unknown key "{key}"', key=key),
                 where=where,
                 allowed=", ".join(allowed),
                 nearest=nearest_match(str(key), allowed),
@@ -147,7 +159,11 @@ def _part(
 ) -> Mapping[str, Any]:
     part = data.get(key, {})
     if not isinstance(part, Mapping):
-        raise InputError(f"{part!r} is not a table", where=f"{where}.{key}", allowed=f"[{key}]")
+        raise InputError(
+            Message("{part} is not a table", part=repr(part)),
+            where=f"{where}.{key}",
+            allowed=f"[{key}]",
+        )
     if allowed:
         _known(part, allowed, f"{where}.{key}")
     return part
@@ -156,7 +172,9 @@ def _part(
 def _text(data: Mapping[str, Any], key: str, where: str) -> str | None:
     value = data.get(key)
     if value is not None and not isinstance(value, str):
-        raise InputError(f"{value!r} is not text", where=f"{where}.file.{key}")
+        raise InputError(
+            Message("{given} is not text", given=repr(value)), where=f"{where}.file.{key}"
+        )
     return value
 
 
@@ -177,7 +195,9 @@ def _quantity(data: Mapping[str, Any], key: str, unit: str, where: str) -> float
         return None
     number = to_si(data[key], unit, where=f"{where}.{key}")
     if number <= 0:
-        raise InputError(f"{data[key]!r} is not positive", where=f"{where}.{key}")
+        raise InputError(
+            Message("{value} is not positive", value=repr(data[key])), where=f"{where}.{key}"
+        )
     return number
 
 
@@ -188,7 +208,7 @@ def _channel(value: object, where: str) -> tuple[str, str, float]:
     unit = _unit(value["unit"], "", f"{where}.unit") if "unit" in value else ""
     scale = value.get("scale", 1.0)
     if not _is_number(scale):
-        raise InputError(f"{scale!r} is no number", where=f"{where}.scale")
+        raise InputError(Message("{name} is no number", name=repr(scale)), where=f"{where}.scale")
     return value["column"], unit, float(scale)
 
 
@@ -198,13 +218,15 @@ def _is_number(value: object) -> bool:
 
 def _three(value: object, where: str) -> tuple[str, str, str]:
     if not isinstance(value, list) or len(value) != 3 or not all(isinstance(v, str) for v in value):
-        raise InputError(f"{value!r} are not three column names", where=where)
+        raise InputError(
+            Message("{given} are not three column names", given=repr(value)), where=where
+        )
     return value[0], value[1], value[2]
 
 
 def _numbers(value: object, where: str) -> tuple[float, float, float]:
     if not isinstance(value, list) or len(value) != 3 or not all(map(_is_number, value)):
-        raise InputError(f"{value!r} are not three numbers", where=where)
+        raise InputError(Message("{given} are not three numbers", given=repr(value)), where=where)
     return float(value[0]), float(value[1]), float(value[2])
 
 
@@ -253,7 +275,9 @@ def _force_columns(value: Mapping[str, Any], where: str) -> tuple[str, str, str]
     if len(set(columns)) < len(columns):
         twice = next(name for name in columns if columns.count(name) > 1)
         raise InputError(
-            f'the column "{twice}" is named twice: its force would count twice',
+            Message(
+                'the column "{twice}" is named twice: its force would count twice', twice=twice
+            ),
             where=where,
             remedy='Leave a missing channel empty, or write friction = "..." and normal = "..."',
         )

@@ -61,7 +61,9 @@ def read_sheet(
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise DataError(f"can't be read: {error.strerror}", where=path.name) from error
+        raise DataError(
+            Message("can't be read: {strerror}", strerror=error.strerror), where=path.name
+        ) from error
     return sheet_from(data, path.name, sheet, delimiter, header_line)
 
 
@@ -184,7 +186,12 @@ def _layout(rows: list[list[str]], header_line: int | None, where: str) -> _Layo
     if header_line is not None:
         head = header_line - 1
         if head >= len(rows) - 1:
-            raise DataError(f"there is no line {header_line} with rows below it", where=where)
+            raise DataError(
+                Message(
+                    "there is no line {header_line} with rows below it", header_line=header_line
+                ),
+                where=where,
+            )
         if _are_units(rows[head + 1]) and head + 2 < len(rows):
             return _Layout(head, head + 1, head + 2)
         return _Layout(head, None, head + 1)
@@ -313,7 +320,9 @@ def _chosen(names: Sequence[str], sheet: str | None, where: str) -> Sequence[str
     if not names:
         raise DataError("the workbook has no sheet", where=where)
     if sheet is not None and sheet not in names:
-        raise DataError(f'no sheet named "{sheet}"', where=where, allowed=", ".join(names))
+        raise DataError(
+            Message('no sheet named "{sheet}"', sheet=sheet), where=where, allowed=", ".join(names)
+        )
     return names if sheet is None else [sheet]
 
 

@@ -5,6 +5,7 @@ from io import BytesIO
 import numpy as np
 
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .columns import trial_from_sheet
@@ -31,7 +32,7 @@ def read_tdms(draft: RecordingDraft) -> tuple[Trial, ...]:
             continue
         lengths = {len(values) for values in columns.values()}
         if len(lengths) > 1:
-            raise draft.error(f'channels of "{group.name}" differ in length')
+            raise draft.error(Message('channels of "{name}" differ in length', name=group.name))
         of = {c.name: c.properties for c in group.channels()}
         units = {name: str(of[name].get("unit_string", "")) for name in columns}
         step = float(next((p["wf_increment"] for p in of.values() if "wf_increment" in p), 0.0))

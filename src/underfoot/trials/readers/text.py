@@ -145,7 +145,12 @@ def check_rows(rows: Sequence[Sequence[str]], width: int, first_line: int, where
     for i, row in enumerate(rows):
         if len(row) > width and any(row[width:]):
             raise DataError(
-                f"row {i + 1} of the table has {len(row)} cells, the header {width}",
+                Message(
+                    "row {row} of the table has {count} cells, the header {width}",
+                    row=i + 1,
+                    count=len(row),
+                    width=width,
+                ),
                 where=f"{where}, line {first_line + i}",
             )
     lengths = [min(len(row), width) for row in rows]
@@ -217,7 +222,7 @@ def number_after(line: str, where: str, delimiter: str = "=") -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise DataError(f'"{line.strip()[:60]}" holds no number', where=where)
+        raise DataError(Message('"{line}" holds no number', line=line.strip()[:60]), where=where)
     return value
 
 
@@ -261,7 +266,7 @@ def rate_of(times: np.ndarray, where: str) -> tuple[float, float, np.ndarray | N
     steps = np.diff(times)
     if (steps <= 0).any():
         row = int(np.argmax(steps <= 0)) + 2
-        raise DataError(f"time does not increase at row {row}", where=where)
+        raise DataError(Message("time does not increase at row {row}", row=row), where=where)
     step = float(np.median(steps))
     # Rounded time stamps differ by one last digit, dropped samples by a whole step.
     mean = float((times[-1] - times[0]) / (len(times) - 1))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from ..recording.trial import Trial
 from .draft import RecordingDraft
@@ -35,7 +36,14 @@ def read_xsensor(draft: RecordingDraft) -> Trial:
     rows = header.get("rows", "")
     for name, when, cells in sheets:
         if len({len(row) for row in cells}) > 1 or (rows.isdigit() and len(cells) != int(rows)):
-            raise draft.error(f"truncated: a frame of {name} has {len(cells)} of {rows} rows")
+            raise draft.error(
+                Message(
+                    "truncated: a frame of {name} has {count} of {rows} rows",
+                    name=name,
+                    count=len(cells),
+                    rows=rows,
+                )
+            )
         sensors.setdefault(name, []).append((when, np.array(cells)))
     unit = si_unit(header.get("units", header.get("pressure units", "")))
     if not sensors or unit is None or unit[0] != "Pa":
@@ -62,4 +70,6 @@ def _seconds(header: dict[str, str], draft: RecordingDraft, line: int) -> float:
     try:
         return sum(float(part) * 60.0**i for i, part in enumerate(reversed(parts)))
     except ValueError:
-        raise DataError(f'"{text}" is no time', where=f"{draft.name}, line {line}") from None
+        raise DataError(
+            Message('"{text}" is no time', text=text), where=f"{draft.name}, line {line}"
+        ) from None

@@ -150,7 +150,9 @@ class Axes:
 def axis_vector(text: str, where: str = "axis") -> np.ndarray:
     """Return the unit vector named ``"x"``, ``"+y"``, ``"-z"`` ..."""
     if not re.fullmatch("[+-]?[xyz]", text):
-        raise InputError(f'"{text}" is no axis', where=where, allowed="x, y, z, +x, -x ...")
+        raise InputError(
+            Message('"{axis}" is no axis', axis=text), where=where, allowed="x, y, z, +x, -x ..."
+        )
     return np.eye(3)[_NAMES.index(text[-1])] * (-1.0 if text[0] == "-" else 1.0)
 
 

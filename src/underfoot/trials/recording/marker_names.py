@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from underfoot.core import DataError, InputError, nearest_match, unknown_name
+from underfoot.core.remark import Message
 
 from .trial import Marker, Trial, once_a_record
 
@@ -109,7 +110,11 @@ def own_landmarks(
         called = [name for name, one in table.items() if one == place]
         if not any(name in found for name in called):
             raise DataError(
-                f"no marker is called {' or '.join(called)}, the {place} of the profile",
+                Message(
+                    "no marker is called {name}, the {part} of the profile",
+                    name=" or ".join(called),
+                    part=place,
+                ),
                 where=where,
                 allowed=", ".join(present[:12]) or "the recording has no markers",
                 nearest=nearest_match(called[0], present),
@@ -185,7 +190,11 @@ def _lowest(marker: Marker, up: tuple[float, ...]) -> float:
 def checked_landmark(place: object, where: str) -> str:
     """Return the place of a laboratory's table; an unknown one is an InputError."""
     if not isinstance(place, str):
-        raise InputError(f"{place!r} is no place", where=where, allowed=", ".join(LANDMARKS))
+        raise InputError(
+            Message("{place} is no place", place=repr(place)),
+            where=where,
+            allowed=", ".join(LANDMARKS),
+        )
     if place not in LANDMARKS:
         raise unknown_name("place of a marker", place, LANDMARKS, where=where)
     return place

@@ -158,7 +158,9 @@ def channel_forces(
     Source: c3d.org, the FORCE_PLATFORM group.
     """
     if kind not in CHANNELS:
-        raise DataError(f"plate type {kind} is not supported", allowed="types 1 to 4")
+        raise DataError(
+            Message("plate type {kind} is not supported", kind=kind), allowed="types 1 to 4"
+        )
     if signals.shape[1] != CHANNELS[kind]:
         words = f"type {kind} needs {CHANNELS[kind]} channels, the file names {signals.shape[1]}"
         raise DataError(words)
@@ -283,7 +285,7 @@ def plate_named(trial: Trial, name: str) -> Plate:
         if plate.name == name:
             return plate
     raise DataError(
-        f"no plate named {name}",
+        Message("no plate named {name}", name=name),
         where=trial.name,
         allowed=", ".join(p.name for p in trial.plates) or "the trial has no plates",
     )

@@ -200,7 +200,11 @@ class LowPass:
         if self.kind not in FILTERS:
             raise unknown_name("filter", self.kind, FILTERS, where="filter")
         if not 0 < self.cutoff < np.inf:
-            raise InputError(f"cutoff {self.cutoff} Hz", where="filter", allowed="above 0 Hz")
+            raise InputError(
+                Message("cutoff {cutoff} Hz", cutoff=self.cutoff),
+                where="filter",
+                allowed="above 0 Hz",
+            )
 
     @property
     def description(self) -> Message:
@@ -230,9 +234,13 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
         raise DataError("samples without a number can't be filtered")
     if low_pass.cutoff > 0.45 * rate:
         raise InputError(
-            f"cutoff {low_pass.cutoff:g} Hz is too high for {rate:g} samples per second",
+            Message(
+                "cutoff {cutoff:g} Hz is too high for {rate:g} samples per second",
+                cutoff=low_pass.cutoff,
+                rate=rate,
+            ),
             where="filter",
-            allowed=f"up to {0.45 * rate:.3g} Hz",
+            allowed=Message("up to {rate:.3g} Hz", rate=0.45 * rate),
         )
     from scipy import signal
 
@@ -246,7 +254,10 @@ def low_passed(values: np.ndarray, rate: float, low_pass: LowPass) -> np.ndarray
         rest = rest.reshape(rest.shape + (1,) * (values.ndim - 1)) * values[0]
         return signal.sosfilt(sections, values, axis=0, zi=rest)[0]
     if len(values) < 30:
-        raise DataError(f"{len(values)} samples are too few to filter", allowed="30 or more")
+        raise DataError(
+            Message("{count} samples are too few to filter", count=len(values)),
+            allowed="30 or more",
+        )
     padding = min(len(values) - 1, max(15, round(rate / low_pass.cutoff)))
     if order > 2:
         return signal.sosfiltfilt(sections, values, axis=0, padlen=padding)

@@ -178,7 +178,7 @@ def day_of(given: object, *, where: str) -> datetime.date:
     day = written_day(str(given))
     if day is None:
         allowed = "as 2026-03-05 or 05.03.2026"
-        raise InputError(f'"{given}" is no date', where=where, allowed=allowed)
+        raise InputError(Message('"{given}" is no date', given=given), where=where, allowed=allowed)
     return day
 
 
@@ -205,12 +205,15 @@ def written_day(text: str) -> datetime.date | None:
 
 def _known(part: Any, allowed: Collection[str], where: str) -> None:
     if not isinstance(part, Mapping):
-        raise InputError(f"{part!r} is not a table", where=where)
+        raise InputError(Message("{part} is not a table", part=repr(part)), where=where)
     for key in part:
         if key not in allowed:
             near = nearest_match(str(key), allowed)
             raise InputError(
-                f'unknown key "{key}"', where=where, allowed=", ".join(allowed), nearest=near
+                Message('unknown key "{key}"', key=key),
+                where=where,
+                allowed=", ".join(allowed),
+                nearest=near,
             )
 
 

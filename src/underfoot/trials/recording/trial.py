@@ -218,13 +218,19 @@ class Edit:
         if not self.why.strip():
             raise InputError("an edit by hand needs its reason", where=self.where)
         if self.what in ("contact", "toe off") and not isinstance(self.value, float):
-            raise InputError(f"{self.what} needs a time", where=self.where, allowed='as "3.06 s"')
+            raise InputError(
+                Message("{what} needs a time", what=self.what),
+                where=self.where,
+                allowed='as "3.06 s"',
+            )
         if self.what == "side" and self.value not in ("left", "right"):
             raise unknown_name("side", str(self.value), ("left", "right"), where=self.where)
         if self.what == "plate" and not self.value:
             raise InputError("plate needs the name of a plate", where=self.where)
         if self.what == "exclude" and self.value not in (None, ""):
-            raise InputError(f'exclude takes no value, not "{self.value}"', where=self.where)
+            raise InputError(
+                Message('exclude takes no value, not "{given}"', given=self.value), where=self.where
+            )
 
     @property
     def step_words(self) -> str:
@@ -361,9 +367,9 @@ def _named(kind: str, names: tuple[str, ...], known: Mapping[str, _T], where: st
     listed = list(known)
     shown = ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
     raise DataError(
-        f"no {kind} named {' or '.join(names)}",
+        Message("no {kind} named {names}", kind=kind, names=" or ".join(names)),
         where=where,
-        allowed=shown or f"the trial has no {kind}s",
+        allowed=shown or Message("the trial has no {kind}s", kind=kind),
         nearest=nearest_match(names[0], listed) if names else None,
         remedy="Name the columns in a profile file",
     )

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from underfoot.core import InputError, Progress, silent, unknown_name
+from underfoot.core.remark import Message
 
 from .activities import ACTIVITIES, activity, activity_c3d
 from .c3d_file import NOTICE, walk_c3d
@@ -187,7 +188,9 @@ def simulated_folder(
     if kind not in _MAKERS:
         raise unknown_name("kind of data", kind, KINDS, where="simulate")
     if count < 1:
-        raise InputError(f"{count} trials", where="count", allowed="one or more")
+        raise InputError(
+            Message("{count} trials", count=count), where="count", allowed="one or more"
+        )
     _, maker, each, usual, profile = _MAKERS[kind]
     count = usual if count == 12 else count
     if kind == "tester":

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
+from underfoot.core.remark import Message
 
 from .samples import ROUNDING
 
@@ -68,7 +69,9 @@ def intraclass_correlation(
     n, total = len(rows), int(sizes.sum())
     if n < 2 or total <= n or not all(np.isfinite(row).all() and len(row) for row in rows):
         raise DataError(
-            f"{total} values of {n} subjects", where=form, allowed="two subjects, repeated values"
+            Message("{count} values of {subjects} subjects", count=total, subjects=n),
+            where=form,
+            allowed="two subjects, repeated values",
         )
     one_way, level = form.startswith("ICC(1"), 0.5 + confidence / 2
     everything = np.concatenate(rows)
@@ -177,7 +180,11 @@ def bland_altman(
     who = np.array([order.index(name) for name in names])
     n, counts = len(order), np.bincount(who)
     if n < 3:
-        raise DataError(f"{n} subjects", where="Bland-Altman", allowed="three or more")
+        raise DataError(
+            Message("{subjects} subjects", subjects=n),
+            where="Bland-Altman",
+            allowed="three or more",
+        )
     difference = a - b
     means = np.bincount(who, difference) / counts
     share = 1.0 - float(np.mean(1.0 / counts))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError, unknown_name
+from underfoot.core.remark import Message
 
 from .samples import KINDS, t_test
 from .shares import is_share, score, share_difference
@@ -111,7 +112,9 @@ def equivalence(
     from scipy.stats import t as student
 
     if not margin > 0:
-        raise InputError(f"margin {margin:g}", where="equivalence", allowed="above 0")
+        raise InputError(
+            Message("margin {margin:g}", margin=margin), where="equivalence", allowed="above 0"
+        )
     both = np.concatenate((np.ravel(np.asarray(first)), np.ravel(np.asarray(second))))
     if kind in KINDS and len(both) and is_share(both):
         told = share_difference(first, second, paired=kind == "paired", confidence=1 - 2 * alpha)
@@ -186,7 +189,7 @@ def _fisher_power(persons: int, shares: tuple[float, float], alpha: float) -> fl
     from scipy import stats
 
     if not all(0 <= share <= 1 for share in shares):
-        raise InputError(f"shares {shares}", where="power", allowed="0 to 1")
+        raise InputError(Message("shares {shares}", shares=shares), where="power", allowed="0 to 1")
     slips = np.arange(persons + 1)
     chances = [stats.binom.pmf(slips, persons, share) for share in shares]
     total = 0.0
@@ -205,7 +208,9 @@ def persons_needed(power_of: Callable[[int], float], wanted: float = 0.8) -> int
     InputError: ``wanted`` outside 0 to 1, or more than 5000 persons.
     """
     if not 0 < wanted < 1:
-        raise InputError(f"power {wanted:g}", where="power", allowed="between 0 and 1")
+        raise InputError(
+            Message("power {power:g}", power=wanted), where="power", allowed="between 0 and 1"
+        )
     few, many = 1, 4
     while power_of(many) < wanted:
         few, many = many, 2 * many

@@ -126,7 +126,7 @@ def predictor(
         levels = ordered_levels(named)
         if len(levels) < 2:
             raise InputError(
-                f'the factor has one level, "{levels[0] if levels else ""}"',
+                Message('the factor has one level, "{level}"', level=levels[0] if levels else ""),
                 where=name,
                 allowed="at least two levels",
                 remedy="Leave it out of the model",
@@ -134,7 +134,9 @@ def predictor(
         return Predictor(name, np.array([levels.index(value) for value in named]), levels)
     numbers = np.asarray(values, dtype=float)
     if not np.isfinite(numbers).all():
-        raise DataError(f"{int((~np.isfinite(numbers)).sum())} values are missing", where=name)
+        raise DataError(
+            Message("{sum} values are missing", sum=int((~np.isfinite(numbers)).sum())), where=name
+        )
     if np.ptp(numbers) == 0:
         raise InputError("the covariate is constant", where=name, remedy="Leave it out")
     return Predictor(name, numbers)
@@ -154,7 +156,7 @@ def design(predictors: Mapping[str, Predictor], terms: Sequence[str]) -> ModelMa
             if name not in predictors:
                 raise unknown_name("predictor", name, predictors, where=term)
         if term in slices:
-            raise InputError(f'the term "{term}" appears twice', where="terms")
+            raise InputError(Message('the term "{term}" appears twice', term=term), where="terms")
         block = _product(parts(term), coded)
         matrices.append(block)
         slices[term] = slice(at, at + block.shape[1])
@@ -292,7 +294,11 @@ def linear_model(
         )
     if len(y) - rank < 1:
         raise DataError(
-            f"{len(y)} observations for {rank} parameters leave nothing to estimate the scatter",
+            Message(
+                "{count} observations for {rank} parameters leave nothing to estimate the scatter",
+                count=len(y),
+                rank=rank,
+            ),
             where=name,
             remedy="Drop interactions or measure more",
         )
@@ -315,7 +321,10 @@ def model_data(
     for key, column in predictors.items():
         length = len(column.values if isinstance(column, Predictor) else column)
         if length != len(y):
-            raise DataError(f"{length} values for {len(y)} responses", where=key)
+            raise DataError(
+                Message("{length} values for {count} responses", length=length, count=len(y)),
+                where=key,
+            )
     complete = np.isfinite(y)
     warnings: list[Message] = []
     if not complete.all():
@@ -414,7 +423,11 @@ def analysis_of_variance(
     from scipy import stats
 
     if ss_type not in TYPES:
-        raise InputError(f"sums of squares of type {ss_type}", where="ss_type", allowed="1, 2, 3")
+        raise InputError(
+            Message("sums of squares of type {ss_type}", ss_type=ss_type),
+            where="ss_type",
+            allowed="1, 2, 3",
+        )
     model = linear_model(response, predictors, terms, name=name)
     built, y = model.design, model.response
     warnings = list(model.warnings)
@@ -505,7 +518,11 @@ def tukey_hsd(
     from scipy.optimize import brentq
 
     if not 0 < confidence < 1:
-        raise InputError(f"confidence {confidence}", where="confidence", allowed="between 0 and 1")
+        raise InputError(
+            Message("confidence {confidence}", confidence=confidence),
+            where="confidence",
+            allowed="between 0 and 1",
+        )
     if isinstance(model, LinearModel) and model.exact:
         raise DataError("the model fits the data exactly: no scatter", where=factor)
     rows, _, levels = _mean_rows(model.design, factor)
@@ -631,7 +648,11 @@ def all_subsets(response: ArrayLike, predictors: Columns) -> list[Subset]:
     InputError: more than ten predictors; otherwise as ``linear_model``.
     """
     if len(predictors) > 10:
-        raise InputError(f"{len(predictors)} predictors", where="predictors", allowed="ten at most")
+        raise InputError(
+            Message("{count} predictors", count=len(predictors)),
+            where="predictors",
+            allowed="ten at most",
+        )
     subsets = []
     for size in range(1, len(predictors) + 1):
         for names in combinations(predictors, size):

@@ -381,7 +381,9 @@ def _checked(
         raise DataError("the outcome must be 0 or 1", where=where)
     if not 0 < y.sum() < len(y):
         raise DataError(
-            f"all {len(y)} outcomes are equal", where=where, remedy="Nothing to model; give a rate"
+            Message("all {count} outcomes are equal", count=len(y)),
+            where=where,
+            remedy="Nothing to model; give a rate",
         )
     columns = [np.asarray(values, dtype=float) for values in predictors.values()]
     if any(len(column) != len(y) for column in columns):
@@ -590,7 +592,9 @@ def risk_curve(
 
     if len(fit.coefficients) != 2:
         raise InputError(
-            f"{len(fit.coefficients) - 1} predictors", where="risk_curve", allowed="one"
+            Message("{count} predictors", count=len(fit.coefficients) - 1),
+            where="risk_curve",
+            allowed="one",
         )
     _between(confidence)
     b0, b1 = fit.estimates
@@ -617,4 +621,8 @@ def risk_curve(
 
 def _between(value: float) -> None:
     if not 0.0 < value < 1.0:
-        raise InputError(f"{value} is not a probability", where="risk", allowed="between 0 and 1")
+        raise InputError(
+            Message("{given} is not a probability", given=value),
+            where="risk",
+            allowed="between 0 and 1",
+        )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, UnderfootError
+from underfoot.core.remark import Message
 
 from .logistic import logistic_regression
 
@@ -149,7 +150,9 @@ def person_bootstrap(
     names = list(map(str, person))
     rows = [np.flatnonzero(np.array(names) == name) for name in dict.fromkeys(names)]
     if len(rows) < 3:
-        raise DataError(f"{len(rows)} persons", where="bootstrap", allowed="three or more")
+        raise DataError(
+            Message("{count} persons", count=len(rows)), where="bootstrap", allowed="three or more"
+        )
 
     def of(persons: np.ndarray) -> float:
         try:
@@ -186,5 +189,9 @@ def _rows(
         raise DataError("the outcome must be 0 and 1, both of them", where="prediction")
     order = {name: i for i, name in enumerate(dict.fromkeys(names))}
     if len(order) < 3:
-        raise DataError(f"{len(order)} persons", where="prediction", allowed="three or more")
+        raise DataError(
+            Message("{count} persons", count=len(order)),
+            where="prediction",
+            allowed="three or more",
+        )
     return y, x, np.array([order[name] for name in names]), len(order)

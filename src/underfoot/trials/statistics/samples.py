@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, unknown_name
 from underfoot.core.optional import optional_module
+from underfoot.core.remark import Message
 
 ROUNDING = 1e-12
 """Differences below this share of the largest value are those of rounding: no instrument reads
@@ -109,7 +110,10 @@ def t_test(
     if min(len(a), len(b)) < 2 or not (np.isfinite(a).all() and np.isfinite(b).all()):
         raise DataError("a t test needs at least two finite values in each sample", where=kind)
     if kind == "paired" and len(a) != len(b):
-        raise DataError(f"{len(a)} against {len(b)} values can't be paired", where=kind)
+        raise DataError(
+            Message("{count} against {other} values can't be paired", count=len(a), other=len(b)),
+            where=kind,
+        )
     scatter = np.ptp(a - b) if kind == "paired" else max(np.ptp(a), np.ptp(b))
     if scatter <= ROUNDING * max(np.abs(a).max(), np.abs(b).max()):
         raise DataError("the samples do not scatter", where=kind)
@@ -301,9 +305,10 @@ def precision(readings: Mapping[str, ArrayLike]) -> Precision:
     p, total = len(groups), sum(map(len, groups.values()))
     if p < 2 or total <= p:
         raise DataError(
-            f"{total} readings of {p} laboratories", where="precision",
+            Message("{count} readings of {laboratories} laboratories", count=total, laboratories=p),
+            where="precision",
             allowed="two laboratories or more, repeated readings",
-        )  # fmt: skip
+        )
     sizes = np.array([len(v) for v in groups.values()], dtype=float)
     means = np.array([v.mean() for v in groups.values()])
     grand = float(np.sum(sizes * means) / total)

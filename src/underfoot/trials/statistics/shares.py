@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError, InputError
+from underfoot.core.remark import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,11 @@ class ShareDifference:
         from scipy.stats import norm
 
         if not -1 < margin < 1:
-            raise InputError(f"margin {margin:g}", where="shares", allowed="between -1 and 1")
+            raise InputError(
+                Message("margin {margin:g}", margin=margin),
+                where="shares",
+                allowed="between -1 and 1",
+            )
         if self.apart is not None:
             return float(norm.sf(paired_score(*self.apart, self.trials[0], margin)))
         return float(norm.sf(score(*self.shares, *self.counted, margin)))
@@ -83,7 +88,10 @@ def share_difference(
         if not len(values) or not is_share(values) or len(persons) not in (0, len(values)):
             raise DataError("a share needs trials with 0 or 1 each", where="shares")
     if paired and len(a) != len(b):
-        raise DataError(f"{len(a)} against {len(b)} trials can't be paired", where="shares")
+        raise DataError(
+            Message("{count} against {other} trials can't be paired", count=len(a), other=len(b)),
+            where="shares",
+        )
     counted = _counted(a, first_person), _counted(b, second_person)
     apart = (int(np.sum(a > b)), int(np.sum(a < b))) if paired else None
     difference = float(a.mean() - b.mean())

@@ -149,7 +149,11 @@ def study_folder(
             _add(noted_by_file[members[label]], added, label)
         if absent and len(absent) == len(described):
             raise InputError(
-                f'none of its {len(absent)} files is in the folder, the first is "{absent[0]}"',
+                Message(
+                    'none of its {count} files is in the folder, the first is "{absent}"',
+                    count=len(absent),
+                    absent=absent[0],
+                ),
                 where=table.name,
                 allowed=", ".join(sorted(members)[:3]) + " ...",
                 nearest=nearest_match(absent[0], members),
@@ -193,7 +197,7 @@ def named_file(name: str, labels: Sequence[str], below: str = ".") -> str | None
 def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
     """Return trial files, markers joined with the forces of the same name, and notes."""
     if not folder.is_dir():
-        raise InputError(f"there is no folder {folder}", where="FOLDER")
+        raise InputError(Message("there is no folder {folder}", folder=folder), where="FOLDER")
     trials: list[Path] = []
     suffixes = trial_suffixes()
     notes: list[str] = []
@@ -226,7 +230,9 @@ def _groups(folder: Path) -> tuple[list[list[Path]], list[str]]:
                 )
     if not trials:
         raise InputError(
-            f"the folder {folder} holds no trial file", where="FOLDER", allowed=", ".join(suffixes)
+            Message("the folder {folder} holds no trial file", folder=folder),
+            where="FOLDER",
+            allowed=", ".join(suffixes),
         )
     markers = {_stem(path): path for path in trials if path.suffix.casefold() == ".trc"}
     partners = {p for p in trials if p.suffix.casefold() in _FORCES and _stem(p) in markers}
@@ -270,7 +276,9 @@ def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
     try:
         pattern = re.compile(names)
     except re.error as error:
-        raise InputError(f"the pattern of names is wrong: {error}", where="names") from error
+        raise InputError(
+            Message("the pattern of names is wrong: {error}", error=error), where="names"
+        ) from error
     if not pattern.groupindex:
         allowed = r"for example S(?P<subject>\d+)_(?P<shoe>[a-z]+)_(?P<n>\d+)"
         text = "the pattern of names has no named group"
@@ -279,9 +287,16 @@ def _from_names(labels: Sequence[str], names: str) -> list[dict[str, Any]]:
     without = [label for label, match in zip(labels, matches, strict=True) if match is None]
     if without:
         raise InputError(
-            f"{len(without)} of {len(labels)} names do not match the pattern {names}",
+            Message(
+                "{count} of {total} names do not match the pattern {pattern}",
+                count=len(without),
+                total=len(labels),
+                pattern=names,
+            ),
             where="names",
-            allowed=f"names such as the first one that fails: {without[0]}",
+            allowed=Message(
+                "names such as the first one that fails: {without}", without=without[0]
+            ),
             remedy="Correct the pattern, rename the files, or note conditions in conditions.csv",
         )
     return [
@@ -326,7 +341,12 @@ def _add(noted: dict[str, Any], added: Mapping[str, Any], label: str) -> None:
     for key, value in added.items():
         if noted.get(key, value) != value:
             raise InputError(
-                f'{key} is "{noted[key]}" by one source and "{value}" by another',
+                Message(
+                    '{name} is "{first}" by one source and "{second}" by another',
+                    name=key,
+                    first=noted[key],
+                    second=value,
+                ),
                 where=label,
                 remedy="Correct the table of conditions, the names or the folders",
             )
@@ -351,7 +371,7 @@ def one_spelling(noted: Sequence[dict[str, Any]], merge: bool) -> None:
             written = ", ".join(f'"{text}" ({n} files)' for text, n in counts.most_common())
             if not merge:
                 raise InputError(
-                    f"{key} is written {written}",
+                    Message("{key} is written {written}", key=key, written=written),
                     where="conditions",
                     remedy="Write it one way, or take the spellings as one with --merge-spelling",
                 )
@@ -424,7 +444,7 @@ def conditions_of(folder: Path, table: Path | None = None) -> dict[str, dict[str
         if not file:
             continue
         if file in noted:
-            raise InputError(f'"{file}" is named twice', where=path.name)
+            raise InputError(Message('"{file}" is named twice', file=file), where=path.name)
         noted[file] = {n: c[number] for n, c in columns.items() if c[number] not in ("", None)}
     return noted
 
@@ -446,7 +466,10 @@ def table_columns(path: Path, needed: Sequence[str]) -> TableColumns:
     ]
     if len(wanted) > 1:
         raise InputError(
-            f"several sheets hold such a table, with other headings: {', '.join(wanted)}",
+            Message(
+                "several sheets hold such a table, with other headings: {names}",
+                names=", ".join(wanted),
+            ),
             where=path.name,
             remedy="Write the same headings in each sheet, or keep one",
         )
@@ -484,14 +507,19 @@ def _columns(
     for line, row in lines:
         if any(row[len(heads) :]):
             raise InputError(
-                f"line {line} has {len(row)} cells, the headings are {len(heads)}",
+                Message(
+                    "line {line} has {count} cells, the headings are {width}",
+                    line=line,
+                    count=len(row),
+                    width=len(heads),
+                ),
                 where=where,
                 remedy='A comma within a cell ("0,45") needs quotes, or semicolons between cells',
             )
     folded = [name.casefold() for name, _ in heads if name]
     twice = next((name for name in folded if folded.count(name) > 1), "")
     if twice:
-        raise InputError(f'two columns are called "{twice}"', where=where)
+        raise InputError(Message('two columns are called "{twice}"', twice=twice), where=where)
     columns = [
         (
             name,
@@ -593,7 +621,9 @@ def _sheets(path: Path) -> dict[str, list[list[str]]]:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise InputError(f"can't be read: {error.strerror or error}", where=str(path)) from error
+        raise InputError(
+            Message("can't be read: {strerror}", strerror=error.strerror or error), where=str(path)
+        ) from error
     if is_workbook(data):
         try:
             return workbook_sheets(data, path.name)
@@ -627,7 +657,7 @@ def _column(
         return list(cells) if written is None else written
     if bad is not None and (name in MASS or si_unit(unit) or _is_si(unit)):
         raise InputError(
-            f'line {lines[bad]}: {name} is "{cells[bad]}"',
+            Message('line {line}: {name} is "{cell}"', line=lines[bad], name=name, cell=cells[bad]),
             where=where,
             allowed="a number; its unit stands in the heading, as in mass (kg)",
         )
@@ -635,9 +665,11 @@ def _column(
         return list(cells)
     if name in _COMPUTED and not unit:
         raise InputError(
-            f"{name} has no unit",
+            Message("{name} has no unit", name=name),
             where=where,
-            remedy=f"Write the unit in the heading: {name} {_COMPUTED[name]}",
+            remedy=Message(
+                "Write the unit in the heading: {name} {unit}", name=name, unit=_COMPUTED[name]
+            ),
         )
     if unit and name in _SI_UNITS:
         _refuse_other_unit(unit, _SI_UNITS[name], f"{where}, column {name}")
@@ -650,10 +682,13 @@ def _column(
     for i, value in enumerate(values):
         if value is not None and not low <= value <= high:
             raise InputError(
-                f'line {lines[i]}: {name} is "{cells[i]}"',
+                Message('line {line}: {name} is "{cell}"', line=lines[i], name=name, cell=cells[i]),
                 where=where,
                 allowed=f"{low:g} to {high:g} {si}".strip(),
-                remedy=f"Write the unit in the heading: {headings.replace('(', f'{name} (')}",
+                remedy=Message(
+                    "Write the unit in the heading: {headings}",
+                    headings=headings.replace("(", f"{name} ("),
+                ),
             )
     return values
 
@@ -683,7 +718,9 @@ def _refuse_other_unit(unit: str, si: str, where: str) -> None:
         units.to_si(f"1 {plain}", si, where=where)
     except InputError as error:
         allowed = "a number" if si == "1" else f"a unit of {si}"
-        raise InputError(f'is in "{unit}"', where=where, allowed=allowed) from error
+        raise InputError(
+            Message('is in "{unit}"', unit=unit), where=where, allowed=allowed
+        ) from error
 
 
 def _is_si(unit: str) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from underfoot.core import InputError, nearest_match, to_si
 from underfoot.core.files import whole_file
+from underfoot.core.remark import Message
 from underfoot.core.text import decode_text
 
 from ..readers.text import name_and_unit
@@ -46,7 +47,9 @@ def edit_rows(
     lacking = [name for name in COLUMNS if name not in cells]
     if lacking:
         raise EditError(
-            f'there is no column "{lacking[0]}"', where=path.name, allowed=", ".join(COLUMNS)
+            Message('there is no column "{lacking}"', lacking=lacking[0]),
+            where=path.name,
+            allowed=", ".join(COLUMNS),
         )
     edits: list[tuple[int, str, Edit]] = []
     rows = zip(*(cells[name][1] for name in COLUMNS), strict=True)
@@ -105,7 +108,7 @@ def edit_text(folder: Path) -> str:
         raise EditError(
             "the edits of this folder stand in a workbook, which is not written",
             where=NAMES[1],
-            remedy=f"Save it as {NAMES[0]} and take it away",
+            remedy=Message("Save it as {names} and take it away", names=NAMES[0]),
         )
     return ""
 

@@ -214,7 +214,7 @@ def _analysed(
         try:
             return reading_results(name, files[0], checksum, noted, protocol, profile.calibration)
         except UnderfootError as error:
-            return [FileResult(name, checksum, REFUSED, (str(error),), conditions=noted)]
+            return [FileResult(name, checksum, REFUSED, (error.message,), conditions=noted)]
     trials, refusals, notes = recording_trials(files, profile)
     if not trials:
         return [FileResult(name, checksum, REFUSED, tuple(refusals), conditions=noted)]
@@ -243,10 +243,10 @@ def _analysed(
         try:
             analysed_trial(trial, draft, protocol, profile)
         except EditError as error:
-            error.what = f"{label}: {error.what}"
+            error.what = Message("{label}: {what}", label=label, what=error.what)
             raise
         except UnderfootError as error:
-            draft.refusals.append(Message("{error}", error=str(error)))
+            draft.refusals.append(error.message)
         except Exception as error:
             # One odd file must not end the work on hundreds of others; the cause is kept.
             draft.refusals.append(
@@ -294,4 +294,7 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
             text = f"there is no {edit.step_words}"
             raise EditError(text, where=edit.where, allowed=f"1 to {trials}")
         if any(edit.step == other.step for other in edits[:i]):
-            raise EditError(f"{edit.step_words} is excluded twice", where=edit.where)
+            raise EditError(
+                Message("{step_words} is excluded twice", step_words=edit.step_words),
+                where=edit.where,
+            )

@@ -173,7 +173,11 @@ def _table_results(
     unit = units[column].casefold()
     if unit not in _UNITS[quantity]:
         allowed = ", ".join(u for u in _UNITS[quantity] if u)
-        raise DataError(f'{column} is in "{units[column]}"', where=name, allowed=allowed)
+        raise DataError(
+            Message('{column} is in "{unit}"', column=column, unit=units[column]),
+            where=name,
+            allowed=allowed,
+        )
     values = numbers[column] * _UNITS[quantity][unit]
     top = LARGEST[quantity]
     wrong = np.flatnonzero((values < (-0.1 * top)) | (values > top))
@@ -209,7 +213,11 @@ def _table_results(
         label = next(filter(None, labels), "")
         if np.isfinite(values[i]) and _SUMMARY.fullmatch(label):
             raise DataError(
-                f'line {lines[i]}: "{label}" is no sample but a number of others',
+                Message(
+                    'line {line}: "{label}" is no sample but a number of others',
+                    line=lines[i],
+                    label=label,
+                ),
                 where=name,
                 remedy="Leave rows of means and standard deviations out: they are computed",
             )
@@ -298,7 +306,7 @@ def _boards(
     rows = np.flatnonzero(np.isfinite(standards) & np.isfinite(values)).tolist()
     if "operator" not in texts:
         raise DataError(
-            f'"{head}" tells calibration boards, but nobody walks on them',
+            Message('"{head}" tells calibration boards, but nobody walks on them', head=head),
             where=name,
             allowed="a column operator",
             remedy="Name the walker of each reading",
@@ -347,7 +355,7 @@ def _check(name: str, slider: str, label: str, values: np.ndarray) -> _Check:
     surface = next((s for s in _SURFACES if s in label.casefold()), None)
     if surface is None:
         raise DataError(
-            f'a check on an unknown surface: "{label.strip()}"',
+            Message('a check on an unknown surface: "{label}"', label=label.strip()),
             where=name,
             allowed="float glass, lapping film, Pavigres tile",
         )
@@ -563,7 +571,9 @@ def _value_column(
             return found[0], candidate
     heads = list(QUANTITIES[quantity]) if quantity else [one[0] for one in QUANTITIES.values()]
     raise DataError(
-        f"no column of readings was recognised among {', '.join(names) or 'none'}",
+        Message(
+            "no column of readings was recognised among {names}", names=", ".join(names) or "none"
+        ),
         where=where,
         allowed=", ".join(heads),
         remedy=f"Write one reading a row, with what it is of in columns of words, or several "

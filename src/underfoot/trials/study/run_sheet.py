@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 
 from underfoot.core import InputError
+from underfoot.core.remark import Message
 
 from ..readers import trial_suffixes
 
@@ -75,7 +76,7 @@ def run_sheet(
             raise InputError(f'"{name}" is a column of the sheet', where="factors")
         if len(levels) < 2 or len(set(levels)) < len(levels):
             raise InputError(
-                f"{name}: {', '.join(levels) or 'no level'}",
+                Message("{name}: {error}", name=name, error=", ".join(levels) or "no level"),
                 where="factors",
                 allowed="two levels or more, each once, as shoe=A,B",
             )
@@ -88,7 +89,11 @@ def run_sheet(
         )
     count = repeats * int(np.prod([len(levels) for levels in factors.values()], dtype=float))
     if count > MOST_RUNS:
-        raise InputError(f"{count} runs", where="plan", allowed=f"up to {MOST_RUNS}")
+        raise InputError(
+            Message("{count} runs", count=count),
+            where="plan",
+            allowed=Message("up to {most}", most=MOST_RUNS),
+        )
     levels_of = {name: tuple(levels) for name, levels in factors.items()}
     every = {**levels_of, REPEAT: tuple(str(n + 1) for n in range(repeats))}
     runs = [dict(zip(every, one, strict=True)) for one in product(*every.values())]

@@ -9,7 +9,7 @@ import numpy as np
 
 from underfoot.core import DataError, InputError, UnderfootError, unknown_name
 from underfoot.core.remark import NOTHING, Message, Remark
-from underfoot.core.units import plain_number
+from underfoot.core.unit_text import plain_number
 
 from ..machines.compression import compression
 from ..machines.pin_on_disk import friction_point
@@ -66,7 +66,7 @@ def _check_kind(trial: Trial, protocol: Protocol, profile: TrialsProfile) -> Non
         raise DataError(
             f"the forces are those of {seen}, and {protocol.name} is for {KINDS[protocol.kind]}",
             where=trial.name,
-            remedy=f"Use --protocol {other}",
+            remedy=Message("Use --protocol {other}", other=other),
         )
 
 
@@ -280,7 +280,7 @@ def check_ramp(protocol: Protocol) -> None:
         protocol_ramp(protocol)
     elif "ramp" in protocol.method or "plate_frame" in protocol.method:
         raise InputError(
-            f"a ramp has no meaning in a protocol of the kind {protocol.kind}",
+            Message("a ramp has no meaning in a protocol of the kind {kind}", kind=protocol.kind),
             where=f"protocol {protocol.name}",
             allowed="only walking and human slips take ramp and plate_frame",
         )
@@ -332,7 +332,9 @@ def _human_slip(walk: _Walk) -> None:
     name = str(draft.conditions.get("slip plate") or protocol.text("slip_plate"))
     on_plate = [s for s in walk.stances if not name or s.plate == name]
     if not on_plate:
-        raise DataError(f"no contact with the slippery plate ({name})", where=walk.trial.name)
+        raise DataError(
+            Message("no contact with the slippery plate ({name})", name=name), where=walk.trial.name
+        )
     _required(walk, [s for s in walk.stances if s not in on_plate])
     definition = slip_definition(protocol)
     standard = OutcomeLimits()

@@ -9,7 +9,7 @@ import numpy as np
 from underfoot.core import DataError, UnderfootError
 from underfoot.core.presentation import p_text
 from underfoot.core.remark import Message, Remark, together
-from underfoot.core.units import plain_number
+from underfoot.core.unit_text import plain_number
 
 from .. import statistics
 from ..recording.protocols import Protocol

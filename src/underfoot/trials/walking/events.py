@@ -90,7 +90,12 @@ def edited_contacts(
         for (other, what), earlier in seen.items():
             if other == number and (what == edit.what or "exclude" in (what, edit.what)):
                 raise EditError(
-                    f"{edit.what} of step {number} contradicts {earlier.where}",
+                    Message(
+                        "{what} of step {number} contradicts {where}",
+                        what=edit.what,
+                        number=number,
+                        where=earlier.where,
+                    ),
                     where=edit.where,
                     remedy="Keep one of the two",
                 )
@@ -110,14 +115,20 @@ def _named(contacts: Sequence[Stance], edit: Edit) -> int:
         for i, stance in enumerate(contacts):
             if stance.number == edit.step:
                 return i
-        raise EditError(f"there is no step {edit.step}", where=edit.where, allowed=allowed)
+        raise EditError(
+            Message("there is no step {step}", step=edit.step), where=edit.where, allowed=allowed
+        )
     near = [
         (abs(edit.step - s.contact), i)
         for i, s in enumerate(contacts)
         if s.contact - _NEAR <= edit.step <= s.toe_off
     ]
     if not near:
-        raise EditError(f"there is no step at {edit.step:g} s", where=edit.where, allowed=allowed)
+        raise EditError(
+            Message("there is no step at {step:g} s", step=edit.step),
+            where=edit.where,
+            allowed=allowed,
+        )
     return min(near)[1]
 
 
@@ -136,7 +147,7 @@ def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance
     last = plate.start + (len(plate.force) - 1) / plate.rate
     if not plate.start <= time <= last:
         raise EditError(
-            f"{edit.what} at {time:g} s lies outside the record",
+            Message("{what} at {time:g} s lies outside the record", what=edit.what, time=time),
             where=edit.where,
             allowed=f"{plate.start:.3f} to {last:.3f} s",
         )
@@ -150,9 +161,13 @@ def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance
         stance = replace(stance, stop=sample, toe_off=time)
     if stance.stop - stance.start < 2:
         raise EditError(
-            f"step {stance.number} would end before it begins",
+            Message("step {number} would end before it begins", number=stance.number),
             where=edit.where,
-            allowed=f"contact before toe off, now {stance.contact:.3f} and {stance.toe_off:.3f} s",
+            allowed=Message(
+                "contact before toe off, now {contact:.3f} and {toe_off:.3f} s",
+                contact=stance.contact,
+                toe_off=stance.toe_off,
+            ),
         )
     peak = float(np.nanmax(plate.force[stance.start : stance.stop] @ up, initial=0.0))
     return replace(stance, peak=peak, by_hand=by_hand)

@@ -64,7 +64,11 @@ class RcofDefinition:
         if self.peak not in PEAKS:
             raise unknown_name("peak", self.peak, PEAKS, where="rcof.peak")
         if not 0 < self.part <= 1:
-            raise InputError(f"part {self.part}", where="rcof.part", allowed="above 0, up to 1")
+            raise InputError(
+                Message("part {part}", part=self.part),
+                where="rcof.part",
+                allowed="above 0, up to 1",
+            )
         if not self.gate > 0 or (self.gate_body_weight is not None and self.gate_body_weight <= 0):
             raise InputError("the gate must be above zero", where="rcof.gate")
 
