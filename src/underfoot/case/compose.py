@@ -320,7 +320,7 @@ def _settle_reads(composition: Composition) -> None:
             continue
         if not from_catalogue(table[key]):
             if not composition.lenient(path):
-                remedy = f"Remove it, or choose {' or '.join(readers)}"
+                remedy = Message("Remove it, or choose {readers}", readers=" or ".join(readers))
                 what = "is not read by any chosen option"
                 error = InputError(what, where=composition.places(path), remedy=remedy)
                 composition.errors.append(error)

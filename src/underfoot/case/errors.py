@@ -163,7 +163,7 @@ def _missing(owner: type[Section] | None, key: str, where: str) -> InputError:
     stated = extra if isinstance(extra, dict) else {}
     what, remedy = str(stated.get("missing", "is missing")), stated.get("remedy")
     if owner is not None and issubclass(owner, Option) and "missing" not in stated:
-        what = f'is missing for {owner.key} = "{owner.name}"'
+        what = Message('is missing for {key} = "{name}"', key=owner.key, name=owner.name)
     if remedy is None and field is not None and field.description:
         remedy = f"Give {key}: {field.description}"
     return InputError(what, where=where, remedy=str(remedy) if remedy else add)

@@ -206,5 +206,5 @@ def unknown_path(path: str) -> InputError:
     for at, slot in slot_table().items():
         broken = "; ".join(slot.broken()) if path.startswith(f"{at}.") else ""
         if broken:
-            error.remedy = f"If it is a key of a package: {broken}"
+            error.remedy = Message("If it is a key of a package: {broken}", broken=broken)
     return error

@@ -178,7 +178,7 @@ class Places:
         if self.file is None:
             return path
         if any(path == other or path.startswith(other + ".") for other in self.changed):
-            return f"{path} (set for this run)"
+            return Message("{path} (set for this run)", path=path)
         # an item of a list stands on the line of its list
         parts = self.moved.get(path, path).replace("[", ".").split(".")
         while parts:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from underfoot.core.leaves import INHERITED
+from underfoot.core.remark import Message
 
 _MOVED = {
     ("contaminant.boundary", "friction"): "cof_bl tau_hydro cof_asymptote alpha beta load pair",
@@ -84,4 +85,4 @@ def _marked(item: Any, marks: Mapping[str, Any]) -> Any:
 
 def sentence(old: str, new: str) -> str:
     """Return what happened to one path, for a reader."""
-    return f"{old} is {new} in case files of version 2"
+    return Message("{old} is {new} in case files of version 2", old=old, new=new)

@@ -176,7 +176,10 @@ class ArchardWear(Wear):
         except InputError as error:
             raise refused_at(cls, ("abrasion",), error, leaf.given) from error
         rate = f"{volume / (DIN_FORCE * DIN_WAY):.6g} mm^3/(N*m)"
-        source = f"{volume:g} mm^3 lost on the abrasive sheet of ISO 4649; floors are far gentler"
+        source = Message(
+            "{volume:g} mm^3 lost on the abrasive sheet of ISO 4649; floors are far gentler",
+            volume=volume,
+        )
         leaf = replace(leaf, given=rate, source=source)
         return {**given, "abrasion": None, "wear_rate": Origin(GIVEN, leaf)}
 

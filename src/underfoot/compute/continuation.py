@@ -80,7 +80,12 @@ class Preview:
 
     def __str__(self) -> str:
         cof, load = (f"{self.values[k]:.3g} (±{self.errors[k]:.1g})" for k in ("cof", "fluid_load"))
-        return f"Preview: COF {cof}, load on the film {load} N. {self.status.remedy}"
+        return Message(
+            "Preview: COF {cof}, load on the film {load} N. {remedy}",
+            cof=cof,
+            load=load,
+            remedy=self.status.remedy,
+        )
 
 
 class Continuation:

@@ -240,7 +240,7 @@ def _content(folder: str) -> tuple[tuple[str, str], ...]:
 
 def _folder_tables(folder: Path, *, built_in: bool = False) -> _Tables:
     if not folder.is_dir():
-        what = f"the catalogue folder {folder} does not exist"
+        what = Message("the catalogue folder {folder} does not exist", folder=folder)
         raise InputError(what, allowed="a folder with TOML files")
     tables: _Tables = {}
     for file in sorted(folder.rglob("*.toml")):

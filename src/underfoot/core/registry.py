@@ -41,7 +41,7 @@ class Offer:
         try:
             return load_address(self.address)
         except InputError as error:
-            remedy = f"Mend or remove {self.package}"
+            remedy = Message("Mend or remove {package}", package=self.package)
             raise InputError(
                 Message("{name}: {error}", name=self, error=error.what), remedy=remedy
             ) from error

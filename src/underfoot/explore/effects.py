@@ -73,7 +73,13 @@ class Effects(Presentable):
         first = int(np.argmax(self.total))
         value = _shown(self.total[first], self.total_half[first])
         return (
-            f"{self.output} depends most on {self.paths[first]} ({self.heads[1]} {value}).",
+            Message(
+                "{output} depends most on {path} ({head} {value}).",
+                output=self.output,
+                path=self.paths[first],
+                head=self.heads[1],
+                value=value,
+            ),
             f"On {self.basis}.",
         )
 
@@ -130,7 +136,7 @@ def effects(result: StudyResult, goal: AnyGoal) -> Effects:
     if method.on == "runs":
         points = np.array([design.point for design in result.designs])
         values = result.values(result.designs, [goal])[:, 0]
-        basis = f"{len(values)} designs run in full"
+        basis = Message("{count} designs run in full", count=len(values))
         if lost := np.count_nonzero(~np.isfinite(values)):
             raise DataError(
                 Message(

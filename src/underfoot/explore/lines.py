@@ -15,6 +15,7 @@ from uuid import uuid4
 from zlib import crc32
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 FORMAT = 2
 """Version of the lines that this package writes; newer ones are refused, version 1 is read."""
@@ -127,6 +128,6 @@ class NewerFormat(DataError):
     def __init__(self, version: int) -> None:
         super().__init__(
             f"the study was written by a newer version (format {version})",
-            allowed=f"format {FORMAT} or older",
+            allowed=Message("format {format} or older", format=FORMAT),
             remedy="Update underfoot, or run the study in another folder",
         )

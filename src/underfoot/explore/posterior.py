@@ -27,6 +27,7 @@ from underfoot.core.files import whole_file
 from underfoot.core.optional import optional_module
 from underfoot.core.presentation import Presentable, Table, quantity_text
 from underfoot.core.progress import part
+from underfoot.core.remark import Message
 from underfoot.core.threads import threads_limited
 
 from .goals import Goal
@@ -88,33 +89,51 @@ class Posterior(Presentable):
     def headline(self) -> tuple[str, ...]:
         """Return what the readings taught of each parameter, and the discrepancy."""
         if not self.usable:
-            return (f"No result: the chain lasts {self.lengths:.0f} autocorrelation times only.",)
+            return (
+                Message(
+                    "No result: the chain lasts {lengths:.0f} autocorrelation times only.",
+                    lengths=self.lengths,
+                ),
+            )
         ratios = self.draws.std(axis=0) / self.prior.std(axis=0)
         best = int(np.argmin(ratios))
         return (
             f"Readings used: {len(self.readings)}. They narrow {self.paths[best]} most: its "
             f"standard deviation is {ratios[best]:.0%} of the prior's.",
-            f"Discrepancy of the model {np.median(self.discrepancy):.0%} (median).",
+            Message(
+                "Discrepancy of the model {median:.0%} (median).",
+                median=np.median(self.discrepancy),
+            ),
         )
 
     def cautions(self) -> tuple[str, ...]:
         """Return what contradicts, weak surrogates, and posteriors at the end of a prior."""
         outside = [
-            f"{label} reads {quantity_text(value, unit)}, outside what the model with these priors "
-            f"reaches ({quantity_text(low, unit)} to {quantity_text(high, unit)}): check reading, "
-            "condition and priors."
+            Message(
+                "{label} reads {reading}, outside what the model with these priors "
+                "reaches ({low} to {high}): check reading, condition "
+                "and priors.",
+                label=label,
+                reading=quantity_text(value, unit),
+                low=quantity_text(low, unit),
+                high=quantity_text(high, unit),
+            )
             for (label, value, sd, unit), (low, middle, high) in zip(
                 self.readings, self.after, strict=True
             )
             if not -WIDE < (value - np.clip(value, low, high)) / _off(sd, middle) < WIDE
         ]
         apart = [
-            f"{first} and {second} are of one condition and differ by more than their sd allow."
+            Message(
+                "{first} and {second} are of one condition and differ by more than their sd allow.",
+                first=first,
+                second=second,
+            )
             for first, second in self.apart
         ]
         weak = [f"{model.name}: {model.reliability}" for model in self.models if model.q2 < 0.9]
         edge = [
-            f"The posterior of {path} lies at the end of its prior: widen that."
+            Message("The posterior of {path} lies at the end of its prior: widen that.", path=path)
             for path, now, then in zip(self.paths, self.draws.T, self.prior.T, strict=True)
             if not then.min() * 1.0001 < np.median(now) < then.max() * 0.9999
         ]

@@ -208,8 +208,11 @@ class Study:
             raise Stopped(
                 "the study was stopped",
                 where=str(self.store.folder),
-                remedy="every finished case is kept; underfoot study run goes on from there "
-                f"(without one: remove {self.store.folder / STOP}, then underfoot study work)",
+                remedy=Message(
+                    "every finished case is kept; underfoot study run goes on from "
+                    "there (without one: remove {folder}, then underfoot study work)",
+                    folder=self.store.folder / STOP,
+                ),
             )
 
     def _begin_next(self) -> bool:

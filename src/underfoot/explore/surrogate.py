@@ -300,7 +300,11 @@ class Surrogate:
         """Its error as it stands wherever the surrogate is used."""
         error = quantity_text(self.error, self.unit)
         mark = "" if self.q2 >= TRUSTED else ": too much to rank designs by"
-        runs = f"a formula through {len(self.runs)} computed designs ({self.model.form})"
+        runs = Message(
+            "a formula through {count} computed designs ({form})",
+            count=len(self.runs),
+            form=self.model.form,
+        )
         return f"{runs} misses designs left out by {error} (Q2 {self.q2:.3f}){mark}"
 
     def predicted(self, points: Array, *, noise: bool = True) -> tuple[Array, Array]:

@@ -212,7 +212,7 @@ def of_class(law: PairContactLaw, known: ShoeClass, place: Array, seed: int) -> 
     rows = even_rows(weight, COUNT, generator.random())
     draws = wide.rows(generator.permutation(rows))
     draws = replace(draws, source=f"{start.source}; soles of class {known.name}")
-    basis = f"of a sole of class {known.name}"
+    basis = Message("of a sole of class {name}", name=known.name)
     basis += (
         ", calibrated to readings"
         if calibrated

@@ -57,7 +57,11 @@ def read_deck(path: Path | str, modulus_unit: str | None = None) -> Deck:
     except InputError as error:
         raise DataError(error.what, where="--unit", allowed="MPa, kPa, Pa, GPa") from error
     series = RelaxationSpectrum(rest * unit, np.array(terms) * unit, np.array(tau), source=where)
-    return Deck(series, shear, (f"{said}; moduli in {modulus_unit}, times in s",))
+    return Deck(
+        series,
+        shear,
+        (Message("{name}; moduli in {unit}, times in s", name=said, unit=modulus_unit),),
+    )
 
 
 Parts = tuple[float, list[float], list[float], bool, str]

@@ -66,9 +66,13 @@ class DurometerReading:
         """Return what the conversion rests on; empty where nothing was converted."""
         if self.scale is SHORE_A:
             return ""
-        return (
-            f"{self.value:g} {self.scale.name} taken as Shore A {self.shore_a:.0f} ± "
-            f"{self.scale.spread:g} ({self.scale.source})"
+        return Message(
+            "{value:g} {name} taken as Shore A {shore_a:.0f} ± {spread:g} ({source})",
+            value=self.value,
+            name=self.scale.name,
+            shore_a=self.shore_a,
+            spread=self.scale.spread,
+            source=self.scale.source,
         )
 
 

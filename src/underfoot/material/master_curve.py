@@ -127,7 +127,12 @@ class WlfShift(_ShiftLaw):
         return scalar_or_array(-self.c1 * away / (self.c2 + away))
 
     def __str__(self) -> str:
-        return f"WLF C1 {self.c1:.4g}, C2 {self.c2:.4g} K, residual {self.rms:.2g} decades"
+        return Message(
+            "WLF C1 {c1:.4g}, C2 {c2:.4g} K, residual {rms:.2g} decades",
+            c1=self.c1,
+            c2=self.c2,
+            rms=self.rms,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,7 +268,10 @@ class DynamicMasterCurve:
 
     def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_dynamic`` of the master curve."""
-        name = f"DMA master curve at {self.shifts.reference_temperature:.2f} K"
+        name = Message(
+            "DMA master curve at {reference_temperature:.2f} K",
+            reference_temperature=self.shifts.reference_temperature,
+        )
         moduli = self.storage_modulus, self.loss_modulus
         return fit_dynamic(self.angular_frequency, *moduli, **{"source": name, **settings})
 
@@ -279,7 +287,10 @@ class RelaxationMasterCurve:
 
     def spectrum(self, **settings: Any) -> SpectrumFit:
         """Return ``fit_relaxation`` of the master curve."""
-        name = f"relaxation master curve at {self.shifts.reference_temperature:.2f} K"
+        name = Message(
+            "relaxation master curve at {reference_temperature:.2f} K",
+            reference_temperature=self.shifts.reference_temperature,
+        )
         return fit_relaxation(self.time, self.modulus, **{"source": name, **settings})
 
 

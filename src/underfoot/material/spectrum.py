@@ -77,7 +77,11 @@ class RelaxationSpectrum(Presentable):
         terms = zip(self.relaxation_times.tolist(), self.term_moduli.tolist(), strict=True)
         rows += [(number, time, modulus) for number, (time, modulus) in enumerate(terms, start=1)]
         columns = ("term", "relaxation time s", "modulus Pa")
-        return Table(f"Relaxation spectrum ({self.source or 'no source'})", columns, rows)
+        return Table(
+            Message("Relaxation spectrum ({source})", source=self.source or "no source"),
+            columns,
+            rows,
+        )
 
     def cautions(self) -> tuple[Message, ...]:
         """Return that nothing is left at rest, which no cross-linked rubber does."""

@@ -162,7 +162,10 @@ def floor_calibration(
     Raises:
         InputError: Readings that hardly any draw agrees with.
     """
-    joint, roughness = floor_draws(pair, draws, seed), f"roughness of floor {FLOOR}"
+    joint, roughness = (
+        floor_draws(pair, draws, seed),
+        Message("roughness of floor {floor}", floor=FLOOR),
+    )
     share = floor_name(pair)
     before = interval(joint.between(roughness, pair.floor_rq))
     outside = [

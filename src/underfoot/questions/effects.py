@@ -187,7 +187,7 @@ def change_effects(
         try:
             variant = case.replace(change.values)
         except UnderfootError as error:
-            effects[number] = ChangeEffect(change, {}, str(error))
+            effects[number] = ChangeEffect(change, {}, error.message)
             continue
         if all(path.split(".")[0] == "risk" for path in change.values):
             effects[number] = _Friction.of(present.scalars, present.data).effect(

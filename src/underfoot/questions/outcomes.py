@@ -161,4 +161,4 @@ def _computed_alone(case: Case, *, quick: bool, maps: Sequence[str]) -> CaseOutc
     except ConvergenceError as error:  # one case without numbers, the others go on
         status = Status.NOT_CONVERGED
         none = undetermined_numbers(case, status)
-        return CaseOutcome(case.name, case.hash, none, {}, status, str(error), (), (), 0.0)
+        return CaseOutcome(case.name, case.hash, none, {}, status, error.message, (), (), 0.0)

@@ -93,7 +93,7 @@ class SlipPopulation(Presentable):
                 Message(
                     "The walker {verdict}: peak heel speed {speed:.2f} m/s (slip above 0.2 m/s), "
                     "distance {distance:.0f} mm ({outcome}).",
-                    verdict="slips" if seen.slipped else "does not slip",
+                    verdict=Message("slips") if seen.slipped else Message("does not slip"),
                     speed=seen.peak_speed, distance=1e3 * seen.distance, outcome=seen.outcome,
                 ),
                 Message("One walker has no spread, so no interval."),

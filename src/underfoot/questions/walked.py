@@ -124,7 +124,7 @@ def worn_pair(text: str | None) -> WornPair | None:
     lost = to_si(match["lost"], "m", where="--worn-pair")
     walked = to_si(match["walked"], unit, where="--worn-pair")
     if not (0 < lost < THICKEST and walked > 0):
-        allowed = f"both above 0, a sole thinner than {metres(THICKEST)}"
+        allowed = Message("both above 0, a sole thinner than {metres}", metres=metres(THICKEST))
         raise InputError(f'"{text}"', where="--worn-pair", allowed=allowed)
     return WornPair(lost, walked) if unit == "m" else WornPair(lost, None, walked / MONTH)
 

@@ -19,6 +19,7 @@ from underfoot.core.fields import Fields
 from underfoot.core.html import data_address, environment, new_figure, png
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
 from underfoot.core.presentation import Table, percent
+from underfoot.core.remark import Message
 from underfoot.core.unit_text import display_unit
 from underfoot.explore import Study, StudyResult
 from underfoot.explore.effects import Effects, effects
@@ -137,7 +138,10 @@ def _study_sections(
     best = result.best(8)
     if len(best) > 1:
         rows = [
-            (f"Design {a.number} above design {b.number}", _chance(result.higher_cof(a, b)))
+            (
+                Message("Design {first} above design {second}", first=a.number, second=b.number),
+                _chance(result.higher_cof(a, b)),
+            )
             for a, b in pairwise(best)
         ]
         intro = "Over shared draws: what both designs have in common cancels."

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from underfoot.core.fields import Fields
 from underfoot.core.html import new_figure
+from underfoot.core.remark import Message
 from underfoot.questions.comparison import LETTERS
 
 from .common_grid import common_grid, difference, on_grid, sole_on_grid
@@ -186,9 +187,10 @@ def grid_note(datasets: Sequence[Fields]) -> str:
     grid = common_grid(datasets)
     if not grid.resampled:
         return "All results have the same grid."
-    return (
-        f"The grids differ: differences are taken on cells of {grid.spacing * 1e3:.3g} mm, each "
-        "the mean over the cells it covers."
+    return Message(
+        "The grids differ: differences are taken on cells of {spacing:.3g} mm, each the "
+        "mean over the cells it covers.",
+        spacing=grid.spacing * 1000.0,
     )
 
 

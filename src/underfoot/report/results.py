@@ -18,6 +18,7 @@ from underfoot.core.fields import Fields, labelled_fields
 from underfoot.core.html import data_address, new_figure
 from underfoot.core.page import PageSection, Picture, page, remark_sections, table_sections
 from underfoot.core.presentation import Table
+from underfoot.core.remark import Message
 from underfoot.questions.comparison import Comparison
 from underfoot.questions.risk import RiskAssessment
 from underfoot.shoe import SoleMap
@@ -70,7 +71,9 @@ def _result_sections(
     parts += table_sections(result)
     titles = {quantity.name: quantity.title for quantity in quantities([result.data])}
     maps = [
-        Picture(f"Map of {titles[name].lower()} on the sole", data_address(data))
+        Picture(
+            Message("Map of {title} on the sole", title=titles[name].lower()), data_address(data)
+        )
         for name, data in pictures.items()
         if name in titles
     ]
@@ -81,7 +84,12 @@ def _result_sections(
     provenance = result.provenance
     models = Table("", ("", ""), list(provenance.closures.items()))
     versions = ", ".join(f"{name} {version}" for name, version in provenance.versions.items())
-    made = f"Case {provenance.case_hash[:16]}, computed {provenance.created} with {versions}."
+    made = Message(
+        "Case {case_hash}, computed {created} with {versions}.",
+        case_hash=provenance.case_hash[:16],
+        created=provenance.created,
+        versions=versions,
+    )
     parts += [
         *remark_sections(result),
         PageSection("Models", made, table=models),

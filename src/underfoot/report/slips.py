@@ -11,6 +11,7 @@ import numpy as np
 
 from underfoot.core.html import data_address, environment, new_figure
 from underfoot.core.page import PageSection, Picture, remark_sections, table_sections
+from underfoot.core.remark import Message
 from underfoot.questions.slips import SlipPopulation, shown_motion
 from underfoot.slip.dynamics import array_pressures
 from underfoot.slip.dynamics.sensors import MAP_X, MAP_Y
@@ -48,7 +49,7 @@ def _sections(
         for p in pictures.values()
     ]
     parts = [
-        PageSection(f"The slip of {walker.name}, ten times slower", html=player),
+        PageSection(Message("The slip of {name}, ten times slower", name=walker.name), html=player),
         *table_sections(shown),
         PageSection("Speed, forces and pressures over time", pictures=drawn),
         *remark_sections(shown),

@@ -27,9 +27,12 @@ class Cost:
 
     def __str__(self) -> str:
         low, high = self.seconds
-        return (
-            f"{self.cells} cells under the sole, about {low:.0f} to {high:.0f} s and "
-            f"{megabytes(self.memory)}"
+        return Message(
+            "{cells} cells under the sole, about {low:.0f} to {high:.0f} s and {megabytes}",
+            cells=self.cells,
+            low=low,
+            high=high,
+            megabytes=megabytes(self.memory),
         )
 
 

@@ -83,7 +83,10 @@ def read_array(
     found, notes = complete(
         heights.astype(float) * length_factor(height_unit, where), fill_missing, where
     )
-    processing = (f'read as the field "{name}"' if name else "read as an array of NumPy", *notes)
+    processing = (
+        Message('read as the field "{name}"', name=name) if name else "read as an array of NumPy",
+        *notes,
+    )
     if found.ndim == 1:
         return Profile(found, spacing, source=where, processing=processing)
     return HeightMap(found, spacing, spacing_y=spacing_y, source=where, processing=processing)

@@ -257,13 +257,20 @@ def profile_from_positions(
         even = np.linspace(x[0], x[-1], x.size)
         z, spacing = np.interp(even, x, z), even[1] - even[0]
         done = (
-            f"resampled linearly to an even spacing of {metres(spacing)} "
-            f"(positions were up to {metres(off)} off)",
+            Message(
+                "resampled linearly to an even spacing of {spacing} (positions were up to "
+                "{most} off)",
+                spacing=metres(spacing),
+                most=metres(off),
+            ),
         )
     elif off > 0.01 * spacing:
         done = (
-            f"positions, rounded in print to {metres(2.0 * rounding)}, taken as even: "
-            f"{metres(spacing)}",
+            Message(
+                "positions, rounded in print to {step}, taken as even: {spacing}",
+                step=metres(2.0 * rounding),
+                spacing=metres(spacing),
+            ),
         )
     return Profile(z, float(spacing), tip_radius=tip_radius, source=source, processing=done)
 
@@ -300,7 +307,9 @@ def shortest_reliable_wavelength(surface: Heights) -> Resolution:
         limits.append(Resolution(known, "resolution of the instrument"))
     radius = surface.tip_radius if isinstance(surface, Profile) else None
     if radius is not None:
-        reason = f"radius of the tip, {radius:.4g} m: sharper peaks are rounded"
+        reason = Message(
+            "radius of the tip, {radius:.4g} m: sharper peaks are rounded", radius=radius
+        )
         limits.append(Resolution(_tip_limit(surface.heights, surface.spacing, radius), reason))
     return max(limits, key=lambda limit: limit.wavelength)
 
@@ -313,7 +322,9 @@ def shortest_derivable_wavelength(surface: Heights) -> Resolution:
 
 def _sampling(surface: Heights, points: int) -> Resolution:
     spacing = max(surface.spacings)  # the coarser axis decides for waves in every direction
-    reason = f"{points} points to a wave at a spacing of {metres(spacing)}"
+    reason = Message(
+        "{points} points to a wave at a spacing of {metres}", points=points, metres=metres(spacing)
+    )
     return Resolution(points * spacing, reason)
 
 

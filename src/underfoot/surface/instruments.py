@@ -77,11 +77,13 @@ def complete(
     if not missing.any():
         return heights, ()
     if not fill_missing:
-        line = ""
+        count, total = int(missing.sum()), heights.size
+        what = Message("{count} of {total} heights are missing", count=count, total=total)
         if heights.ndim == 1 and first_line is not None:
-            line = f", the first in line {first_line + int(np.flatnonzero(missing)[0])}"
+            line = first_line + int(np.flatnonzero(missing)[0])
+            what = Message("{missing}, the first in line {line}", missing=what, line=line)
         raise DataError(
-            f"{int(missing.sum())} of {heights.size} heights are missing{line}",
+            what,
             where=where,
             remedy="Ask for interpolation (fill_missing=True); the result then says so",
         )
@@ -273,7 +275,7 @@ def _x3p(path: Path, resample: bool, fill_missing: bool) -> Profile | HeightMap 
             remedy="Export it as a surface (SUR) or a profile (PRF)",
         )
     if len(found.layers) > 1:
-        how.append(f"the first of {len(found.layers)} layers")
+        how.append(Message("the first of {count} layers", count=len(found.layers)))
     layer = found.layers[0]
     heights = np.asarray(layer.z, dtype=float)
     if isinstance(found, x3pio.Profile):

@@ -60,7 +60,7 @@ def fill_missing_heights(
         if rim.any():
             values[rim] = griddata(known, z[near], gaps[rim], method="nearest")
         z[missing] = values
-    return z, f"{count} of {z.size} missing heights interpolated"
+    return z, Message("{count} of {size} missing heights interpolated", count=count, size=z.size)
 
 
 def held_level(heights: ArrayLike) -> tuple[float, float]:
@@ -112,7 +112,7 @@ def level_surface(surface: Surface, degree: int = 1) -> Surface:
         degree, f"polynomial of degree {degree}"
     )
     rest = (z.ravel() - basis @ coefficients).reshape(z.shape)
-    return surface.changed(rest, f"least squares {form} removed")
+    return surface.changed(rest, Message("least squares {form} removed", form=form))
 
 
 def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
@@ -133,8 +133,12 @@ def without_spikes(surface: Surface) -> tuple[Surface, Surface]:
     count = int((~np.isfinite(marked)).sum())
     whole = surface.changed(
         heights,
-        f"{count} of {dead.size} points stand out of their neighbours (dead pixels) and are "
-        "interpolated",
+        Message(
+            "{count} of {size} points stand out of their neighbours (dead pixels) and are "
+            "interpolated",
+            count=count,
+            size=dead.size,
+        ),
     )
     return whole, level_surface(whole)
 
@@ -164,8 +168,11 @@ def square_cells(surface: HeightMap) -> HeightMap:
     )
     return surface.changed(
         np.moveaxis(spline(between), 0, axis),
-        f"oblong cells of {metres(surface.spacings[0])} by {metres(surface.spacings[1])} made "
-        "square",
+        Message(
+            "oblong cells of {across} by {along} made square",
+            across=metres(surface.spacings[0]),
+            along=metres(surface.spacings[1]),
+        ),
         spacing=fine,
         spacing_y=None,
         resolution=max(surface.resolution or 0.0, 2.0 * coarse),

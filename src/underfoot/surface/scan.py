@@ -430,7 +430,12 @@ def _numbers(
     spread = float(np.std(pieces, ddof=1)) / mean if len(pieces) > 1 and mean > 0 else None
     if spread is not None and spread < ROUNDING:
         spread = None
-    source = f"{STANDARDS[0]}, cut-off {display(cutoff, 'm')}, {count} sections"
+    source = Message(
+        "{standards}, cut-off {cutoff}, {count} sections",
+        standards=STANDARDS[0],
+        cutoff=display(cutoff, "m"),
+        count=count,
+    )
     values = {}
     for name, (_, unit, _) in QUANTITIES.items():
         found = [getattr(roughness, name) for roughness in read]

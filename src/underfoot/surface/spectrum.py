@@ -242,7 +242,11 @@ def isotropic_from_profile(spectrum: ProfileSpectrum) -> IsotropicSpectrum:
     notes = (
         *spectrum.notes,
         "isotropy assumed: two-dimensional spectrum by Abel inversion",
-        f"extrapolated beyond {q[-1]:.4g} rad/m with the power {exponent:.3g} for the inversion",
+        Message(
+            "extrapolated beyond {q:.4g} rad/m with the power {exponent:.3g} for the inversion",
+            q=q[-1],
+            exponent=exponent,
+        ),
     )
     if changed > 0.0:
         notes += (rises_text(changed),)

@@ -39,7 +39,11 @@ def _filled(session: Session, name: str, again: Any) -> None:
         async def compute() -> None:
             thickness = read_field(lost, partial(_above_0, session, unit="m", usual="mm"))
             time = read_field(months, partial(_above_0, session, unit="1", usual=""))
-            pair = f"{1e3 * thickness!r} mm after {time!r} months"
+            pair = Message(
+                "{thickness} mm after {time} months",
+                thickness=repr(1000.0 * thickness),
+                time=repr(time),
+            )
             arguments = (str(project.path(name)), str(folder), pair)
             session.submit(text("wear.job"), WORN, *arguments, about=name)
             await again()

@@ -106,16 +106,20 @@ def _meshed_apart(path: Path, kind: str, unit: str) -> Mesh:
         try:
             subprocess.run(arguments, timeout=LONGEST_MESHING, capture_output=True, check=False)
         except subprocess.TimeoutExpired:
-            what = f"could not be turned into triangles within {LONGEST_MESHING} s"
+            what = Message(
+                "the {kind} file could not be turned into triangles within {longest} s",
+                kind=kind,
+                longest=LONGEST_MESHING,
+            )
         else:
             if answer.exists():
                 mesh = pickle.loads(answer.read_bytes())
                 if isinstance(mesh, Exception):
                     raise mesh
                 return mesh
-            what = "ends the reader of CAD files: it is damaged"
+            what = Message("the {kind} file ends the reader of CAD files: it is damaged", kind=kind)
     raise DataError(
-        f"the {kind} file {what}",
+        what,
         where=str(path),
         remedy="Export the outsole again as STEP AP214 or AP242, or as STL",
     )

@@ -158,9 +158,9 @@ def _reason(shape: Shape) -> str | None:
     if shape.thickness < _FLAT and float(np.ptp(heights)) < _FLAT:
         return "it is one flat face without thickness and without tread"
     if shape.noise > ROUGHEST:
-        return (
-            f"its heights jump by {shape.noise * 1e3:.2g} mm from place to place, the faces make "
-            "no surface"
+        return Message(
+            "its heights jump by {noise:.2g} mm from place to place, the faces make no surface",
+            noise=shape.noise * 1000.0,
         )
     if not NARROWEST <= width <= WIDEST:
         return f"it is {size}, {'narrower' if width < NARROWEST else 'wider'} than any"
@@ -170,7 +170,7 @@ def _reason(shape: Shape) -> str | None:
     holes = without_holes(inside) & ~inside
     open_share = np.count_nonzero(holes) / np.count_nonzero(inside | holes)
     if open_share > MOST_OPEN:
-        return f"holes take {open_share:.0%} of its plan form"
+        return Message("holes take {open_share:.0%} of its plan form", open_share=open_share)
     tall = shape.tallness > TALL * width
     if shape.standing < (STANDING if tall else TOUCHING):
         high = f"it is {shape.tallness * 1e3:.3g} mm high, {width * 1e3:.3g} mm wide, and "

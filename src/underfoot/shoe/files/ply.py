@@ -87,7 +87,9 @@ def read_ply(path: Path) -> MeshFile:
                 faces.append(strip_faces(piece) if piece.size > 2 else faces[0])
     triangles = np.concatenate(faces)
     if triangles.shape[0] == 0:
-        raise _without_faces("PLY", f"{vertices.shape[0]} points and no faces", where)
+        raise _without_faces(
+            "PLY", Message("{count} points and no faces", count=vertices.shape[0]), where
+        )
     return MeshFile("PLY", [FileBody(vertices, triangles)])
 
 

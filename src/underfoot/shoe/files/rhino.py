@@ -64,12 +64,16 @@ def read_rhino(path: Path) -> MeshFile:
     bodies = [body for item in model.Objects if not _of_block(item)
               for body in reader.bodies(item, np.eye(4), "", True, ())]  # fmt: skip
     if not bodies and not reader.unmet:
-        what = f"{reader.bare} surfaces without a mesh" if reader.bare else (
-            "no meshes and no surfaces"
-        )  # fmt: skip
-        raise DataError(f"the 3DM file holds {what}", where=str(path), remedy=_SHADE)
+        what = Message("the 3DM file holds no meshes and no surfaces")
+        if reader.bare:
+            what = Message("the 3DM file holds {count} surfaces without a mesh", count=reader.bare)
+        raise DataError(what, where=str(path), remedy=_SHADE)
     if reader.bare:
-        reader.unmet[Unmet(f"{reader.bare} surfaces without a saved mesh", False, _SHADE)] = None
+        reader.unmet[
+            Unmet(
+                Message("{count} surfaces without a saved mesh", count=reader.bare), False, _SHADE
+            )
+        ] = None
     unit = _UNITS.get(str(model.Settings.ModelUnitSystem).rsplit(".", 1)[-1])
     return MeshFile("3DM", bodies, unit, tuple(reader.unmet))
 
@@ -131,7 +135,11 @@ class _Reader:
         members = list(block.GetObjectIds()) if block else []
         if not members and shown:
             source = getattr(block, "SourceArchive", "") if block else ""
-            what = f'the linked file "{source}"' if source else "a block that is not in it"
+            what = (
+                Message('the linked file "{source}"', source=source)
+                if source
+                else "a block that is not in it"
+            )
             self.unmet[Unmet(what, True, "Embed the block in Rhino and save again")] = None
         inner = place @ np.array(reference.Xform.ToFloatArray(True), dtype=float).reshape(4, 4)
         for member in members:

@@ -192,7 +192,11 @@ def _suggestion(length: float, width: float) -> str | None:
     if not likely:
         return None
     name = likely[0]
-    return f"It would be {_length(length * UNITS[name])} in {name}: choose it with --unit {name}"
+    return Message(
+        "It would be {length} in {name}: choose it with --unit {name}",
+        length=_length(length * UNITS[name]),
+        name=name,
+    )
 
 
 def _length(metres: float) -> str:

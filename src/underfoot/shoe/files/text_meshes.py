@@ -71,7 +71,7 @@ def read_obj(path: Path) -> MeshFile:
         elif word not in OBJ_WORDS and not word.startswith(b"#"):
             unknown.add(word[:20].decode("latin-1"))
     if not faces:
-        what = f"{len(points)} points and no faces" if points else "no faces"
+        what = Message("{count} points and no faces", count=len(points)) if points else "no faces"
         if not unmet:
             raise _without_faces("OBJ", what, where)
     vertices = _rows(points, {3, 4, 6, 7}, "vertex", where)[:, :3]
@@ -229,7 +229,9 @@ def read_off(path: Path) -> MeshFile:
             Message("the OFF file is not read ({error})", error=error), where=where, remedy=AGAIN
         ) from error
     if not face_count:
-        raise _without_faces("OFF", f"{vertex_count} points and no faces", where)
+        raise _without_faces(
+            "OFF", Message("{count} points and no faces", count=vertex_count), where
+        )
     if kind[4]:
         points = points[:, :3] / points[:, 3:]
     return MeshFile(

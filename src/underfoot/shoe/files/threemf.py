@@ -401,7 +401,9 @@ class _Package:
             content = next((c.tag for c in each if not str(c.tag).startswith(f"{{{_CORE}}}")), None)
             what = "a mesh or components"
             if content:
-                what = f"the 3MF extension {_title(str(content).rpartition('}')[0][1:])}"
+                what = Message(
+                    "the 3MF extension {title}", title=_title(str(content).rpartition("}")[0][1:])
+                )
             self._unmet(f"{what} in object {each.get('id')}", required=True)
         name = each.get("name") or each.get("partnumber") or ""
         return _Object(name, kind, vertices, faces, tuple(placed))

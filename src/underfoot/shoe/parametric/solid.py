@@ -180,7 +180,13 @@ def _rounded(
 
     filleted = round_edges(body, edges, radius, chamfer=chamfer)
     if filleted is None:
-        remarks.append(f"left sharp: {name}, {radius * 1e3:g} mm cannot be rolled along all of it")
+        remarks.append(
+            Message(
+                "left sharp: {name}, {radius:g} mm cannot be rolled along all of it",
+                name=name,
+                radius=radius * 1000.0,
+            )
+        )
         return body
     return filleted
 

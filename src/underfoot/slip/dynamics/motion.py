@@ -12,6 +12,7 @@ import numpy as np
 from underfoot.core import InputError, Progress, Status, silent
 from underfoot.core.arrays import Array
 from underfoot.core.constants import GRAVITY
+from underfoot.core.remark import Message
 
 from .walker import Walker
 
@@ -229,8 +230,12 @@ def still_sliding_notes(speed: float, end: float) -> tuple[str, ...]:
     if speed <= SLIDING:
         return ()
     return (
-        f"still sliding at {speed:.2f} m/s when the history of {end:.2f} s ends: distance is a "
-        "lower bound",
+        Message(
+            "still sliding at {speed:.2f} m/s when the history of {end:.2f} s ends: "
+            "distance is a lower bound",
+            speed=speed,
+            end=end,
+        ),
     )
 
 

@@ -210,9 +210,16 @@ class ReducedSole:
             margin = MARGIN * (high - low)
             if values.min() < low - margin or values.max() > high + margin:
                 found.append(
-                    f"{name.replace('_', ' ')} {scale * values.min():.3g} to "
-                    f"{scale * values.max():.3g} {unit} beyond the fit's {scale * low:.3g} to "
-                    f"{scale * high:.3g} {unit}"
+                    Message(
+                        "{name} {low:.3g} to {high:.3g} {unit} beyond the fit's "
+                        "{least:.3g} to {most:.3g} {unit}",
+                        name=name.replace("_", " "),
+                        low=scale * values.min(),
+                        high=scale * values.max(),
+                        unit=unit,
+                        least=scale * low,
+                        most=scale * high,
+                    )
                 )
         return tuple(found)
 

@@ -218,7 +218,7 @@ class SlipStudy:
             source="simulated population",
             uncertainty=None if single else float(values.std(ddof=1)),
             reason="one subject has no spread" if single else "",
-            note=f"mean and standard deviation of {values.size} subjects",
+            note=Message("mean and standard deviation of {size} subjects", size=values.size),
         )
 
     def correlation(self) -> float | None:

@@ -72,7 +72,11 @@ def relaxation_reading(
     load = trial.channel(*((force,) if force else FORCE))
     travel = trial.channel(*((displacement,) if displacement else DISPLACEMENT))
     if load.unit not in ("N", "") or travel.unit not in ("m", ""):
-        text = f'force is in "{load.unit}", displacement in "{travel.unit}"'
+        text = Message(
+            'force is in "{unit}", displacement in "{travel_unit}"',
+            unit=load.unit,
+            travel_unit=travel.unit,
+        )
         raise DataError(text, where=where, allowed="N and m")
     f, d, t = load.values.astype(float), travel.values.astype(float), load.time
     if len(f) != len(d) or len(f) < 20:
@@ -128,7 +132,10 @@ def relaxation_reading(
     ramp_d, ramp_f = np.maximum.accumulate(d[begin : peak + 1]), f[begin : peak + 1]
     at = 0.02 * thickness
     if ramp_d[-1] <= at:
-        text = f"compressed by {1e3 * ramp_d[-1]:.3g} mm only, 2 % of the thickness is"
+        text = Message(
+            "compressed by {ramp_d:.3g} mm only, 2 % of the thickness is",
+            ramp_d=1000.0 * ramp_d[-1],
+        )
         raise DataError(f"{text} {1e3 * at:.3g} mm", where=where)
     keep = np.concatenate(([True], np.diff(ramp_d) > 0))
     low_force = float(np.interp(at, ramp_d[keep], ramp_f[keep]))

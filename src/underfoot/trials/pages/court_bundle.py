@@ -102,7 +102,7 @@ def bundle_faults(bundle: Path) -> list[Remark]:
         chosen = protocol(settings["protocol"], own).with_settings(settings["method"])
         again = analyse_folder(bundle / RECORDINGS, chosen, **settings["options"])
     except UnderfootError as error:
-        what = Message("the analysis can't be made again ({error})", error=str(error))
+        what = Message("the analysis can't be made again ({error})", error=error)
         return [*faults, Remark.of(RECORDINGS, what)]
     if settings["versions"] == _versions() and not any(
         Path(name).parts[0] == RECORDINGS for name in changed
@@ -176,7 +176,7 @@ def _settings(bundle: Path, faults: Sequence[Remark]) -> dict[str, Any]:
         lacking += [name for name in options if name not in ("names", "merge_spelling")]
         if not lacking:
             return settings
-        reason = f"wrong or missing: {', '.join(lacking)}"
+        reason = Message("wrong or missing: {lacking}", lacking=", ".join(lacking))
     others = [str(fault) for fault in faults if fault.about != SETTINGS]
     raise InputError(
         Message("is damaged ({reason}), so nothing can be made again", reason=reason),

@@ -117,7 +117,10 @@ def read_trial(
     """
     trials, where = read_trials(path, profile, subtract_baseline=subtract_baseline), Path(path).name
     if step is None and len(trials) > 1:
-        words, remedy = f"the file holds {len(trials)} steps", "Choose one with step=1 ..."
+        words, remedy = (
+            Message("the file holds {count} steps", count=len(trials)),
+            "Choose one with step=1 ...",
+        )
         raise DataError(words, where=where, remedy=remedy)
     if not 1 <= (step or 1) <= len(trials):
         raise DataError(

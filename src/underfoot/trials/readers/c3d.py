@@ -113,7 +113,11 @@ def parse(data: bytes | FileBytes, where: str) -> C3DFile:
     per_frame = int(words[9])
     channels = n_analog // per_frame if per_frame else 0
     if per_frame and channels * per_frame != n_analog:
-        words = f"{n_analog} analog values a frame in {per_frame} samples can't be"
+        words = Message(
+            "{n_analog} analog values a frame in {per_frame} samples can't be",
+            n_analog=n_analog,
+            per_frame=per_frame,
+        )
         raise DataError(words, where=where)
     real = bool(scale < 0)
     width = 4 * n_points + n_analog
@@ -131,7 +135,13 @@ def parse(data: bytes | FileBytes, where: str) -> C3DFile:
     else:
         frames = max(counts.values())
     if n_points != (points_used := shell.number("POINT", "USED", n_points)):
-        notes.append(f"the header counts {n_points} points, POINT:USED {points_used:g}")
+        notes.append(
+            Message(
+                "the header counts {n_points} points, POINT:USED {points_used:g}",
+                n_points=n_points,
+                points_used=points_used,
+            )
+        )
     count = frames if width else 0
     # Each marker and each channel lies in one piece.
     long = isinstance(data, FileBytes)
@@ -177,7 +187,12 @@ def _rotations(
     count = frames * max(round(ratio), 1)
     if start + count * used * 17 * 4 > len(data):
         raise truncation_error(
-            f"truncated: {count} frames of {used} rotations are not there", where
+            Message(
+                "truncated: {count} frames of {used} rotations are not there",
+                count=count,
+                used=used,
+            ),
+            where,
         )
     raw = _floats(data[start : start + count * used * 68], processor).astype(float)
     raw = raw.reshape(count, used, 17)
@@ -230,7 +245,11 @@ def _frames(
     if fitting:
         frames = fitting[0]
     elif largest > whole:
-        words = f"truncated or damaged: {largest} frames are counted, the file holds {whole}"
+        words = Message(
+            "truncated or damaged: {counted} frames are counted, the file holds {count}",
+            counted=largest,
+            count=whole,
+        )
         raise truncation_error(words, where)
     else:
         content = begin + whole * width
@@ -546,7 +565,11 @@ def _plate(draft: RecordingDraft, raw: C3DFile, index: int, units: list[str], sc
             raise DataError("its forces are not numbers of any possible size")
         zero = raw.numbers("FORCE_PLATFORM", "ZERO").ravel(order="F")
         if zero.size == 2 and zero[1] > zero[0] > 0:
-            notes.append(f"ZERO names samples {int(zero[0])} to {int(zero[1])}")
+            notes.append(
+                Message(
+                    "ZERO names samples {first} to {last}", first=int(zero[0]), last=int(zero[1])
+                )
+            )
         draft.plate(
             forces,
             name,
@@ -603,7 +626,12 @@ def _to_si(
         if unit and unit[0] == si:
             factors[i] = unit[1]
         elif written and written.casefold() not in _COUNTS:
-            words = f'the unit of its channel {column + 1} is "{written}", which is no known {si}'
+            words = Message(
+                'the unit of its channel {channel} is "{unit}", which is no known {kind}',
+                channel=column + 1,
+                unit=written,
+                kind=si,
+            )
             raise DataError(words)
         else:
             assumed.add(f'"{written}" as {si}')

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError
+from underfoot.core.remark import Message
 
 from ..recording.trial import MADE_UP
 
@@ -98,7 +99,7 @@ def c3d_bytes(
     at = body.index(b"DATA_START") + len(b"DATA_START") + 2 + 1 + 1
     body = body[:at] + struct.pack("<h", first_data) + body[at + 2 :]
     if blocks > 255:
-        words = f"the names and descriptions fill {blocks} blocks"
+        words = Message("the names and descriptions fill {blocks} blocks", blocks=blocks)
         raise InputError(words, where="c3d", allowed="255 blocks of 512 bytes")
     parameters = (struct.pack("<BBBB", 1, 0x50, blocks, _INTEL) + body).ljust(512 * blocks, b"\0")
     ends = min(first_frame, _MOST), min(last_frame, _MOST)

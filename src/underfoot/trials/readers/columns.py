@@ -80,7 +80,9 @@ def read_columns(draft: RecordingDraft) -> tuple[Trial, ...]:
     above = [line for line in sheet.header if line.strip()]
     named = profile.name or profile.plates or profile.channels or _is_known(sheet)
     if not named and len(above) > _PREAMBLE:
-        words = f"text of an unknown system: {len(above)} lines stand above the table"
+        words = Message(
+            "text of an unknown system: {count} lines stand above the table", count=len(above)
+        )
         remedy = "Name its columns in a profile, or export as C3D or as a plain table"
         nearest = nearest_format(above)
         raise DataError(words, where=draft.name, nearest=nearest, remedy=remedy)
@@ -306,7 +308,9 @@ def _plate_columns(draft: RecordingDraft, sheet: Sheet) -> dict[str, PlateColumn
         units = {sheet.units.get(name, "") for name in (x, y, z)}
         if len(units) > 1 or any((force_unit(unit) or ("",))[0] != "N" for unit in units if unit):
             written = ", ".join(sorted(f'"{unit}"' for unit in units))
-            draft.plates.append(refused_plate(names, f"{written} is not one known unit of force"))
+            draft.plates.append(
+                refused_plate(names, Message("{unit} is not one known unit of force", unit=written))
+            )
             continue
         unit = units.pop()
         if not unit:

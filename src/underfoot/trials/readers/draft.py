@@ -129,7 +129,12 @@ class RecordingDraft:
         less = counted < int(written)
         if less and not rows:
             raise truncation_error(
-                f"truncated or damaged: {told}, the file holds {counted}", self.name
+                Message(
+                    "truncated or damaged: {announced}, the file holds {count}",
+                    announced=told,
+                    count=counted,
+                ),
+                self.name,
             )
         more = Message(": was the file cut short?") if less else NOTHING
         self.notes.append(
@@ -204,7 +209,11 @@ class RecordingDraft:
             return unit[1]
         if written.strip():
             raise self.error(
-                f'the unit of {of} is "{written}", which is no known length',
+                Message(
+                    'the unit of {name} is "{unit}", which is no known length',
+                    name=of,
+                    unit=written,
+                ),
                 allowed="m, cm, mm, inch, ft ...",
                 nearest=nearest_match(written, known_units()),
                 remedy=_STATE,
@@ -345,7 +354,9 @@ def _fitting(number: float, least: float, most: float) -> str:
         return "Check the markers"
     usual = (least * most) ** 0.5
     misfit = {name: abs(np.log(number * unit / usual)) for name, unit in _NAMED.items()}
-    return f"As {min(misfit, key=lambda name: float(misfit[name]))} it would fit"
+    return Message(
+        "As {misfit} it would fit", misfit=min(misfit, key=lambda name: float(misfit[name]))
+    )
 
 
 __getattr__ = package_names(__name__, gone="0.5", Draft="RecordingDraft")  # plug-ins import it

@@ -39,7 +39,11 @@ def _all_steps(draft: RecordingDraft, starts: list[int], announced: str) -> None
     if not starts:
         raise draft.error("truncated: there is no step")
     if announced.isdigit() and int(announced) > len(starts):
-        words = f"truncated: {announced} steps announced, {len(starts)} found"
+        words = Message(
+            "truncated: {announced} steps announced, {count} found",
+            announced=announced,
+            count=len(starts),
+        )
         raise truncation_error(words, draft.name)
 
 

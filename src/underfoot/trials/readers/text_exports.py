@@ -154,7 +154,7 @@ def _plates(draft: RecordingDraft, labels: list[str], numbers: np.ndarray) -> No
             if far.size and float(np.percentile(far, 90)) > _FAR:
                 place = 1e-3 * place
                 draft.notes.append("centre of pressure taken as mm from its size")
-        kind = f"ground reaction ({labels[columns['vx']]})"
+        kind = Message("ground reaction ({label})", label=labels[columns["vx"]])
         draft.plate(force, centre_of_pressure=place, kind=kind)
 
 

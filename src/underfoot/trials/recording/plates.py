@@ -162,7 +162,12 @@ def channel_forces(
             Message("plate type {kind} is not supported", kind=kind), allowed="types 1 to 4"
         )
     if signals.shape[1] != CHANNELS[kind]:
-        words = f"type {kind} needs {CHANNELS[kind]} channels, the file names {signals.shape[1]}"
+        words = Message(
+            "type {kind} needs {channels} channels, the file names {shape}",
+            kind=kind,
+            channels=CHANNELS[kind],
+            shape=signals.shape[1],
+        )
         raise DataError(words)
     if kind == 1:
         force = signals[:, :3]

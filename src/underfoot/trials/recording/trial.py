@@ -296,7 +296,7 @@ class Trial(Presentable):
             remarks = p.problem or "; ".join(map(str, p.flags))
             rows.append(("plate", p.name, len(p.force), p.rate, remarks))
         for name, m in self.markers.items():
-            lost = f"{int(m.missing.sum())} frames missing"
+            lost = Message("{sum} frames missing", sum=int(m.missing.sum()))
             rows.append(("marker", name, len(m.positions), m.rate, lost))
         for name, c in self.channels.items():
             rows.append(("channel", name, len(c.values), c.rate, c.unit or "unit not known"))

@@ -146,7 +146,13 @@ def power(
     if design not in DESIGNS:
         raise unknown_name("design", design, DESIGNS, where="power")
     if persons < 2 or not sd > 0 or not 0 < alpha < 1 or conditions < 2:
-        words = f"{persons} persons, sd {sd:g}, alpha {alpha:g}, {conditions} conditions"
+        words = Message(
+            "{persons} persons, sd {sd:g}, alpha {alpha:g}, {conditions} conditions",
+            persons=persons,
+            sd=sd,
+            alpha=alpha,
+            conditions=conditions,
+        )
         allowed = "2 persons or more, sd above 0, alpha from 0 to 1, 2 conditions or more"
         raise InputError(words, where="power", allowed=allowed)
     if design == "slips":
@@ -173,7 +179,7 @@ def _equivalent_power(
     from scipy import stats
 
     if not all(0 <= share <= 1 for share in shares) or not 0 < margin < 1:
-        words = f"shares {shares}, difference {margin:g}"
+        words = Message("shares {shares}, difference {margin:g}", shares=shares, margin=margin)
         raise InputError(words, where="power", allowed="shares 0 to 1, a difference from 0 to 1")
     slips = np.arange(persons + 1)
     a, b = slips[:, None] / persons, slips[None, :] / persons

@@ -386,7 +386,11 @@ class AnovaTable:
     @property
     def title(self) -> str:
         """Name of the table with its type of sums of squares."""
-        return f"Analysis of variance of {self.model.response_name}, {TYPES[self.ss_type]}"
+        return Message(
+            "Analysis of variance of {response}, {types}",
+            response=self.model.response_name,
+            types=TYPES[self.ss_type],
+        )
 
     def __getitem__(self, term: str) -> AnovaRow:
         return next(row for row in self.rows if row.term == term)

@@ -451,7 +451,11 @@ def clustered_logistic(
     order = {label: i for i, label in enumerate(dict.fromkeys(labels))}
     df = len(order) - len(names)
     if df <= 1:
-        text = f"{len(order)} clusters for {len(names)} parameters"
+        text = Message(
+            "{clusters} clusters for {parameters} parameters",
+            clusters=len(order),
+            parameters=len(names),
+        )
         raise DataError(text, where="cluster", allowed="more clusters")
     # Refuses separated data with its own message, and starts the iteration at its answer.
     start = logistic_regression(y.astype(int), dict(predictors)).estimates

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from underfoot.core import DataError
+from underfoot.core.remark import Message
 
 from .linear import LevelPair
 from .mixed import person_means
@@ -75,7 +76,11 @@ def rank_test(
     columns = [np.array([own[n] for own in table.values() if n in own]) for n in names]
     fewest = min(map(len, columns))
     if fewest < (5 if several else 3):
-        words = f"{fewest} persons have every level" if several else "fewer than three in a level"
+        words = (
+            Message("{fewest} persons have every level", fewest=fewest)
+            if several
+            else "fewer than three in a level"
+        )
         allowed = "five or more" if several else "three or more"
         raise DataError(words, where="rank test", allowed=allowed)
     if len(names) == 2:

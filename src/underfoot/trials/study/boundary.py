@@ -51,7 +51,11 @@ def friction_split(
         hysteresis,
         _difference("adhesion friction", total, hysteresis),
         {
-            fluid: _difference(f"adhesion friction with {fluid}", _mean(fluid, forces), hysteresis)
+            fluid: _difference(
+                Message("adhesion friction with {fluid}", fluid=fluid),
+                _mean(fluid, forces),
+                hysteresis,
+            )
             for fluid, forces in (lubricated or {}).items()
         },
     )

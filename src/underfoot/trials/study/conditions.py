@@ -331,7 +331,7 @@ def _tables(folder: Path, given: Path | None) -> list[tuple[Path, Path]]:
         below[:] = sorted(name for name in below if not name.startswith("."))
         found = [Path(place) / name for name in NAMES if name in files]
         if len(found) > 1:
-            text = f"two tables of conditions: {' and '.join(NAMES)}"
+            text = Message("two tables of conditions: {names}", names=" and ".join(NAMES))
             raise InputError(text, where=place, remedy="Keep one, or name it with --conditions")
         tables += [(path, Path(place)) for path in found]
     return tables

@@ -271,7 +271,7 @@ def recording_trials(
         try:
             read = read_trials(file, profile)
         except UnderfootError as error:
-            refusals.append(str(error))
+            refusals.append(error.message)
             continue
         if not trials:
             trials = list(read)
@@ -288,7 +288,11 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
     """Where a file holds runs and no steps, an edit can only exclude a run by its number."""
     for i, edit in enumerate(edits):
         if edit.what != "exclude":
-            text = f"the protocol {protocol.name} has no steps: {edit.what} changes nothing"
+            text = Message(
+                "the protocol {name} has no steps: {what} changes nothing",
+                name=protocol.name,
+                what=edit.what,
+            )
             raise EditError(text, where=edit.where, allowed="exclude")
         if edit.step not in range(1, trials + 1):
             text = f"there is no {edit.step_words}"

@@ -565,7 +565,7 @@ def _value_column(
             _check_numbers(head, column, read[head], lines, where)
         found = [folded[n] for n in QUANTITIES[candidate] if n in folded]
         if len(found) > 1:
-            text = f"several columns of readings: {', '.join(found)}"
+            text = Message("several columns of readings: {names}", names=", ".join(found))
             raise DataError(text, where=where, remedy=remedy)
         if found and not named:
             return found[0], candidate

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from underfoot.core import InputError, unknown_name
+from underfoot.core.remark import Message
 
 from ..readers import TrialsProfile, read_profile, read_trials
 from ..recording.axes import LEVEL, Axes, DirectionSource, Ramp, axis_name
@@ -113,7 +114,14 @@ class Description:
         if not channels:
             return []
         rates = sorted({channel.rate for channel in channels.values()})
-        lines = ["", f"Channels: {len(channels)} at {', '.join(f'{r:.6g}' for r in rates)} Hz"]
+        lines = [
+            "",
+            Message(
+                "Channels: {count} at {rates} Hz",
+                count=len(channels),
+                rates=", ".join(f"{r:.6g}" for r in rates),
+            ),
+        ]
         shown = [f"{name} ({channel.unit or 'unit?'})" for name, channel in channels.items()]
         return [*lines, "  " + _some(shown, 2 * _SHOWN)]
 
@@ -146,8 +154,15 @@ class Description:
         if len(good) > 1:
             mean = mean_of(good)
             lines.append(
-                f"  RCOF mean {mean.value:.3f}, SD {mean.spread:.3f} between {len(good)} steps "
-                f"({doubtful} with a caution), standard error {mean.uncertainty:.3f}"
+                Message(
+                    "  RCOF mean {value:.3f}, SD {spread:.3f} between {count} steps "
+                    "({doubtful} with a caution), standard error {uncertainty:.3f}",
+                    value=mean.value,
+                    spread=mean.spread,
+                    count=len(good),
+                    doubtful=doubtful,
+                    uncertainty=mean.uncertainty,
+                )
             )
         if good:
             lines += ["", "Conventions behind RCOF"]
@@ -223,10 +238,16 @@ def _baseline(plate: Plate) -> str:
     if plate.baseline is None:
         return "not subtracted"
     if not np.abs(plate.baseline).max() > 5e-4:
-        return f"zero ({plate.baseline_samples} unloaded samples)"
+        return Message(
+            "zero ({baseline_samples} unloaded samples)", baseline_samples=plate.baseline_samples
+        )
     pairs = zip("xyz", plate.baseline, strict=True)
     numbers = ", ".join(f"{name} {value:.1f}" for name, value in pairs)
-    return f"{numbers} N, mean of {plate.baseline_samples} unloaded samples, subtracted"
+    return Message(
+        "{numbers} N, mean of {baseline_samples} unloaded samples, subtracted",
+        numbers=numbers,
+        baseline_samples=plate.baseline_samples,
+    )
 
 
 def _edit_words(edit: Edit) -> str:

@@ -140,8 +140,12 @@ def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance
         )
     if edit.what == "side":
         if stance.side == edit.value:
-            text = f"step {stance.number} is the {edit.value} foot already"
-            raise EditError(f"{text}: the edit changes nothing", where=edit.where)
+            text = Message(
+                "step {step} is the {side} foot already: the edit changes nothing",
+                step=stance.number,
+                side=edit.value,
+            )
+            raise EditError(text, where=edit.where)
         return replace(stance, side=str(edit.value), heel="", by_hand=by_hand)
     time = float(edit.value or 0.0)
     last = plate.start + (len(plate.force) - 1) / plate.rate
@@ -153,8 +157,13 @@ def _changed(stance: Stance, edit: Edit, plate: Plate, up: np.ndarray) -> Stance
         )
     sample = round((time - plate.start) * plate.rate)
     if sample == (stance.start if edit.what == "contact" else stance.stop):
-        text = f"{edit.what} of step {stance.number} is at {time:g} s already"
-        raise EditError(f"{text}: the edit changes nothing", where=edit.where)
+        text = Message(
+            "{what} of step {number} is at {time:g} s already: the edit changes nothing",
+            what=edit.what,
+            number=stance.number,
+            time=time,
+        )
+        raise EditError(text, where=edit.where)
     if edit.what == "contact":
         stance = replace(stance, start=sample, contact=time)
     else:
@@ -183,7 +192,11 @@ def _on_plate(contacts: list[Stance], at: int, edit: Edit) -> list[Stance]:
         more = {"allowed": known.allowed, "nearest": known.nearest}
         raise EditError(known.what, where=edit.where, **more)
     if len(together) == 1:
-        words = f"step {named.number} is on {edit.value} alone: the edit changes nothing"
+        words = Message(
+            "step {step} is on {plate} alone: the edit changes nothing",
+            step=named.number,
+            plate=edit.value,
+        )
         raise EditError(words, where=edit.where)
     out = list(contacts)
     other = Remark("by hand", "the step is on {plate} ({why})", plate=edit.value, why=edit.why)
