@@ -22,7 +22,9 @@ text = pytest.importorskip("underfoot.app.text")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide"
 WORD = re.compile(r"(?<![\w./])[^\W\d_]{2,}(?![\w/]|\.\w)")
-BRACES = re.compile(r"\{\w*\}|\(\?P<\w+>|(?:/[\w .-]+){3,}")  # placeholders, paths of files
+BRACES = re.compile(
+    r"\{\w*(?::[^}|]*)?\}|\(\?P<\w+>|(?:/[\w .-]+){3,}"
+)  # placeholders, paths of files
 CODE = re.compile(r'„[^“]*“|"[^"]*"|\[+[\w.{}]+\]+|[\w.]+(?= = )')
 """What is never translated: in quotes, tables and keys of a file."""
 UNITS = {"deg", "cp", "pa", "mpa", "kpa", "um", "µm", "hz", "kg", "mm²", "cm²"}

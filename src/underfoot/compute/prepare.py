@@ -169,7 +169,7 @@ def checked_object(slot: str, item: Any) -> Any:
                     "{owner}.{name} holds nan at {place}",
                     owner=type(item).__name__,
                     name=name,
-                    place=np.argwhere(np.isnan(value))[0],
+                    place=str(np.argwhere(np.isnan(value))[0]),
                 ),
                 where=where,
                 allowed="numbers",

@@ -77,7 +77,7 @@ def cof(
     for name, array in {**shears, "fluid_pressure": fluid, "wet": mask}.items():
         if np.shape(array) != contact.shape:
             raise InputError(
-                Message("shape {shape}", shape=np.shape(array)),
+                Message("shape {shape}", shape=str(np.shape(array))),
                 where=name,
                 allowed=f"{contact.shape}",
             )

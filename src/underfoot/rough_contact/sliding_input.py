@@ -82,7 +82,7 @@ def checked_contact_input(
                 "{count} of {total} heights are missing or infinite, the first at {first}",
                 count=rows.shape[0],
                 total=shape[0] * shape[1],
-                first=first,
+                first=str(first),
             ),
             where="height",
             allowed="a finite height at every node",

@@ -63,9 +63,9 @@ def check_setup(
         )
     if np.shape(self_compliance) != clearance.shape:
         raise InputError(
-            Message("the compliance has shape {shape}", shape=np.shape(self_compliance)),
+            Message("the compliance has shape {shape}", shape=str(np.shape(self_compliance))),
             where="compliance",
-            allowed=Message("the shape of the sole, {shape}", shape=clearance.shape),
+            allowed=Message("the shape of the sole, {shape}", shape=str(clearance.shape)),
         )
     if not (np.isfinite(self_compliance).all() and (self_compliance > 0).all()):
         raise InputError(

@@ -75,7 +75,7 @@ def peak_pressure(
 
     if pressure.shape != sole.land.shape:
         raise InputError(
-            Message("pressure has shape {shape}", shape=pressure.shape),
+            Message("pressure has shape {shape}", shape=str(pressure.shape)),
             where="pressure",
             allowed=f"{sole.land.shape}",
         )

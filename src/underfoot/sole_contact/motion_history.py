@@ -47,7 +47,7 @@ class MotionHistory:
             values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != shape or values.ndim != 1 or values.size < 2:
                 raise InputError(
-                    Message("{label} has shape {shape}", label=name, shape=values.shape),
+                    Message("{label} has shape {shape}", label=name, shape=str(values.shape)),
                     where=f"history.{name}",
                     allowed=Message("one row as long as time, {shape}, of 2 or more", shape=shape),
                 )

@@ -273,8 +273,8 @@ def _checked_maps(
         raise InputError(
             Message(
                 "x has shape {shape}, y {across_shape}",
-                shape=along.shape,
-                across_shape=across.shape,
+                shape=str(along.shape),
+                across_shape=str(across.shape),
             ),
             where="floor_sensor_reading",
             allowed="two rows of at least 2 cell centres",
@@ -287,7 +287,7 @@ def _checked_maps(
     for name, array in (("fluid_pressure", pressure), ("film_thickness", gap)):
         if array.shape != shape:
             raise InputError(
-                Message("shape {shape}", shape=array.shape), where=name, allowed=f"{shape}"
+                Message("shape {shape}", shape=str(array.shape)), where=name, allowed=f"{shape}"
             )
     if not np.isfinite(pressure).all():
         raise InputError("a pressure is not finite", where="fluid_pressure")

@@ -62,7 +62,7 @@ def read_array(
         raise DataError(
             Message(
                 "an array of shape {shape} and kind {dtype}",
-                shape=heights.shape,
+                shape=str(heights.shape),
                 dtype=heights.dtype,
             ),
             where=where,

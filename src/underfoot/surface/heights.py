@@ -28,7 +28,7 @@ class Heights:
         heights = np.array(given, dtype=float)
         if heights.ndim != self.axes or min(heights.shape) < 2:
             raise InputError(
-                Message("heights of shape {shape}", shape=heights.shape),
+                Message("heights of shape {shape}", shape=str(heights.shape)),
                 where="heights",
                 allowed=f"{'(n,)' if self.axes == 1 else '(nx, ny)'}, 2 or more",
             )
@@ -168,7 +168,7 @@ def check_heights(heights: np.ndarray) -> None:
                 "{count} of {total} heights are missing or infinite, the first at {first}",
                 count=int(bad.sum()),
                 total=heights.size,
-                first=first,
+                first=str(first),
             ),
             where="heights",
             allowed="a finite height at every point",

@@ -142,7 +142,7 @@ class WornMap:
     def __post_init__(self) -> None:
         if self.removed.shape != (self.x.size, self.y.size):
             raise InputError(
-                Message("removed has shape {shape}", shape=self.removed.shape),
+                Message("removed has shape {shape}", shape=str(self.removed.shape)),
                 where="wear.removed",
                 allowed=f"{(self.x.size, self.y.size)}",
             )

@@ -71,7 +71,7 @@ class GaitHistory:
             object.__setattr__(self, label, values)
             if values.ndim != 1 or values.size < 5 or values.shape != np.shape(self.time):
                 raise InputError(
-                    Message("{label} has shape {shape}", label=label, shape=values.shape),
+                    Message("{label} has shape {shape}", label=label, shape=str(values.shape)),
                     where=where,
                     allowed="5 or more samples",
                 )
