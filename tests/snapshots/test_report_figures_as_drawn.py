@@ -311,6 +311,16 @@ def test_figures_of_a_design_study(file_regression):
     }
     told = {name: figure_lines(design_study.effects_figure(one)) for name, one in indices.items()}
     told["slices"] = figure_lines(design_study.slices_figure(models, np.array([0.2, 0.6])))
+    alone = [
+        fake(
+            **vars(models[1])
+            | {
+                "dimensions": dimensions[:1],
+                "predicted": lambda points: (points[:, 0], points[:, 0]),
+            }
+        )
+    ]
+    told["one slice"] = figure_lines(design_study.slices_figure(alone, np.array([0.5])))
     told["front"] = figure_lines(design_study.front_figure(result))
     told["chances"] = [design_study._chance(one) for one in (None, 0.0, 0.004, 0.5, 0.996, 1.0)]
     held(file_regression, told)

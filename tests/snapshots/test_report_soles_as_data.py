@@ -85,6 +85,12 @@ def surfaces():
     height = np.where(lug, 0.0, 2e-3)
     yield "drawn", surface_mesh(x, y, height, lug, edges=edges[1::2], rim=rim, reach=2 * side)
     yield "drawn far off", surface_mesh(x, y, height, lug, edges=edges, rim=rim, reach=side / 50)
+    within = np.array([[4.1, 3.2], [9.3, 2.1], [12.2, 8.9], [7.0, 9.3]]) * 1e-3
+    begin, way = within, np.roll(within, -1, 0) - within
+    off = [way[k, 0] * (y - begin[k, 1]) - way[k, 1] * (x[:, None] - begin[k, 0]) for k in range(4)]
+    closed, sides = np.min(off, axis=0) > 0, np.stack([begin, begin + way], axis=1)
+    reach: dict[str, Any] = {"edges": sides, "rim": rim, "reach": 2 * side}
+    yield "drawn, closed", surface_mesh(x, y, np.where(closed, 0.0, 2e-3), closed, **reach)
     yield "rim alone", surface_mesh(x, y, height, lug, rim=rim, reach=side)
 
 
