@@ -164,7 +164,7 @@ def _options(listed):
     return _prop(shown if len(shown) < 14 else [len(shown), *shown[:3], *shown[-2:]])
 
 
-def pages_shown(monkeypatch, builds, act=None, wait=0.06):
+def pages_shown(monkeypatch, builds, act=None):
     """Return what stands on pages, by name, and in ``sent`` what they told the browser.
 
     ``builds``: what fills each of them, one below the other; ``act`` is awaited with the element of
@@ -185,26 +185,43 @@ def pages_shown(monkeypatch, builds, act=None, wait=0.06):
         sent.append(f"script: {script}")
         return answered("") if script == "switchTheme()" else None
 
-    monkeypatch.setattr(ui, "run_javascript", run)
-    monkeypatch.setattr(ui, "notify", telling("notify"))
-    monkeypatch.setattr(ui.navigate, "to", telling("go"))
-    monkeypatch.setattr(ui.download, "file", telling("download"))
+    def listen():
+        monkeypatch.setattr(ui, "run_javascript", run)
+        monkeypatch.setattr(ui, "notify", telling("notify"))
+        monkeypatch.setattr(ui.navigate, "to", telling("go"))
+        monkeypatch.setattr(ui.download, "file", telling("download"))
 
     def build():
+        listen()
         for name, fill in builds.items():
+            if name == "whole":  # a page with its frame
+                places[name] = ui.context.client.layout
+                fill()
+                continue
             places[name] = ui.element("div")
             with places[name]:
                 fill()
 
-    async def look(_):
-        await asyncio.sleep(wait)
+    async def look(elements):
+        listen()  # the simulation puts its own in place as it opens a page
+
+        async def settled():  # what a page asks as soon as it is open, and lines of tasks
+            before = None
+            for _ in range(40):
+                now = {name: "\n".join(element_lines(place)) for name, place in places.items()}
+                begun = [e for e in elements if isinstance(e, ui.timer) and e.interval < 0.05]
+                if now == before and not begun:
+                    break
+                before = now
+                await asyncio.sleep(0.15)
+            dialogs = (e for e in elements if isinstance(e, ui.dialog))
+            opened = ["\n".join(element_lines(each)) for each in dialogs]
+            lines.update(now | ({"dialogs": "\n".join(opened)} if opened else {}))
+
+        await settled()
         if act is not None:
             await act(places)
-            await asyncio.sleep(wait)
-        for name, place in places.items():
-            made = "\n".join(element_lines(place))
-            lines[name] = made
-        return None
+            await settled()
 
     shown(build, look)
     return {**lines, "sent": [one.replace("\n", " ") for one in sent]}
