@@ -88,7 +88,7 @@ def _axes(axes: Axes) -> dict[str, Any]:
     told["axes"] = _told(
         scale=f"{axes.get_xscale()} {axes.get_yscale()}", limits=_row(limits),
         aspect=axes.get_aspect() if axes.get_aspect() != "auto" else "",
-        hidden=not axes.get_visible(), off=not axes.axison,
+        box=axes.get_box_aspect(), hidden=not axes.get_visible(), off=not axes.axison,
         spines="all" if len(spines) == 4 else ",".join(spines) or "none",
         face=_colour(axes.get_facecolor()),
     )  # fmt: skip

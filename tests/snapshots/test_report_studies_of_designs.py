@@ -3,7 +3,7 @@
 import dataclasses
 import os
 import time
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from benchmarks.study_page import ROBUST, SWEEP, TEXT, made
 
 from small_soles import fake, sole
 from snapshot import held
+from underfoot.core import DataError
 from underfoot.core.progress import silent
 from underfoot.explore.study import Study
 from underfoot.report import design_study
@@ -174,3 +175,50 @@ def test_numbers_of_an_explorer(file_regression):
                   front=designs[:1], allowed=lambda _: np.array([True, False, True]),
                   believed=lambda designs, goals: (values, None))  # fmt: skip
     held(file_regression, design_study.explorer(result, designs))
+
+
+@pytest.mark.parametrize("kind", ["sensitivity", "sweep"])
+@pytest.mark.parametrize("on", ["runs", "surrogate"])
+@pytest.mark.parametrize("goals", [(), ("a", "b")])
+def test_what_a_study_is_shown_with(monkeypatch, kind, on, goals):
+    """Indices of a sensitivity alone; surrogates of all but one on its own runs."""
+    monkeypatch.setattr(design_study, "effects", lambda result, goal: ("effect of", goal))
+    plan = fake(goals=goals, method=fake(kind=kind, on=on))
+    result: Any = fake(plan=plan, jobs=1, records=2, sessions=3, surrogates=list)
+    shown = design_study.shown_study(result)
+    wanted = [*goals] or [design_study.Goal("cof", "1")]
+    assert shown.indices == [("effect of", one) for one in wanted if kind == "sensitivity"]
+    assert shown.models == ([] if kind == "sensitivity" and on == "runs" else wanted)
+    assert (shown.soles, shown.missing, shown.jobs, shown.sessions) == ({}, "", 1, 3)
+
+    def none(_):
+        raise DataError("too few runs")
+
+    result.surrogates = none
+    told = design_study.shown_study(result, {1: cast(Any, "sole")})
+    assert told.missing == ("" if kind == "sensitivity" and on == "runs" else "too few runs")
+    assert told.soles == {1: "sole"}
+
+
+def test_a_report_of_a_study_in_its_folder(file_regression, tmp_path, monkeypatch):
+    study = made(tmp_path / "s", TEXT + SWEEP, 6, 1.0)
+    given: dict[str, Any] = {}
+
+    def shown(result, soles):
+        given["soles"] = list(soles)
+        models = [fake(to_dict=lambda: {"name": "cof"})]
+        return fake(plan=result.plan, models=models)
+
+    monkeypatch.setattr(design_study, "shown_study", shown)
+    monkeypatch.setattr(design_study, "figures", lambda ready: {"front": lambda: "a figure"})
+    monkeypatch.setattr(design_study, "png", lambda figure: figure.encode())
+    monkeypatch.setattr(design_study, "page_text", lambda ready, drawn: f"page of {drawn}")
+    written = design_study.write_study_report(study, study.result())
+    folder = study.store.folder
+    told = {
+        "names": sorted(os.listdir(folder)), "given": given, "failures": written.failures,
+        "page": (folder / "report.html").read_text(), "at": written.page == folder / "report.html",
+        "surrogates": (folder / "surrogate.json").read_text(),
+        "results": (folder / "results.csv").read_text().splitlines()[0],
+    }  # fmt: skip
+    held(file_regression, told)
