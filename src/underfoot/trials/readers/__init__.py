@@ -118,9 +118,9 @@ def read_trial(
     if step is None and len(trials) > 1:
         words, remedy = f"the file holds {len(trials)} steps", "Choose one with step=1 ..."
         raise DataError(words, where=where, remedy=remedy)
-    if not 1 <= (step or 1) <= len(trials):
+    if not 1 <= (1 if step is None else step) <= len(trials):
         raise DataError(f"there is no step {step}", where=where, allowed=f"1 to {len(trials)}")
-    return trials[(step or 1) - 1]
+    return trials[0 if step is None else step - 1]
 
 
 def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:
