@@ -178,7 +178,8 @@ def test_tables(file_regression, table, tmp_path):
         np.testing.assert_array_equal(again.values[name], values)
     assert again.notes == tuple(map(str, table.notes))
     (tmp_path / "b.npz").write_bytes(b"nothing")
-    said["damaged"] = refusal(ContactTable.load, tmp_path / "b.npz")
+    why = refusal(ContactTable.load, tmp_path / "b.npz")
+    said["damaged"] = why.replace(str(tmp_path), "FOLDER")
     held(file_regression, said)
 
 
