@@ -4,6 +4,7 @@ import asyncio
 import dataclasses
 import json
 import os
+import re
 from functools import partial
 from typing import Any
 
@@ -189,6 +190,39 @@ def test_designs_of_variants(file_regression, monkeypatch, session):
     )
     told = {name: beyond(shown["a"], shown[name]) for name in ("grooved", "dry")}
     held_pages(file_regression, session, shown | told)
+
+
+def test_sliders_of_every_pattern(file_regression, monkeypatch, session):
+    """Each pattern brings what it needs, and has a slider for each value that it has."""
+    monkeypatch.setattr(design.sole_file, "build", lambda *_: None)
+    more = {
+        "shoe.tread.sipes": {"width": "0.8 mm", "depth": "2 mm", "spacing": "9 mm"},
+        "shoe.heel.profile": {"model": "facet", "angle": "7 deg", "length": "20 mm"},
+    }
+    told: dict[str, Any] = {}
+
+    def build():
+        for pattern in design.TreadPattern.options():
+            page = design._Design(session, "b")
+            page.view = SoleView(session)
+            changed = page._patterned(pattern)
+            added = more if pattern == "grid" else {}
+            try:
+                session.project.change("b", changed | added)
+            except design.UnderfootError as error:
+                told[pattern] = [str(error)]
+                continue
+            with ui.element("div") as place:
+                page._sole(session.project.case("b"))
+            (html,) = (e for e in place.descendants() if "sliders" in e.classes)
+            found = re.findall(r'name="(\S+)" (min="[^>]*step="[^"]*")', html.content)
+            told[pattern] = [changed, *(" ".join(one) for one in found)]
+            session.project.undo("b")
+
+    pages_shown(monkeypatch, {"page": build})
+    seen = {line.split()[0] for each in told.values() for line in each[1:]}
+    assert seen == {each.path for each in design.TREAD}
+    held(file_regression, told)
 
 
 ANSWER: dict[str, Any] = {

@@ -20,10 +20,11 @@ from underfoot.core.errors import Cancelled
 from underfoot.core.presentation import Part
 
 LISTS = {
-    "answer": answer.LIVE, "tread": design.TREAD, "layers": design.LAYERS,
-    **{part: each for part, each in design.CONDITIONS.items() if part != "floor"},
-    "floor": design.CONDITIONS["floor"],
-}  # fmt: skip
+    "answer": answer.LIVE,
+    "layers": design.LAYERS,
+    **design.CONDITIONS,
+}
+SLIDERS = {"answer": answer.LIVE, "tread": design.TREAD}
 
 
 @pytest.fixture
@@ -33,11 +34,11 @@ def session(tmp_path):
     return made
 
 
-@pytest.mark.parametrize("name", LISTS)
+@pytest.mark.parametrize("name", SLIDERS)
 def test_sliders(file_regression, session, name):
     """At its lowest, in the middle, beyond its ends, in metric and in US units."""
     told = {}
-    for each in LISTS[name]:
+    for each in SLIDERS[name]:
         middle = (each.low * each.high) ** 0.5 if each.log else 0.5 * (each.low + each.high)
         rows = [
             inputs._row(session, each, value, "guess")
@@ -103,7 +104,7 @@ def test_fields(file_regression, monkeypatch, tmp_path, language, units):
 
         return fill
 
-    builds = {name: fields(listed) for name, listed in LISTS.items() if name not in ("tread",)}
+    builds = {name: fields(listed) for name, listed in LISTS.items()}
     held(file_regression, pages_shown(monkeypatch, builds), hide=MOVING)
 
 

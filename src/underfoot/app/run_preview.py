@@ -83,7 +83,8 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         repeated = math.sqrt(2.0) * SURE * relative * values[name]
         drift = DRIFT[number] * turned * size
         errors[name] = math.hypot(share * seen.errors[name], repeated, drift)
-    if max(errors["cof"] / values["cof"], errors["fluid_load"] / load) > MOST_UNSURE:
+    unsure = errors["cof"] > MOST_UNSURE * values["cof"]  # which may be none
+    if unsure or errors["fluid_load"] > MOST_UNSURE * load:
         raise ConvergenceError(
             f"a preview would say COF {values['cof']:.3f} ± {errors['cof']:.3f}, film "
             f"{values['fluid_load']:.0f} ± {errors['fluid_load']:.0f} N: too little",
