@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 from slip_floors import Floor, constant, dry_sole, slippery_sole, walker
 from small_pads import pad
@@ -35,6 +37,7 @@ from underfoot.slip.dynamics.observation import heel_marker, judge_slip, observe
 from underfoot.slip.dynamics.reduced_model import (
     FittedRange,
     ReducedSole,
+    at_bounds,
     cof_table,
     design,
     error_of,
@@ -251,10 +254,22 @@ def test_steps_and_people(file_regression, tmp_path):
     held(file_regression, said)
 
 
-MOVING: dict[str, dict[str, Any]] = {
-    "grips": {"cof": 0.5},
-    "slips": {"cof": 0.12, "drag": 20.0},
-    "ice": {"cof": 0.0},
+@dataclass
+class Curved(Floor):
+    """A floor whose friction does not grow evenly with the speed."""
+
+    def advance(self, duration, *, normal_force, speed, shoe_angle):
+        return Curved(self.cof, self.drag, normal_force)
+
+    def friction(self, speed):
+        return self.cof * self.load * (1 - 0.8 * min(speed, 0.5)) + self.drag * speed**3
+
+
+MOVING: dict[str, Floor] = {
+    "grips": Floor(cof=0.5),
+    "slips": Floor(cof=0.12, drag=20.0),
+    "curved": Curved(cof=0.12, drag=60.0),
+    "ice": Floor(cof=0.0),
 }
 
 
@@ -262,7 +277,7 @@ def test_feet_on_floors_of_known_friction(file_regression):
     said: dict[str, Any] = {}
     for name, floor in MOVING.items():
         for person in (walker(step(), 0.2, heel_speed=0.4), Walker(step(), weight_transfer=0.4)):
-            motion = slip_motion(person, Floor(**floor))
+            motion = slip_motion(person, floor)
             said[f"{name} {person.name} {person.heel_speed}"] = (
                 motion, motion.kinetic, motion.still_sliding, motion.peak_speed, motion.slip_start
             )  # fmt: skip
@@ -312,10 +327,11 @@ def test_the_compiled_steps_of_a_slip(file_regression):
     loads = 300 + 2000 * times
     for name, ask, eta, given in (
         ("wet", 0.25, 0.2, np.nan), ("dry", 0.25, 0.0, np.nan), ("rests", 0.02, 0.2, np.nan),
-        ("held", 0.25, 0.2, 0.4),
+        ("held", 0.25, 0.2, 0.4), ("starts", 0.4, 0.2, np.nan), ("starts dry", 0.4, 0.0, np.nan),
     ):  # fmt: skip
+        asked = np.sin(20 * times - 0.4) if "starts" in name else np.cos(20 * times)
         said[name] = kernel.carry_slip(
-            times, loads, ask * loads * np.cos(20 * times), 0.1 - 0.9 * times,
+            times, loads, ask * loads * asked, 0.1 - 0.9 * times,
             0.3 * np.exp(-times / 0.01), 0.6, np.full(41, given), 8.0, c, eta, 7e-4, speeds, cofs,
             0.1,
         )  # fmt: skip
@@ -363,6 +379,27 @@ def test_slips_of_a_small_sole(file_regression, tmp_path, wet):
         "area": pressed_area(np.array([1e5, 2e5]), np.array([1e5, 3e5]), 1e-3),
         "no area": pressed_area(np.zeros(2), np.zeros(2), 1e-3),
     }
+    held(file_regression, said)
+
+
+def test_where_a_fit_starts(file_regression, monkeypatch, wet):
+    """A fit looks from each start at the same errors; least squares itself is left out."""
+    said: dict[str, Any] = {"looks": []}
+
+    def only_looks(residual, z, bounds, **how):
+        seen = residual(z)
+        said["looks"].append((z, how, seen))
+        said["bounds"] = bounds
+        return SimpleNamespace(x=z, cost=float(np.sum(seen**2)))
+
+    monkeypatch.setattr(scipy.optimize, "least_squares", only_looks)
+    setting = slip_setting(wet)
+    runs = [slippery_sole().motion(Walker(step(), heel_speed=0.2 + 0.2 * k)) for k in range(3)]
+    areas = [(20.0, 0.1, 1e-4), (100.0, 0.1, 3e-4), (300.0, 0.15, 5e-4), (500.0, 0.12, 6e-4)]
+    fit = fitted_reduced(setting, runs, runs[:1], areas)
+    said |= {"constants": fit.sole.constants.tolist(), "fit": fit, "dry": fitted_reduced(
+        replace(setting, viscosity=None), runs, [], areas[1:])}  # fmt: skip
+    said["edges"] = at_bounds(np.array([0.0, 0.0009, 0.5, 0.9991]), np.zeros(4), np.ones(4))
     held(file_regression, said)
 
 
