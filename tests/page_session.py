@@ -113,3 +113,115 @@ def answering(monkeypatch, session, **answers):
 
     monkeypatch.setattr(session, "ask", ask)
     return asked
+
+
+MOVING = (
+    r"/api/(?:content|ask)/[\w-]+|\bc\d+\b|slider-\d+|\?\d{16,}|arriving \w+"
+    r"|/words/\w+-\w+\.js"
+)
+"""What of a page is another one each time it is opened."""
+USUAL = {"value", "options", "innerHTML", "for"}
+
+
+def element_lines(element, depth=0):
+    """Yield what stands in an element of a page, a line an element."""
+    if isinstance(element, ui.timer):
+        yield f"{'  ' * depth}timer {element.interval:g} {element.active}"
+        return
+    props = {k: v for k, v in element._props.items() if k not in ("loopback", "id", "key")}
+    listed = getattr(element, "options", None)
+    told = [
+        type(element).__name__ if element.tag.startswith("nicegui") else element.tag,
+        *(f".{name}" for name in sorted(element._classes)),
+        *([f"style={dict(element._style)}"] if element._style else []),
+        *(f"{k}={_prop(v)}" for k, v in sorted(props.items()) if k not in USUAL and v != ""),
+        *([f"value={_prop(element.value)}"] if hasattr(element, "value") else []),
+        *([f"options={_options(listed)}"] if listed is not None else []),
+        *(f"on-{kind}" for kind in sorted({one.type for one in element._event_listeners.values()})
+          if "update:" not in kind),
+        *([] if element.visible else ["HIDDEN"]),
+        *([] if getattr(element, "enabled", True) else ["DISABLED"]),
+    ]  # fmt: skip
+    words = getattr(element, "text", "") or getattr(element, "content", "")
+    yield f"{'  ' * depth}{' '.join(told)}{f' | {words}' if words else ''}"
+    for slot in element.slots.values():
+        if slot.template:
+            yield f"{'  ' * depth}  slot {slot.name}: {slot.template}"
+        for each in slot.children:
+            yield from element_lines(each, depth + 1)
+
+
+def _prop(value):
+    if isinstance(value, float):
+        return f"{value:g}"
+    return (
+        json.dumps(value, ensure_ascii=False, default=str) if not isinstance(value, str) else value
+    )
+
+
+def _options(listed):
+    shown = list(listed.items()) if isinstance(listed, dict) else list(listed)
+    return _prop(shown if len(shown) < 14 else [len(shown), *shown[:3], *shown[-2:]])
+
+
+def pages_shown(monkeypatch, builds, act=None):
+    """Return what stands on pages, by name, and in ``sent`` what they told the browser.
+
+    ``builds``: what fills each of them, one below the other; ``act`` is awaited with the element of
+    each by name before they are read.
+    """
+    sent, places, lines = [], {}, {}
+
+    def telling(name):
+        def tell(*words, **_):
+            sent.append(f"{name}: {' '.join(map(str, words))}")
+
+        return tell
+
+    async def answered(script, **_):
+        sent.append(f"script: {script}")
+
+    def run(script, **_):
+        sent.append(f"script: {script}")
+        return answered("") if script == "switchTheme()" else None
+
+    def listen():
+        monkeypatch.setattr(ui, "run_javascript", run)
+        monkeypatch.setattr(ui, "notify", telling("notify"))
+        monkeypatch.setattr(ui.navigate, "to", telling("go"))
+        monkeypatch.setattr(ui.download, "file", telling("download"))
+
+    def build():
+        listen()
+        for name, fill in builds.items():
+            if name == "whole":  # a page with its frame
+                places[name] = ui.context.client.layout
+                fill()
+                continue
+            places[name] = ui.element("div")
+            with places[name]:
+                fill()
+
+    async def look(elements):
+        listen()  # the simulation puts its own in place as it opens a page
+
+        async def settled():  # what a page asks as soon as it is open, and lines of tasks
+            before = None
+            for _ in range(40):
+                now = {name: "\n".join(element_lines(place)) for name, place in places.items()}
+                begun = [e for e in elements if isinstance(e, ui.timer) and e.interval < 0.05]
+                if now == before and not begun:
+                    break
+                before = now
+                await asyncio.sleep(0.15)
+            dialogs = (e for e in elements if isinstance(e, ui.dialog))
+            opened = ["\n".join(element_lines(each)) for each in dialogs]
+            lines.update(now | ({"dialogs": "\n".join(opened)} if opened else {}))
+
+        await settled()
+        if act is not None:
+            await act(places)
+            await settled()
+
+    shown(build, look)
+    return {**lines, "sent": [one.replace("\n", " ") for one in sent]}

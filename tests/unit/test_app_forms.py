@@ -13,7 +13,14 @@ from nicegui import ui
 
 from page_session import button, computed, press, session_of, shown, until, words_of
 from underfoot.app import inputs, serve, work
-from underfoot.app.inputs import Input, changes, number_field, read_in_unit, sliders
+from underfoot.app.inputs import (
+    Input,
+    Slider,
+    changes,
+    number_field,
+    read_in_unit,
+    sliders,
+)
 from underfoot.app.jobs import DONE, FAILED, INTERRUPTED, RUNNING
 from underfoot.app.pages import assumptions, design, place, sole_file, start
 from underfoot.app.pages.project import _others, _state_text
@@ -22,10 +29,10 @@ from underfoot.app.session import Exchange
 from underfoot.app.variant_bar import new_variant, no_variant, variant_bar
 from underfoot.core import InputError, silent
 
-SPEED = Input("motion.speed", "m/s", 0.05, 1.5, 0.01)
-VISCOSITY = Input("contaminant.viscosity", "cP", 0.5, 1000.0, 1.0, log=True)
-DEPTH = Input("shoe.tread.depth", "mm", 0.5, 8.0, 0.1)
-HARDNESS = Input("shoe.material.shore_a", "", 45.0, 85.0, 1.0)
+SPEED = Slider("motion.speed", "m/s", 0.05, 1.5, 0.01)
+VISCOSITY = Slider("contaminant.viscosity", "cP", 0.5, 1000.0, 1.0, log=True)
+DEPTH = Slider("shoe.tread.depth", "mm", 0.5, 8.0, 0.1)
+HARDNESS = Slider("shoe.material.shore_a", "", 45.0, 85.0, 1.0)
 
 
 @pytest.fixture
@@ -68,14 +75,14 @@ def test_sliders_are_written_in_the_unit_of_the_case_and_read_from_it(session):
     assert SPEED.given(case) == pytest.approx(0.4)
     assert VISCOSITY.given(case) == pytest.approx(100)
     assert HARDNESS.given(case) == pytest.approx(case.value("shoe.material.shore_a"))
-    assert Input("shoe.sole.midsole.thickness", "mm", 1, 2, 1).given(case) is None
+    assert Input("shoe.sole.midsole.thickness", "mm").given(case) is None
     moved = {"motion.speed": "0.55", "shoe.material.shore_a": 61, "unknown": 3}
     assert changes([SPEED, HARDNESS], moved) == {
         "motion.speed": "0.55 m/s", "shoe.material.shore_a": 61.0,
     }  # fmt: skip
     assert SPEED.shown_in("si") == (1.0, "m/s")
     assert SPEED.shown_in("us") == (0.3048, "ft/s")
-    assert Input("x", "deg", 0, 1, 1).shown_in("us") == (1.0, "°")
+    assert Input("x", "deg").shown_in("us") == (1.0, "°")
     assert read_in_unit("2 in", "mm", comma=False) == pytest.approx(50.8)
     assert read_in_unit("2,5", "mm", comma=True) == pytest.approx(2.5)
 
@@ -108,8 +115,8 @@ def test_a_slider_stands_where_the_case_does_and_asks_what_its_page_does(session
         moved.append(given)
         return {"texts": {}}
 
-    none = Input("shoe.sole.midsole.thickness", "mm", 1.0, 20.0, 1.0)
-    fast = Input("motion.speed", "m/s", 0.05, 0.3, 0.01)
+    none = Slider("shoe.sole.midsole.thickness", "mm", 1.0, 20.0, 1.0)
+    fast = Slider("motion.speed", "m/s", 0.05, 0.3, 0.01)
     given = (fast, VISCOSITY, none)
 
     def build():
@@ -158,7 +165,7 @@ def test_a_field_changes_the_file_where_something_else_was_typed(session, typed,
 
 def test_an_empty_field_of_the_catalogue_shows_its_value_again(session):
     case, given = session.project.case("a"), []
-    force = Input("motion.normal_force", "N", 50.0, 1000.0, 10.0)
+    force = Input("motion.normal_force", "N")
 
     def look(elements):
         (field,) = (each for each in elements if isinstance(each, ui.input))
@@ -170,7 +177,7 @@ def test_an_empty_field_of_the_catalogue_shows_its_value_again(session):
     before, after = shown(lambda: number_field(session, force, case, given.append), look)
     assert before == after != ""
     assert given == []
-    layer = Input("shoe.sole.midsole.thickness", "mm", 1.0, 20.0, 1.0)
+    layer = Input("shoe.sole.midsole.thickness", "mm")
     assert shown(lambda: number_field(session, layer, case, given.append), list) is not None
     fields = shown(lambda: number_field(session, layer, case, given.append), lambda e: [
         each for each in e if isinstance(each, ui.input)])  # fmt: skip

@@ -38,20 +38,15 @@ Read = TypeVar("Read")
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A value of a case with the unit and the range in which it is usually set.
+    """A value of a case with the unit in which it is set.
 
     Attributes:
         path: In the case; its name is ``inputs.PATH`` in the text files.
         unit: As a case file writes it, "" for a number.
-        low, high, step: In that unit; of a slider in decades (``log``) too.
     """
 
     path: str
     unit: str
-    low: float
-    high: float
-    step: float
-    log: bool = False
 
     def shown_in(self, units: str) -> tuple[float, str]:
         """Return size and sign of the unit that is shown."""
@@ -81,12 +76,26 @@ class Input:
         number, unit = parts
         return f"{repr(number).removesuffix('.0')} {unit or shown}"
 
+
+@dataclass(frozen=True, slots=True)
+class Slider(Input):
+    """A value that is set with a slider, in the range in which it usually lies.
+
+    Attributes:
+        low, high, step: In the unit; of a slider in decades (``log``) too.
+    """
+
+    low: float
+    high: float
+    step: float
+    log: bool = False
+
     def written(self, value: float) -> str | float:
-        """Return where a slider stands as a case takes it."""
+        """Return where the slider stands as a case takes it."""
         return f"{value:.9g} {self.unit}" if self.unit else float(f"{value:.9g}")
 
 
-def changes(inputs: Sequence[Input], values: Mapping[str, Any]) -> dict[str, Any]:
+def changes(inputs: Sequence[Slider], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return values of sliders as changes of a case; unknown names are left out."""
     known = {each.path: each for each in inputs}
     return {path: known[path].written(float(v)) for path, v in values.items() if path in known}
@@ -104,7 +113,7 @@ def grooves_of(case: Case) -> list[dict[str, str]]:
 
 def sliders(
     session: Session,
-    inputs: Sequence[Input],
+    inputs: Sequence[Slider],
     case: Case,
     moving: Callable[[dict[str, Any]], Awaitable[dict[str, Any]]],
     resting: Callable[[dict[str, Any]], object],
@@ -152,7 +161,7 @@ def _origin(session: Session, case: Case, path: str, assumed: str = "assumed") -
     return session.text(f"origin.{kind}"), origin.leaf.source or ""
 
 
-def _row(session: Session, each: Input, value: float, origin: str) -> str:
+def _row(session: Session, each: Slider, value: float, origin: str) -> str:
     low, high, shown, step = each.low, max(each.high, value), value, each.step
     size, sign = each.shown_in(session.units)
     if each.log:

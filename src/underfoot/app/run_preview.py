@@ -84,7 +84,8 @@ def of_run(solved: Continuation, seen: Preview, whole: Mapping[str, SourcedValue
         repeated = math.sqrt(2.0) * SURE * relative * values[name]
         drift = DRIFT[number] * turned * size
         errors[name] = math.hypot(share * seen.errors[name], repeated, drift)
-    if max(errors["cof"] / values["cof"], errors["fluid_load"] / load) > MOST_UNSURE:
+    unsure = errors["cof"] > MOST_UNSURE * values["cof"]  # which may be none
+    if unsure or errors["fluid_load"] > MOST_UNSURE * load:
         raise ConvergenceError(
             Message(
                 "a preview would say COF {cof:.3f} ± {cof_spread:.3f}, film {film:.0f} ± "

@@ -207,7 +207,7 @@ def advised_groove(path: str, folder: str, lug: int, *, progress: Progress) -> d
 
 
 def _written(width: float) -> str:
-    return f"{1e3 * width:.4g} mm"
+    return f"{round(1e3 * width, 6) + 0.0:.4g} mm"  # no rounding of zero, no sign of it
 
 
 def _percent(share: float) -> str:

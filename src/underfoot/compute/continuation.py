@@ -175,7 +175,7 @@ class Continuation:
         parts, first, second = self._steps(case)
         one, two = (place_numbers(parts, each) for each in (first, second))
         values, errors = {}, {}
-        for name in one.keys() & self.values.keys() & self._unchanged.keys():
+        for name in sorted(one.keys() & self.values.keys() & self._unchanged.keys()):
             off = self.values[name] - self._unchanged[name]
             values[name] = two[name] + off
             steps = abs(off) + abs(two[name] - one[name])

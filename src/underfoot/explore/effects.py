@@ -182,4 +182,6 @@ def _salib(plan: StudyPlan, step: str) -> Callable[..., Any]:
     problem = {"num_vars": len(paths), "names": paths, "bounds": [[0.0, 1.0]] * len(paths)}
     optional_module("SALib", "study", "A sensitivity")
     function = getattr(import_module(f"SALib.{step}.{name}"), step)
-    return partial(function, problem, seed=plan.method.seed, **OPTIONS[name])
+    # its bootstrap takes a seed of 0 for none: the intervals would differ with each look
+    seed = plan.method.seed + (step == "analyze")
+    return partial(function, problem, seed=seed, **OPTIONS[name])

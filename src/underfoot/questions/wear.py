@@ -212,8 +212,8 @@ class WearSeries(Presentable):
     def cautions(self) -> tuple[Message, ...]:
         reasons: list[Message] = []
         cof = self.values("cof")
-        rises = cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof)
-        if np.isfinite(cof[-1]) and rises and self.untreaded is None:
+        ends = np.isfinite(cof[-1]) and self.untreaded is None  # else there may be none to compare
+        if ends and cof[-1] > 1.05 * np.nanmin(cof) and cof[-1] == np.nanmax(cof):
             reasons.append(
                 Message(
                     "The COF still rises at the last state: its fall lies beyond the range (--to)."

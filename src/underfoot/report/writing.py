@@ -154,7 +154,7 @@ def _rescued(lost: Mapping[str, Writer]) -> str:
 def _csv_cell(value: Any) -> Any:
     if value is None or value != value:
         return ""
-    return repr(value) if isinstance(value, float) else harmless(str(value))
+    return repr(float(value)) if isinstance(value, float) else harmless(str(value))
 
 
 def _finite(value: Any) -> Any:

@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from underfoot.core import InputError, RangeError, ValidityRange, breaches
+from underfoot.core.checks import poisson_ratio as checked_ratio
+from underfoot.core.checks import positive
 from underfoot.surface import SpectralMoments, asperities
 
 from .pressure_gap_law import TabulatedLaw
@@ -50,7 +52,7 @@ def greenwood_williamson(
         raise InputError("pressure must be positive", where="Greenwood-Williamson")
     summits = asperities(moments)
     deviation = summits.height_sd
-    stiffness = modulus / (1.0 - poisson_ratio**2)
+    stiffness = positive(modulus, "modulus", "Pa") / (1.0 - checked_ratio(poisson_ratio) ** 2)
     scale = 4.0 / 3.0 * stiffness * summits.density * math.sqrt(summits.radius) * deviation**1.5
     t = _separation(p / scale)
     area = math.pi * summits.density * summits.radius * deviation * _summit_integral(1.0, t)
@@ -92,7 +94,8 @@ def greenwood_williamson_law(
         for order, weight in enumerate((2.0, 1.0, 0.75))
     )
     moments = SpectralMoments(m0, m2, m4, (float(q[0]), float(q[-1])))
-    scale = modulus / (1.0 - poisson_ratio**2) * math.sqrt(m2)
+    scale = positive(modulus, "modulus", "Pa") / (1.0 - checked_ratio(poisson_ratio) ** 2)
+    scale *= math.sqrt(m2)
     contact = greenwood_williamson(
         np.geomspace(0.3, 1e-5, 200) * scale, moments, modulus, poisson_ratio
     )

@@ -124,6 +124,7 @@ class SlidingSole:
         self._reporting = reporting or Reporting()
         self._map_angle = self._angle = shoe_angle
         self._time = self._load = self._largest_load = 0.0
+        self._typical_force = typical_force
         self._speed: float | None = None
         cells = sole.cells or row_cells(sole)
         clearance = _bounded(cells.clearance)
@@ -187,8 +188,8 @@ class SlidingSole:
 
         Parameters:
             duration: s.
-            normal_force: Load at the end, N; below 1e-3 of the largest so far it counts as that
-                much: a foot that lifts off is not followed.
+            normal_force: Load at the end, N; below 1e-3 of the largest so far (before any, of
+                ``typical_force``) it counts as that much: a foot that lifts off is not followed.
             speed: Sliding speed of the shoe along +x at the end, m/s; negative slides backward.
             shoe_angle: At the end, rad; None keeps it.
             longest_step: Longest inner step, s; None: the whole duration if it converges.
@@ -337,7 +338,7 @@ class SlidingSole:
         last = angle if shoe_angle is None else shoe_angle
         self._check_stretch(last)
         self._largest_load = max(self._largest_load, normal_force)
-        least = LEAST_LOAD * self._largest_load
+        least = LEAST_LOAD * (self._largest_load or self._typical_force)
 
         def at(time: float) -> tuple[float, float, float]:
             share = min((time - start) / duration, 1.0)

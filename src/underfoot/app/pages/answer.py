@@ -24,7 +24,7 @@ from ..components import (
     task_line,
     title,
 )
-from ..inputs import Input, sliders
+from ..inputs import Slider, sliders
 from ..jobs import DONE, QueuedTask
 from ..labels import package_label
 from ..session import Session, address, problem_parts
@@ -33,15 +33,15 @@ from . import repair, wear
 
 ROUTE = "/answer"
 LIVE = (
-    Input("motion.speed", "m/s", 0.05, 1.5, 0.01),
-    Input("contaminant.viscosity", "cP", 0.5, 1000.0, 1.0, log=True),
-    Input("shoe.wear.depth", "mm", 0.0, 4.0, 0.1),
-    Input("shoe.material.shore_a", "", 45.0, 85.0, 1.0),
-    Input("motion.normal_force", "N", 100.0, 900.0, 10.0),
-    Input("motion.shoe_angle", "deg", 0.0, 20.0, 0.5),
-    Input("shoe.tread.lug_width", "mm", 2.0, 20.0, 0.1),
-    Input("shoe.tread.channel_width", "mm", 1.0, 10.0, 0.1),
-    Input("shoe.tread.depth", "mm", 0.5, 8.0, 0.1),
+    Slider("motion.speed", "m/s", 0.05, 1.5, 0.01),
+    Slider("contaminant.viscosity", "cP", 0.5, 1000.0, 1.0, log=True),
+    Slider("shoe.wear.depth", "mm", 0.0, 4.0, 0.1),
+    Slider("shoe.material.shore_a", "", 45.0, 85.0, 1.0),
+    Slider("motion.normal_force", "N", 100.0, 900.0, 10.0),
+    Slider("motion.shoe_angle", "deg", 0.0, 20.0, 0.5),
+    Slider("shoe.tread.lug_width", "mm", 2.0, 20.0, 0.1),
+    Slider("shoe.tread.channel_width", "mm", 1.0, 10.0, 0.1),
+    Slider("shoe.tread.depth", "mm", 0.5, 8.0, 0.1),
 )
 """Values that a preview follows while they move; of another tread the full run answers."""
 RUN, ADVICE = "underfoot.app.work:computed", "underfoot.app.work:advised"

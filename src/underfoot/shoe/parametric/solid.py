@@ -13,6 +13,7 @@ from underfoot.core import InputError, UnderfootError
 from underfoot.core.optional import optional_module
 from underfoot.core.remark import Message
 
+from ..grids import plan_outline
 from ..shape import SoleShape
 from ..tread import LATTICES, ArcChannel
 from .modelling import (
@@ -34,6 +35,7 @@ from .worn_solid import worn_solid
 
 LEAST_PRINTABLE = 0.3e-3
 """m: walls and slits below this can be neither printed nor moulded (assumed: common nozzles)."""
+_TOUCHED = 1e-9  # m^2 of a lug within the plan form: less is a lug beside it
 _BELOW = 1e-3  # m under the sole plane where cutting prisms begin
 
 
@@ -102,7 +104,21 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     if shape.arc_channel is not None and shape.arc_channel.depth > 0:
         body = body - _half_ring(shape.arc_channel) * _layer(lower, shape.arc_channel.depth)
     body = worn_solid(body, shape)
-    return SoleSolid(body, float(body.mass) / MM**3, len(lugs), tuple(remarks))
+    return SoleSolid(body, float(body.mass) / MM**3, _on_sole(lugs, shape), tuple(remarks))
+
+
+def _on_sole(lugs: Sequence[Outline], shape: SoleShape) -> int:
+    """Return how many lugs meet the plan form: bars beyond it count as none."""
+    import shapely
+
+    plan = shapely.Polygon(plan_outline(shape))
+    areas = [
+        shapely.Point(*lug.points[0]).buffer(lug.radius)
+        if lug.radius > 0
+        else shapely.Polygon(lug.points)
+        for lug in lugs
+    ]
+    return sum(plan.intersection(each).area > _TOUCHED for each in areas)
 
 
 def check_printable(shape: SoleShape) -> None:

@@ -122,13 +122,13 @@ def read_trial(
             "Choose one with step=1 ...",
         )
         raise DataError(words, where=where, remedy=remedy)
-    if not 1 <= (step or 1) <= len(trials):
+    if not 1 <= (1 if step is None else step) <= len(trials):
         raise DataError(
             Message("there is no step {step}", step=step),
             where=where,
             allowed=f"1 to {len(trials)}",
         )
-    return trials[(step or 1) - 1]
+    return trials[0 if step is None else step - 1]
 
 
 def _content(path: Path, *, in_parts: bool) -> tuple[bytes, FileBytes | None]:

@@ -16,7 +16,7 @@ from .draft import RecordingDraft
 from .formats import nearest_format
 from .profile import PlateColumns
 from .sheet import Sheet, is_workbook, sheet_from, workbook_sheets
-from .text import clock_time, force_unit, is_number, si_unit
+from .text import clock_time, force_unit, is_number, is_written_number, si_unit
 
 _TIME = ("time", "t", "abs time", "time s", "zeit", "tiempo", "temps", "elapsed time", "timestamp")
 _CLOCK_UNITS = ("s", "ms", "sec", "msec", "us")
@@ -239,15 +239,14 @@ def _clock(draft: RecordingDraft, sheet: Sheet) -> None:
 
 def _clock_times(sheet: Sheet, name: str) -> np.ndarray:
     """Return the seconds of a column of clock times: "10:15:20.001", with a date or without."""
-    times = [clock_time(cell) for cell in sheet.texts[name]]
-    wrong = next((n for n, time in enumerate(times) if time is None), None)
-    if wrong is not None:
+    cells = sheet.texts[name]
+    times = [clock_time(cell) for cell in cells]
+    wrong = [cell for cell, time in zip(cells, times, strict=True) if time is None]
+    if wrong:
+        # of a column of seconds, the cell that made it a column of text
+        cell = next((cell for cell in wrong if not is_written_number(cell)), wrong[0])
         raise DataError(
-            Message(
-                '"{text}" in the column "{name}" is no time',
-                text=sheet.texts[name][wrong],
-                name=name,
-            ),
+            Message('"{text}" in the column "{name}" is no time', text=cell, name=name),
             where=sheet.name,
             allowed='seconds, or a clock as "10:15:20.001"',
         )
@@ -324,9 +323,10 @@ def _plate_columns(draft: RecordingDraft, sheet: Sheet) -> dict[str, PlateColumn
             Message(
                 "{label} recognised from {names}, taken as the force on the foot: a "
                 "profile can say otherwise",
-                label=label, names=names,
+                label=label,
+                names=names,
             )
-        )  # fmt: skip
+        )
     return plates
 
 

@@ -140,9 +140,11 @@ class RecordingDraft:
         self.notes.append(
             Message(
                 "{told}, the file holds {counted}: all of them are read{more}",
-                told=told, counted=counted, more=more,
+                told=told,
+                counted=counted,
+                more=more,
             )
-        )  # fmt: skip
+        )
 
     def channel(
         self,
@@ -168,9 +170,10 @@ class RecordingDraft:
             self.notes.append(
                 Message(
                     "{name}: {count} samples that hold a code are left out",
-                    name=name, count=int(lost.sum()),
+                    name=name,
+                    count=int(lost.sum()),
                 )
-            )  # fmt: skip
+            )
         self.channels[name] = Channel(values, si, self.rate, self.start, self.times, note)
 
     def marker(self, name: str, positions: np.ndarray) -> None:
@@ -192,9 +195,10 @@ class RecordingDraft:
                 Message(
                     "{name}: {count} samples hold a number that stands for a lost one: "
                     "taken as not measured",
-                    name=more["name"], count=int(coded.sum()),
+                    name=more["name"],
+                    count=int(coded.sum()),
                 )
-            )  # fmt: skip
+            )
         self.plates.append(_RawPlate(force, more))
 
     def length_unit(self, written: str, places: np.ndarray, of: str = "the markers") -> float:
@@ -215,7 +219,7 @@ class RecordingDraft:
                     unit=written,
                 ),
                 allowed="m, cm, mm, inch, ft ...",
-                nearest=nearest_match(written, known_units()),
+                nearest=nearest_match(written, known_units("m")),
                 remedy=_STATE,
             )
         seen = np.abs(places[np.isfinite(places)])
@@ -271,9 +275,10 @@ class RecordingDraft:
             self.notes.append(
                 Message(
                     "markers are held for {rows:.3g} rows: cameras at {rate:.4g} Hz",
-                    rows=clock.rows_a_frame, rate=rate,
+                    rows=clock.rows_a_frame,
+                    rate=rate,
                 )
-            )  # fmt: skip
+            )
             markers = {
                 name: Marker(clock.seen(one.positions), rate, start)
                 for name, one in markers.items()
@@ -290,8 +295,10 @@ class RecordingDraft:
                 start, end = marker.time[frames[[0, -1]]].tolist()
                 gap = Message(
                     "{count} frames ({start:.2f} to {end:.2f} s)",
-                    count=len(frames), start=start, end=end,
-                )  # fmt: skip
+                    count=len(frames),
+                    start=start,
+                    end=end,
+                )
                 gaps.append(Message("{gap} {kind}", gap=gap, kind=KINDS[kind]))
                 seen.setdefault(kind, []).append(Message("{name} {gap}", name=name, gap=gap))
             note = join_lines(gaps)
@@ -304,9 +311,11 @@ class RecordingDraft:
             self.notes.append(
                 Message(
                     "taken as not seen, they {kind}: {markers}{more}",
-                    kind=KINDS[kind], markers=names[:6], more=more,
+                    kind=KINDS[kind],
+                    markers=names[:6],
+                    more=more,
                 )
-            )  # fmt: skip
+            )
         return markers
 
     def _check_lengths(self) -> None:

@@ -21,11 +21,16 @@ _PARTS: dict[str, tuple[str, ...]] = {
     "file": tuple(
         "delimiter header_line sheet rate time time_unit length_unit subtract_baseline".split()
     ),
-    "channels": (), "plates": (), "markers": (),
-    "axes": ("vertical", "walking"), "heel": ("left", "right"), "landmarks": (),
+    "channels": (),
+    "plates": (),
+    "markers": (),
+    "axes": ("vertical", "walking"),
+    "heel": ("left", "right"),
+    "landmarks": (),
     "subject": ("mass",),
-    "sensors": (), "accuracy": ("gain", "crosstalk", "source"),
-}  # fmt: skip
+    "sensors": (),
+    "accuracy": ("gain", "crosstalk", "source"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +190,7 @@ def _unit(text: object, dimension: str, where: str) -> str:
         raise InputError(
             f"{text!r} is no known unit" + (f" of {dimension}" if dimension else ""),
             where=where,
-            nearest=nearest_match(str(text), known_units()),
+            nearest=nearest_match(str(text), known_units(dimension)),
         )
     return str(text)
 

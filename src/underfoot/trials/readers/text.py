@@ -297,13 +297,30 @@ _GRAVITY = 9.80665
 # Masses used as forces follow standard gravity.
 _POUND = 4.4482216152605  # N
 _FORCES = {
-    "N": 1.0, "kN": 1e3, "mN": 1e-3, "MN": 1e6, "daN": 10.0, "dyn": 1e-5, "gf": _GRAVITY * 1e-3,
-    "kgf": _GRAVITY, "lbf": _POUND, "ozf": _POUND / 16.0, "kip": 1e3 * _POUND,
-}  # fmt: skip
+    "N": 1.0,
+    "kN": 1e3,
+    "mN": 1e-3,
+    "MN": 1e6,
+    "daN": 10.0,
+    "dyn": 1e-5,
+    "gf": _GRAVITY * 1e-3,
+    "kgf": _GRAVITY,
+    "lbf": _POUND,
+    "ozf": _POUND / 16.0,
+    "kip": 1e3 * _POUND,
+}
 _LENGTHS = {
-    "m": 1.0, "dm": 0.1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "km": 1e3, "in": 0.0254,
-    "ft": 0.3048, "yd": 0.9144,
-}  # fmt: skip
+    "m": 1.0,
+    "dm": 0.1,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "nm": 1e-9,
+    "km": 1e3,
+    "in": 0.0254,
+    "ft": 0.3048,
+    "yd": 0.9144,
+}
 _MOMENTS = {
     f"{force}*{length}": ours * arm
     for force, ours in _FORCES.items()
@@ -313,31 +330,54 @@ _MOMENTS = {
 _WORDS: dict[str, str] = {
     word: unit
     for unit, words in {
-        "N": "newton", "kN": "kilonewton", "daN": "dan decanewton dekanewton", "dyn": "dyne",
+        "N": "newton",
+        "kN": "kilonewton",
+        "daN": "dan decanewton dekanewton",
+        "dyn": "dyne",
         "kgf": "kp kilopond kilogram-force kilogramforce kgforce",
-        "gf": "g pond gram-force gramforce", "lbf": "pound-force poundforce",
-        "m": "meter metre", "dm": "decimeter decimetre dezimeter",
-        "cm": "centimeter centimetre zentimeter", "mm": "millimeter millimetre",
-        "um": "micron micrometer micrometre mikrometer", "nm": "nanometer nanometre",
-        "km": "kilometer kilometre", "in": "inch inche zoll \"", "ft": "foot feet fuss '",
+        "gf": "g pond gram-force gramforce",
+        "lbf": "pound-force poundforce",
+        "m": "meter metre",
+        "dm": "decimeter decimetre dezimeter",
+        "cm": "centimeter centimetre zentimeter",
+        "mm": "millimeter millimetre",
+        "um": "micron micrometer micrometre mikrometer",
+        "nm": "nanometer nanometre",
+        "km": "kilometer kilometre",
+        "in": 'inch inche zoll "',
+        "ft": "foot feet fuss '",
         "yd": "yard",
-        "s": "sec second sekunde", "ms": "msec millisec millisecond millisekunde",
-        "us": "usec microsecond", "min": "minute", "h": "hr hour std stunde",
-        "m/s": "m/sec meter/s meter/sec", "mm/s": "mm/sec", "cm/s": "cm/sec",
-        "in/s": "in/sec inch/s ips", "ft/s": "ft/sec fps", "ft/min": "fpm",
-        "Pa": "pascal", "kPa": "kilopascal", "deg": "degree grad", "rad": "radian",
-        "rpm": "r/min rev/min u/min 1/min", "Hz": "hertz", "V": "volt",
+        "s": "sec second sekunde",
+        "ms": "msec millisec millisecond millisekunde",
+        "us": "usec microsecond",
+        "min": "minute",
+        "h": "hr hour std stunde",
+        "m/s": "m/sec meter/s meter/sec",
+        "mm/s": "mm/sec",
+        "cm/s": "cm/sec",
+        "in/s": "in/sec inch/s ips",
+        "ft/s": "ft/sec fps",
+        "ft/min": "fpm",
+        "Pa": "pascal",
+        "kPa": "kilopascal",
+        "deg": "degree grad",
+        "rad": "radian",
+        "rpm": "r/min rev/min u/min 1/min",
+        "Hz": "hertz",
+        "V": "volt",
     }.items()
     for word in words.split()
-}  # fmt: skip
+}
 _WEIGHTS = {
     word: unit
     for unit, words in {
-        "kgf": "kg kilo kilogram kilogramme", "gf": "g gram gramme", "lbf": "lb lbm pound",
+        "kgf": "kg kilo kilogram kilogramme",
+        "gf": "g gram gramme",
+        "lbf": "lb lbm pound",
         "ozf": "oz ounce",
     }.items()
     for word in words.split()
-}  # fmt: skip
+}
 """Units of mass that stand for their weight where a force is measured."""
 _FACTORS: dict[str, tuple[str, float]] = {
     name: (si, factor)
@@ -346,11 +386,30 @@ _FACTORS: dict[str, tuple[str, float]] = {
         "m": _LENGTHS,
         "N*m": _MOMENTS,
         "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
-        "m/s": {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "um/s": 1e-6, "km/h": 1.0 / 3.6,
-                "m/min": 1.0 / 60.0, "in/s": 0.0254, "ft/s": 0.3048, "ft/min": 0.3048 / 60.0},
+        "m/s": {
+            "m/s": 1.0,
+            "mm/s": 1e-3,
+            "cm/s": 1e-2,
+            "um/s": 1e-6,
+            "km/h": 1.0 / 3.6,
+            "m/min": 1.0 / 60.0,
+            "in/s": 0.0254,
+            "ft/s": 0.3048,
+            "ft/min": 0.3048 / 60.0,
+        },
         "Pa": {
-            "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "mPa": 1e-3, "GPa": 1e9, "hPa": 1e2, "bar": 1e5,
-            "mbar": 1e2, "psi": 6894.757293168361, "N/mm2": 1e6, "N/cm2": 1e4, "N/m2": 1.0,
+            "Pa": 1.0,
+            "kPa": 1e3,
+            "MPa": 1e6,
+            "mPa": 1e-3,
+            "GPa": 1e9,
+            "hPa": 1e2,
+            "bar": 1e5,
+            "mbar": 1e2,
+            "psi": 6894.757293168361,
+            "N/mm2": 1e6,
+            "N/cm2": 1e4,
+            "N/m2": 1.0,
         },
         "rad": {"deg": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3},
         "rad/s": {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": math.pi / 180.0},
@@ -360,7 +419,7 @@ _FACTORS: dict[str, tuple[str, float]] = {
         "K": {"K": 1.0},
     }.items()
     for name, factor in units.items()
-}  # fmt: skip
+}
 # Without regard to capitals, but where they decide between two units (mN and MN).
 _ANY_CASE: dict[str, str] = {}
 for _name in (*_FACTORS, *_WORDS, *_WEIGHTS):
@@ -427,6 +486,7 @@ def in_si(text: str) -> tuple[str, float, float]:
     return si_unit(text) or ("", 1.0, 0.0)
 
 
-def known_units() -> list[str]:
-    """Return the spellings understood, for messages."""
-    return sorted({*_FACTORS, "degC"})
+def known_units(dimension: str = "") -> list[str]:
+    """Return the spellings understood, for messages; of one dimension ("m", "N") where told."""
+    known = {**_FACTORS, "degC": ("K", 1.0)}
+    return sorted(name for name, (si, _) in known.items() if dimension in ("", si))

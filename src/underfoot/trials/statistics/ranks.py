@@ -145,7 +145,8 @@ def _of_many(columns: Sequence[np.ndarray], several: bool) -> RankTest:
 
     if several:
         whole = np.stack(columns, axis=1)
-        test: Any = stats.friedmanchisquare(*whole.T)
+        with np.errstate(invalid="ignore"):  # of persons whose levels are all alike
+            test: Any = stats.friedmanchisquare(*whole.T)
         if not np.isfinite(test.statistic):
             raise DataError("no person differs between the levels", where="rank test")
         if len(whole) ** (whole.shape[1] - 1) > EXACT_TABLES:

@@ -109,7 +109,10 @@ def variance_components(
         text = "so few persons leave nothing to estimate a scatter from"
         raise DataError(text, where="mixed model")
     for _ in range(_STEPS):
-        step = np.linalg.solve(state.expected, state.score)
+        try:
+            step = np.linalg.solve(state.expected, state.score)
+        except np.linalg.LinAlgError:  # nothing tells the variances apart
+            break
         for _ in range(_HALVINGS):
             better = _State.of(theta + step, *data)
             if better is not None and better.deviance <= state.deviance + _CLOSE:

@@ -677,7 +677,7 @@ def _column(
     values = [None if number is None else number * factor + offset for number in numbers]
     low, high, si, headings = _RANGES.get(name, (-math.inf, math.inf, "", ""))
     if name in _ANGLES:
-        high = LARGEST["angle"] * factor
+        high = math.radians(LARGEST["angle"]) if unit else LARGEST["angle"]
         low, si, headings = -high, "rad" if unit else "deg", "(deg), (rad)"
     for i, value in enumerate(values):
         if value is not None and not low <= value <= high:
