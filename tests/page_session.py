@@ -16,6 +16,7 @@ from underfoot.app.project import Project
 from underfoot.app.projects import Servers
 from underfoot.app.session import Exchange, Session
 from underfoot.app.text import Text
+from underfoot.core.remark import MARK
 
 RUN = "underfoot.app.work:computed"
 
@@ -121,6 +122,7 @@ MOVING = (
 )
 """What of a page is another one each time it is opened."""
 USUAL = {"value", "options", "innerHTML", "for"}
+MUTE = {"loopback", "id", "key", MARK}
 
 
 def element_lines(element, depth=0):
@@ -128,7 +130,7 @@ def element_lines(element, depth=0):
     if isinstance(element, ui.timer):
         yield f"{'  ' * depth}timer {element.interval:g} {element.active}"
         return
-    props = {k: v for k, v in element._props.items() if k not in ("loopback", "id", "key")}
+    props = {k: v for k, v in element._props.items() if k not in MUTE}
     listed = getattr(element, "options", None)
     told = [
         type(element).__name__ if element.tag.startswith("nicegui") else element.tag,

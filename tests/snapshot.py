@@ -35,7 +35,8 @@ SILENT = (
     (re.compile(r"\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d(?:\.\d+)?)?(?:Z|\+\d\d:\d\d)?)?"),
      "DATE"),
     (re.compile(r"\b(Underfoot|underfoot) \d+\.\d+\.\d+\S*"), r"\1 VERSION"),
-    (re.compile(r"[^\s\"'(>=]*/pytest-of-[^/\s]*/pytest-\d+/[^/\s\"'<)]*"), "FOLDER"),
+    (re.compile(r"[^\s\"'(>=]*/pytest-of-[^/\s]*/pytest-\d+/(?:popen-\w+/)?[^/\s\"'<)]*"),
+     "FOLDER"),
 )  # fmt: skip
 
 
