@@ -99,7 +99,7 @@ def assessment(*effects, missing: float | None = 0.1, present=None):
         ModelRisk("a", "b", "As a.", 0.6, None, None, None),
         ModelRisk("c", "d", "Every c slips.", 0.5, 0.4, 0.6, 0.31),
     )
-    limit = summary.friction_limit(present.scalars) if present.status.usable else None
+    limit = summary.friction_limit(scalars())
     return RiskAssessment("Case", present, models, limit, 0.05, missing, effects)
 
 
