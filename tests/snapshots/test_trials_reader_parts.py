@@ -558,6 +558,7 @@ def test_profiles_and_what_is_wrong_with_one(tmp_path, file_regression):
         {
             "whole": profile_from(PROFILE),
             "empty": profile_from({}),
+            "no baseline": profile_from({"file": {"subtract_baseline": False}}).subtract_baseline,
             "wrong": {
                 key: value if isinstance(value, str) else "taken" for key, value in answers.items()
             },
