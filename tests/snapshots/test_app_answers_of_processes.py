@@ -27,6 +27,7 @@ from underfoot.app import (
     work_sole,
     work_studies,
     work_table,
+    work_trials,
 )
 from underfoot.app import project as project_module
 from underfoot.app.jobs import DONE, FAILED, RUNNING, STOPPED, JobQueue, QueuedTask
@@ -53,7 +54,7 @@ def plain(answer):
 
 @pytest.fixture
 def stored(tmp_path):
-    """Return case files and folders of results: current, of other inputs, unusable, none, broken."""
+    """Return cases and folders of results: current, of other inputs, unusable, none, broken."""
     case = made.CASE
     lugs = {
         f"lug_{name}": ("lug", np.array(values))
@@ -581,7 +582,7 @@ def test_plots_of_trials(file_regression):
     )
     ratio = {
         "number": 2,
-        "ratio": [0.1, 0.2, 0.3],
+        "ratio": [0.9, 0.2, 0.3],
         "normal": [600.0, 50.0, None],
         "time": np.array([0.0, 0.1, 0.2]),
         "peak": 0.35,
@@ -630,3 +631,13 @@ def test_plots_of_trials(file_regression):
     sheets = [fake(x_range=(0.0, 1.0), y_range=(0.0, 0.8), line=line) for line in (0.2, None)]
     told["tiles"] = [trials_plots.tile_svg(tiles, cast(Any, sheet)) for sheet in sheets]
     held(file_regression, scene_lines(told))
+
+
+def test_the_result_of_a_recording(monkeypatch):
+    found = [fake(file="a.csv #1"), fake(file="a.csv #2")]
+    monkeypatch.setattr(work_trials, "recording_results", lambda *_, **__: found)
+    study = work_trials.TrialsWork(Path("x"), Path("y"), cast(Any, None), {})
+    recording: Any = fake(name="a.csv")
+    assert study.result(recording, "a.csv #2") is found[1]
+    assert study.result(recording, "a.csv #9") is found[0]
+    assert study.store == Path("y") / work_trials.STORE
