@@ -14,6 +14,7 @@ import pytest
 from snapshot import held, refusal
 from underfoot.core import (
     checks,
+    device,
     errors,
     fields,
     fourier,
@@ -939,3 +940,14 @@ def test_systems_and_transforms(file_regression, monkeypatch):
     assert other.result_hash != made.result_hash
     held(file_regression, answers)
     assert values.SourcedValue(2.0).reason == "uncertainty not estimated"
+
+
+def test_large_arrays_go_to_a_card_by_themselves(monkeypatch):
+    """From 512 x 512 points on, where a card is there; told, always or never."""
+    for there in ("A card", None):
+        monkeypatch.setattr(device, "card", lambda there=there: there)
+        assert device.on_card("auto", 512 * 512) == (there is not None)
+        assert not device.on_card("auto", 512 * 512 - 1)
+        assert not device.on_card("cpu", 10**9)
+    monkeypatch.setattr(device, "card", lambda: "A card")
+    assert device.on_card("cuda", 1)
