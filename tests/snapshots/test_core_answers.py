@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+import sys
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
@@ -951,3 +952,16 @@ def test_large_arrays_go_to_a_card_by_themselves(monkeypatch):
         assert not device.on_card("cpu", 10**9)
     monkeypatch.setattr(device, "card", lambda: "A card")
     assert device.on_card("cuda", 1)
+
+
+def test_a_bar_on_a_terminal_shows_share_stage_and_residual(capsys, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "90")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with progress.bar("Work") as report:
+        report("first", 0.4)
+        report("second", 1.7, 3e-4)
+    drawn = capsys.readouterr().err
+    assert "100 %" in drawn
+    assert "second" in drawn
+    assert "residual 3.0e-04" in drawn
