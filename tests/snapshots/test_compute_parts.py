@@ -217,8 +217,7 @@ def test_numbers_over_places(file_regression, name):
         "averaged": values, "labels": made.labels(), "assumes": made.assumptions(),
         "fields": made.fields(),
         "spread": {name: spread[name] for name in ("fluid_load", "peak_fluid_pressure")},
-        "by steps": errors_by_steps(made, list(scalars.keys() & {"cof", "fluid_load",
-                                                                 "peak_fluid_pressure"}), 50.0),
+        "by steps": errors_by_steps(made, ("cof", "fluid_load", "peak_fluid_pressure"), 50.0),
     }  # fmt: skip
     held(file_regression, said, f"places {name}")
     assert isinstance(made, ShoeAngles) is (which == "flat")
