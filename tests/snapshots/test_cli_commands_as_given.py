@@ -13,6 +13,7 @@ import typer.main
 import made_answers as made
 from commands import called
 from snapshot import folder_lines, held, refusal
+from trial_exports import EXPORTS
 from underfoot.cli import (
     calibrate,
     cases,
@@ -364,3 +365,42 @@ def test_rough_contacts(file_regression, tmp_path):
         "law": said(tmp_path, "stribeck", "case.toml", "--law", "odd"),
     }
     held(file_regression, told)
+
+
+def test_recordings(file_regression, tmp_path):
+    for name in ("walk.csv", "walk.tsv", "walk_f_1.tsv"):
+        (tmp_path / name).write_bytes(EXPORTS[name]())
+    step = ("trials", "edit", "walk.csv", "--reason", "seen so", "--step")
+    told = {
+        "describe": said(tmp_path, "trials", "describe", "walk.csv"),
+        "none": said(tmp_path, *step, "1"),
+        "two": said(tmp_path, *step, "1", "--side", "left", "--exclude"),
+        "side": said(tmp_path, *step, "1", "--side", "right"),
+        "contact": said(tmp_path, *step, "1", "--contact", "0.25 s"),
+        "gone": said(tmp_path, *step, "9", "--exclude"),
+        "mot": said(tmp_path, "trials", "export", "walk.csv", "--out", "a.mot"),
+        "trc": said(tmp_path, "trials", "export", "walk.csv", "--out", "a.trc"),
+        "c3d": said(tmp_path, "trials", "export", "walk.csv", "--out", "a.c3d"),
+        "with": said(
+            tmp_path, "trials", "export", "walk.tsv", "--with", "walk_f_1.tsv", "--out", "b.mot"
+        ),
+        "again": said(tmp_path, "trials", "export", "walk.csv", "--out", "a.mot"),
+        "odd": said(tmp_path, "trials", "export", "walk.csv", "--out", "a.odd"),
+        "definitions": said(tmp_path, "trials", "definitions", ".", "--out", "d"),
+    }
+    edits = tmp_path / "edits.csv"
+    told["edits"] = edits.read_text() if edits.exists() else ""
+    told["files"] = {
+        p.name: len(p.read_text().splitlines()) for p in sorted(tmp_path.glob("[ab].*o*"))
+    }
+    held(file_regression, told)
+
+
+def test_json_is_set_in_by_two(tmp_path):
+    (tmp_path / "case.toml").write_text(made.CASE.to_toml())
+    for words in (("check", "case.toml"), ("stribeck", "case.toml", "--fluid", "water")):
+        lines = said(tmp_path, *words, "--json")[1].splitlines()
+        assert (lines[0], lines[-1]) == ("{", "}")
+        assert {len(line) - len(line.lstrip()) for line in lines[1:-1]} == set(
+            range(2, 2 * max(len(line) - len(line.lstrip()) for line in lines) // 2 + 1, 2)
+        )
