@@ -10,7 +10,18 @@ from snapshot import held, refusal
 from underfoot.core import UnderfootError
 from underfoot.friction import packaged_pair_draws
 from underfoot.material import power_law_spectrum
-from underfoot.studies import g1, g3, pair_law, report_ledger, slips, sources, statements, verdict
+from underfoot.studies import (
+    g1,
+    g2,
+    g3,
+    g6,
+    pair_law,
+    report_ledger,
+    slips,
+    sources,
+    statements,
+    verdict,
+)
 from underfoot.studies.corpus_cases import contrasts, stand, whole_shoe_stands
 from underfoot.studies.corpus_cases import verdict as effect_verdict
 from underfoot.studies.figure import Figure, Panel, grouped_bars, level, line, points
@@ -904,4 +915,166 @@ def test_names_of_studies(name, file_regression):
         file_regression,
         found if isinstance(found, str) else found.title,
         f"named_{name.strip().lower()}",
+    )
+
+
+def made_comparison():
+    """Mechanisms as if each had been fitted: with numbers of its own."""
+    from underfoot.calibrate import Calibration
+    from underfoot.calibrate.stribeck_points import fluid_points, pin_on_disk, roughness_series
+    from underfoot.case.friction import measured_fluids
+    from underfoot.core import SourcedValue
+    from underfoot.core.catalogue import Catalogue
+    from underfoot.studies.mechanisms import (
+        CALIBRATION_FLUID,
+        BlindTest,
+        FluidPrediction,
+        MechanismComparison,
+        MechanismTests,
+    )
+
+    catalogue = Catalogue.load()
+    pin = pin_on_disk(catalogue)
+    measured = sorted(measured_fluids(catalogue), key=lambda one: one.viscosity)
+    fluids = {one.fluid: one for one in measured}
+    curves = {name: fluid_points(one, rq=pin.sole_rq) for name, one in fluids.items()}
+    others = [one for name, one in curves.items() if name != CALIBRATION_FLUID]
+    series = [
+        one
+        for one in roughness_series(catalogue)
+        if not (one.fluid == CALIBRATION_FLUID and abs(one.rq - pin.sole_rq) < 1e-9)
+    ]
+    tests = {}
+    for n, (name, one) in enumerate(mechanisms().items()):
+        values = {"cof_adhesion": 0.5 + 0.01 * n, "cof_hysteresis": 0.1}
+        if one.parameter is not None:
+            values["parameter"] = one.parameter.start
+        units = {"parameter": one.parameter.unit if one.parameter else "1"}
+        parameters = {
+            key: SourcedValue(value, units.get(key, "1"), source="made up", uncertainty=0.02)
+            for key, value in values.items()
+        }
+        fit = Calibration(parameters, np.full(11, 0.01 + 0.001 * n), 0.02)
+
+        def blind(these, own, one=one, fit=fit, values=values):
+            predicted = tuple(
+                FluidPrediction(c, predict_cof(one, values, c, pin, own_boundary=own))
+                for c in these
+            )
+            return BlindTest(one, fit, predicted, own)
+
+        of_fluids, of_roughness = ((blind(x, True), blind(x, False)) for x in (others, series))
+        tests[name] = MechanismTests(one, of_fluids, of_roughness, 0.05 + 0.01 * n)
+    return MechanismComparison(pin, curves, fluids, tests, 0.0625)
+
+
+def test_g2_of_a_made_up_comparison(file_regression, monkeypatch):
+    every = packaged_pair_draws()
+    few = every.rows(np.arange(0, every.count, 20))
+    monkeypatch.setattr(g2, "draws_without_report", lambda seed=0: few)
+    monkeypatch.setattr(g2, "compare_mechanisms", lambda catalogue: made_comparison())
+
+    def intervals(comparison, test, samples, seed):
+        cof = np.array([one.cof for one in comparison.points.values()])
+        off = 0.05 * np.cos(np.arange(len(cof)))[:, None]
+        ends = {"low": cof + off - 0.04, "high": cof + off + 0.04}
+        return SimpleNamespace(value=cof + off, **ends)
+
+    def master(chosen, pin):
+        product = np.geomspace(1e-5, 0.1, 30)
+        fit = {"mean_absolute": 0.05, "best_possible": 0.04, "r_squared": 0.85}
+        return (product, 0.1 + 0.4 * np.exp(-product / 1e-3)), fit
+
+    monkeypatch.setattr(g2, "intervals", intervals)
+    monkeypatch.setattr(g2, "master_curve", master)
+    made = g2.compute(Options(quick=True))
+    held(
+        file_regression,
+        {
+            "quantities": told(made.quantities),
+            "tables": {t.name: [t.title, t.columns, *t.rows[:12]] for t in made.tables},
+            "figures": {name: drawn(figure) for name, figure in made.figures.items()},
+            "says": [*made.conclusions, *made.notes, *made.assumptions],
+        },
+    )
+
+
+def test_g6_of_made_up_runs(file_regression, monkeypatch):
+    rng = np.random.default_rng(6)
+    frictions = []
+    for n, law in enumerate(g6.LAWS):
+        for k, (sole, shore) in enumerate(g6.SOLES.items()):
+            cof = 0.15 + 0.01 * n + 0.012 * k
+            draws = cof * np.exp(0.2 * rng.standard_normal(60)) if "pair" in law else None
+            ends = (0.004 + 0.001 * k, cof - 0.01, cof + 0.012)
+            one = g6.SoleFriction(
+                sole, law, shore, cof, 1.02 * cof, *ends, (900.0, 850.0 + n), 0.1, draws
+            )
+            frictions.append(one)
+    every = {}
+    for n, name in enumerate(g6.STEPS):
+        acof = np.repeat([0.159, 0.182], [40, 20])
+        rcof = np.linspace(0.14, 0.26, 60)[rng.permutation(60)]
+        slipped = rng.random(60) < 1 / (1 + np.exp(60 * (acof - rcof + 0.01 * n)))
+        share = {
+            sole: float(slipped[20 * k : 20 * k + 20].mean()) for k, sole in enumerate(g6.SOLES)
+        }
+        every[name] = g6.OutsoleSlips(
+            acof, rcof, slipped, share, g6.fitted_logistic(acof - rcof, slipped)
+        )
+    made = iter(every.values())
+    monkeypatch.setattr(g6, "sole_frictions", lambda **_: frictions)
+    monkeypatch.setattr(g6, "slips", lambda *_, **__: next(made))
+    precise = g6.precision_of_published(draws=3, seed=1)
+    lines = -49.2 + 9 * rng.standard_normal(40), -0.06 + 0.01 * rng.standard_normal(40)
+    monkeypatch.setattr(g6, "precision_of_published", lambda **_: lines)
+    risk = g6.population_risk
+    monkeypatch.setattr(
+        g6, "population_risk", lambda acof: {"report_g6": 0.9 - 4 * acof, "x": acof}
+    )
+    whole = g6.compute(Options(quick=True))
+    monkeypatch.setattr(g6, "population_risk", risk)
+    none = replace(
+        every["constant"],
+        slipped=np.zeros(60, bool),
+        fit=g6.fitted_logistic(np.arange(4.0), np.zeros(4, bool)),
+    )
+
+    def outcome(cof):
+        numbers = {
+            "cof": cof,
+            "peak_fluid_pressure_sensor": 1e4 * cof,
+            "fluid_load": 30.0,
+            "normal_force": 250.0,
+        }
+        return SimpleNamespace(number=numbers.__getitem__, spread=lambda name: 0.1 * cof)
+
+    monkeypatch.setattr(g6, "LAWS", {g6.JUDGED: "the first"})
+    two_grids = told(g6.quantities(frictions, {"constant": none}, quick=False, seed=3))
+    window = [outcome(cof) for cof in (0.15, 0.16, 0.18, 0.14, 0.17)]
+    held(
+        file_regression,
+        {
+            "quantities": told(whole.quantities),
+            "on two grids": two_grids,
+            "tables": {t.name: [t.title, t.columns, *t.rows[:9]] for t in whole.tables},
+            "figures": {name: drawn(figure) for name, figure in whole.figures.items()},
+            "says": whole.conclusions,
+            "precise": precise,
+            "nobody": g6._logistic_words(none),
+            "friction": [
+                g6._friction("hard", "pair", 70.0, window, outcome(0.2)),
+                g6._friction("hard", "pair", 70.0, window[2:], None),
+            ],
+            "spread": frictions[0].spread,
+            "places": g6.risk_places(),
+            "by RCOF": g6.risk_by_rcof(),
+            "strength": g6.pin_strength(),
+            "risk": g6.population_risk(0.17),
+            "case": [
+                row
+                for row in g6.sole_case(60.0, "bowden_tabor").to_toml().split("\n")
+                if row and not row.startswith("#")
+            ],
+        },
     )
