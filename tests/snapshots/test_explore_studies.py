@@ -18,7 +18,7 @@ from underfoot.explore.claims import block_edges
 from underfoot.explore.computing import compute_job, crash_record, status_bytes
 from underfoot.explore.cost import study_cost
 from underfoot.explore.effects import effects, sampled_effect_points
-from underfoot.explore.engines import engine
+from underfoot.explore.engines import _next, engine
 from underfoot.explore.export import export_designs
 from underfoot.explore.goals import (
     Condition,
@@ -377,6 +377,15 @@ def test_readings_and_their_posterior(file_regression, results, tmp_path):
         "none": refusal(posterior, Study(plan_of("grid"), tmp_path / "none")).partition(": is")[2],
     }  # fmt: skip
     held(file_regression, said)
+
+
+@pytest.mark.parametrize(
+    ("jobs", "count", "taken"),
+    [("abc", 2, 2), ("abc", 4, 3), ("abc", 0, 0), (("a", None, "b"), 3, 1), ("", 2, 0)],
+)
+def test_so_many_jobs_are_taken_as_there_is_room_for(jobs, count, taken):
+    there: Any = iter(jobs)
+    assert _next(there, count) == list(jobs)[:taken]
 
 
 def test_stores_and_what_their_status_says(file_regression, results, tmp_path):
