@@ -134,3 +134,16 @@ def wear(cofs=(0.1, 0.11, 0.12), crossing=Crossing.WITHIN, *, mode="plane", vari
 def draws(values):
     """Return draws of COF as a result holds them."""
     return {"cof_draws": ("draw", np.asarray(values))}
+
+
+def placeless(value: Any, *folders: Any) -> Any:
+    """Return plain data without the folders of a test."""
+    if isinstance(value, str):
+        for folder in folders:
+            value = value.replace(str(folder), "HERE")
+        return value
+    if isinstance(value, dict):
+        return {key: placeless(one, *folders) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [placeless(one, *folders) for one in value]
+    return value

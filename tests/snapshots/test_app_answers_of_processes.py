@@ -96,7 +96,7 @@ def test_stored_results_in_words(file_regression, stored):
     held(file_regression, told)
 
 
-def test_a_table_of_variants(file_regression, stored):
+def test_a_table_of_variants(file_regression, stored, tmp_path):
     told: dict[str, Any] = {"rows": work_table.rows(stored, progress=silent)}
     for kind in ("csv", "xlsx"):
         file = Path(work_table.written(stored, "My table", kind, progress=silent))
@@ -105,10 +105,10 @@ def test_a_table_of_variants(file_regression, stored):
         work_table.picture(case, progress=silent)[:120] for _, case, _ in stored[::4]
     ]
     told["units"] = [work_table._unit(path) for path in ("motion.speed", "odd.key")]
-    held(file_regression, told, hide=PACKED)
+    held(file_regression, made.placeless(told, tmp_path), hide=PACKED)
 
 
-def test_results_side_by_side(file_regression, stored):
+def test_results_side_by_side(file_regression, stored, tmp_path):
     folders = [folder for _, _, folder in stored[:2]]
     found = work_studies.comparison(folders, progress=silent)
     told = {k: v for k, v in found.items() if k != "html"}
@@ -117,7 +117,7 @@ def test_results_side_by_side(file_regression, stored):
     told["lost"] = {k: v for k, v in lost.items() if k != "html"}
     file = Path(folders[0]) / "sole.csv"
     told["exported"] = work_studies.exported(folders[0], str(file), progress=silent)
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 def test_the_sole_of_a_case(file_regression, stored):
@@ -300,7 +300,7 @@ def test_a_project_and_its_states(file_regression, tmp_path, monkeypatch):
         refusal(project.inside, "..", "x"),
         refusal(Project, tmp_path / "p" / "history.jsonl"),
     ]
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 def test_results_of_a_project(file_regression, tmp_path):
@@ -385,7 +385,7 @@ def test_the_queue_and_its_file(file_regression, tmp_path, monkeypatch):
     told["moved"] = jobs._moved(
         {"a": [str(tmp_path), f"{tmp_path}/b", f"{tmp_path}c", 3]}, str(tmp_path), "X"
     )
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 @pytest.mark.parametrize("failing", [False, True])
