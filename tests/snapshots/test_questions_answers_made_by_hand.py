@@ -136,6 +136,19 @@ def lost(k, cof, **numbers):
     )
 
 
+def drawn_wear(cofs):
+    """Return a series whose states have draws of COF, the middle one others than its ends."""
+    made_of = made.wear(cofs)
+    ends = [np.linspace(0.0, 1.0, 50), np.zeros(50), np.linspace(0.3, 0.9, 50)]
+    points = [
+        dataclasses.replace(
+            point, outcome=dataclasses.replace(point.outcome, maps={"cof_draws": each})
+        )
+        for point, each in zip(made_of.points, ends, strict=True)
+    ]
+    return dataclasses.replace(made_of, points=tuple(points))
+
+
 WEARS = {
     "rising": lambda: made.wear((0.1, 0.11, 0.12)), "falling": lambda: made.wear((0.12, 0.11, 0.1)),
     "patch": lambda: made.wear(mode="patch", quick=False),
@@ -157,6 +170,13 @@ def test_wear(file_regression, name):
         held(file_regression, said(WEARS["walked"]()))
         return
     held(file_regression, {key: words(make()) for key, make in WEARS.items() if key != "walked"})
+
+
+def test_how_sure_a_series_is(file_regression):
+    held(
+        file_regression,
+        [drawn_wear(cofs).headline() for cofs in ((0.1, 0.2, 0.3), (0.3, 0.2, 0.1))],
+    )
 
 
 def test_where_a_load_exceeds_its_limit(file_regression):
