@@ -817,3 +817,8 @@ def test_small_things(file_regression):
                   SurfaceRoughness(ra=2e-6).rq_or_estimate, only_rz.share_up_to(1e-3, 0.8),
                   SurfaceRoughness(cutoff=4e-3).share_up_to(1e-3, 0.5), bare.scan()],
     })  # fmt: skip
+
+
+def test_a_long_name_is_cut_where_a_case_is_shown(base):
+    for length, shown in ((60, "x" * 60), (61, "x" * 57 + "...")):
+        assert f"<Case {shown!r} [" in repr(base.replace("name", "x" * length))
