@@ -27,6 +27,7 @@ from underfoot.app import (
     work_sole,
     work_studies,
     work_table,
+    work_trials,
 )
 from underfoot.app import project as project_module
 from underfoot.app.jobs import DONE, FAILED, RUNNING, STOPPED, JobQueue, QueuedTask
@@ -53,7 +54,7 @@ def plain(answer):
 
 @pytest.fixture
 def stored(tmp_path):
-    """Return case files and folders of results: current, of other inputs, unusable, none, broken."""
+    """Return cases and folders of results: current, of other inputs, unusable, none, broken."""
     case = made.CASE
     lugs = {
         f"lug_{name}": ("lug", np.array(values))
@@ -95,7 +96,7 @@ def test_stored_results_in_words(file_regression, stored):
     held(file_regression, told)
 
 
-def test_a_table_of_variants(file_regression, stored):
+def test_a_table_of_variants(file_regression, stored, tmp_path):
     told: dict[str, Any] = {"rows": work_table.rows(stored, progress=silent)}
     for kind in ("csv", "xlsx"):
         file = Path(work_table.written(stored, "My table", kind, progress=silent))
@@ -104,10 +105,10 @@ def test_a_table_of_variants(file_regression, stored):
         work_table.picture(case, progress=silent)[:120] for _, case, _ in stored[::4]
     ]
     told["units"] = [work_table._unit(path) for path in ("motion.speed", "odd.key")]
-    held(file_regression, told, hide=PACKED)
+    held(file_regression, made.placeless(told, tmp_path), hide=PACKED)
 
 
-def test_results_side_by_side(file_regression, stored):
+def test_results_side_by_side(file_regression, stored, tmp_path):
     folders = [folder for _, _, folder in stored[:2]]
     found = work_studies.comparison(folders, progress=silent)
     told = {k: v for k, v in found.items() if k != "html"}
@@ -116,7 +117,7 @@ def test_results_side_by_side(file_regression, stored):
     told["lost"] = {k: v for k, v in lost.items() if k != "html"}
     file = Path(folders[0]) / "sole.csv"
     told["exported"] = work_studies.exported(folders[0], str(file), progress=silent)
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 def test_the_sole_of_a_case(file_regression, stored):
@@ -299,7 +300,7 @@ def test_a_project_and_its_states(file_regression, tmp_path, monkeypatch):
         refusal(project.inside, "..", "x"),
         refusal(Project, tmp_path / "p" / "history.jsonl"),
     ]
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 def test_results_of_a_project(file_regression, tmp_path):
@@ -384,7 +385,7 @@ def test_the_queue_and_its_file(file_regression, tmp_path, monkeypatch):
     told["moved"] = jobs._moved(
         {"a": [str(tmp_path), f"{tmp_path}/b", f"{tmp_path}c", 3]}, str(tmp_path), "X"
     )
-    held(file_regression, told)
+    held(file_regression, made.placeless(told, tmp_path))
 
 
 @pytest.mark.parametrize("failing", [False, True])
@@ -581,7 +582,7 @@ def test_plots_of_trials(file_regression):
     )
     ratio = {
         "number": 2,
-        "ratio": [0.1, 0.2, 0.3],
+        "ratio": [0.9, 0.2, 0.3],
         "normal": [600.0, 50.0, None],
         "time": np.array([0.0, 0.1, 0.2]),
         "peak": 0.35,
@@ -630,3 +631,13 @@ def test_plots_of_trials(file_regression):
     sheets = [fake(x_range=(0.0, 1.0), y_range=(0.0, 0.8), line=line) for line in (0.2, None)]
     told["tiles"] = [trials_plots.tile_svg(tiles, cast(Any, sheet)) for sheet in sheets]
     held(file_regression, scene_lines(told))
+
+
+def test_the_result_of_a_recording(monkeypatch):
+    found = [fake(file="a.csv #1"), fake(file="a.csv #2")]
+    monkeypatch.setattr(work_trials, "recording_results", lambda *_, **__: found)
+    study = work_trials.TrialsWork(Path("x"), Path("y"), cast(Any, None), {})
+    recording: Any = fake(name="a.csv")
+    assert study.result(recording, "a.csv #2") is found[1]
+    assert study.result(recording, "a.csv #9") is found[0]
+    assert study.store == Path("y") / work_trials.STORE

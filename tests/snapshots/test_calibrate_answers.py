@@ -66,6 +66,9 @@ def tests(tmp_path):
     files["series"] = written(
         tmp_path / "series.csv", "tau (s),E_i (MPa)", [1e-4, 1e-2, 1, 100], [2, 1, 0.5, 0.3]
     )
+    files["times"] = written(
+        tmp_path / "times.csv", "tau (s),E_i (MPa)", [1e-10, 1e-2, 1, 1e7], [2, 1, 0.5, 0.3]
+    )
     seconds = np.arange(4000) * 0.02
     pressed = np.clip(seconds / 2.0, 0, 1)
     force = 300 * pressed * (1 + np.maximum(seconds - 2, 0)) ** -0.1
@@ -108,6 +111,8 @@ SHORE = DurometerReading(68.0, SHORE_A)
         ("series", ["series"], {"equilibrium_modulus": 1e6}),
         ("block", ["block"], BLOCK),
         ("hardness", [], {"hardness": SHORE}),
+        ("of_all_times", ["times"], {"equilibrium_modulus": 1e5}),
+        ("at_rest_soft", ["series"], {"instantaneous_modulus": 3.8e6 * (1 + 1e-10)}),
     ],
 )
 def test_a_compound_in_full(name, files, given, tests, file_regression):

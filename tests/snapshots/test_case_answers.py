@@ -480,6 +480,66 @@ def test_refused(file_regression, base):
     _held(file_regression, answers)
 
 
+_LONG = {"cell_length": "64 mm", "cell_width": "20 mm"}
+_AREA = {"friction": {"model": "bowden_tabor", "shear_strength": "0.3 MPa"}}
+_FREE = {"pattern": "free", **sole.usual_tread("free")}
+TAKEN = {
+    "rocker": _heel(model="rocker", radius="25.1 mm", start="25 mm"),
+    "radii": {"shoe.heel.rear_radius": "35 mm", "shoe.heel.edge_radius": "35 mm"},
+    "depth": {"shoe.tread.depth": "24.9 mm", "shoe.wear.depth": "24.9 mm"},
+    "two cells": {"shoe.tread.channel_width": "2 mm"},
+    "edge of a lug": {"shoe.tread.edge_radius": "2.5 mm"},
+    "chamfer of a lug": {"shoe.tread.edge_chamfer": "2.5 mm"},
+    "sipes": {"shoe.tread.sipes": {"width": "2.9 mm", "depth": "3 mm", "spacing": "6 mm"}},
+    "grooves": {"shoe.tread.grooves": [
+        {"along": "0 mm", "across": "35 mm", "width": "2 mm"},
+        {"along": "75 mm", "across": "-35 mm", "width": "2 mm"}]},
+    "rings": {"shoe.tread": {"pattern": "rings", **sole.usual_tread("rings"),
+                             "ring_width": "5.9 mm"}},
+    "chevrons": {"shoe.tread": {"pattern": "chevrons", **sole.usual_tread("chevrons"),
+                                "angle": "-74.9 deg"}},
+    "little land": {"shoe.tread": {**_FREE, **_LONG, "land": 0.1}},
+    "much land": {"shoe.tread": {**_FREE, **_LONG, "land": 0.9}},
+    "patch": {"shoe.wear": {"mode": "patch", "depth": "1 mm", "patch_length": "75 mm",
+                            "patch_width": "70 mm"}},
+    "as short as the rise": {"motion.duration": "30 ms"},
+    "hardest": {"shoe.material.shore_a": "99.9"},
+    "all hysteresis": {"friction": {"model": "constant", "cof": 0.3, "hysteresis_cof": 0.3}},
+    "waves": {**_AREA, "interface.shortest_wave": "1.99 mm"},
+    "rough": {"interface.effective_rq": "159 um", "contaminant.pool_depth": "0.48 mm"},
+    "last force": {"motion": {"shoe_angle": "5 deg", "history_points": [
+        _HISTORY[0], {**_HISTORY[1], "normal_force": "1 N"}]}},
+    "counts": {"sensor.scans": 200, "slip.fit_runs": 4, "slip.test_runs": 100,
+               "slip.subjects": 10_000, "slip.sensor_rows": 20, "slip.seed": 2**31},
+}  # fmt: skip
+JUST_BEYOND = {
+    "rocker": _heel(model="rocker", radius="25 mm", start="25 mm"),
+    "through": {"shoe.tread.depth": "25 mm"},
+    "sipes": {"shoe.tread.sipes": {"width": "3 mm", "depth": "3 mm", "spacing": "6 mm"}},
+    "waves": {**_AREA, "interface.shortest_wave": "2 mm"},
+    "rough": {"interface.effective_rq": "160 um", "contaminant.pool_depth": "1 mm"},
+    "shallow": {"interface.effective_rq": "159 um", "contaminant.pool_depth": "0.47 mm"},
+    "much land": {"shoe.tread": {**_FREE, "land": 0.91}},
+    "largest cell": {"shoe.tread": {**_FREE, "cell_width": "161 mm"}},
+    "subjects": {"slip.subjects": 10_001},
+    "runs": {"slip.fit_runs": 3},
+    "tests": {"slip.test_runs": 101},
+    "rows": {"slip.sensor_rows": 21},
+    "columns": {"slip.sensor_columns": 0},
+    "seed": {"slip.seed": 2**31 + 1},
+    "scans": {"sensor.scans": 201},
+}
+
+
+def test_ends_of_what_fits(base):
+    """What just fits is taken, what just does not is refused."""
+    refused = {name: _tried(base.replace, each) for name, each in TAKEN.items()}
+    assert {name: each for name, each in refused.items() if isinstance(each, str)} == {}
+    taken = [name for name, each in JUST_BEYOND.items()
+             if not isinstance(_tried(base.replace, each), str)]  # fmt: skip
+    assert taken == []
+
+
 FILES = {
     "plain": HEAD,
     "comments": "# first\n" + HEAD.replace(
@@ -757,3 +817,8 @@ def test_small_things(file_regression):
                   SurfaceRoughness(ra=2e-6).rq_or_estimate, only_rz.share_up_to(1e-3, 0.8),
                   SurfaceRoughness(cutoff=4e-3).share_up_to(1e-3, 0.5), bare.scan()],
     })  # fmt: skip
+
+
+def test_a_long_name_is_cut_where_a_case_is_shown(base):
+    for length, shown in ((60, "x" * 60), (61, "x" * 57 + "...")):
+        assert f"<Case {shown!r} [" in repr(base.replace("name", "x" * length))

@@ -1,7 +1,8 @@
 """Parts of a run on small numbers: places, draws over them, errors, stated spreads, sentences."""
 
 import math
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import fields, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -112,21 +113,22 @@ def test_places_of_a_run(file_regression):
     for name, case in CASES.items():
         said[name] = {
             "lugs": has_lugs(case), "remembers": remembers(case),
-            "further": further_angles(case), "bevel": UncertainBevel.of(case),
+            "further": rows(further_angles(case)), "bevel": UncertainBevel.of(case),
             "counts": [position_count(case, quick=way) for way in (True, False)],
             "first": [first_share(case, quick=way) for way in (True, False)],
-            "effects": effect_places(case),
-            "solver": [solver_settings(case, finer=n) for n in (1, 2)],
+            "effects": rows(effect_places(case)),
+            "solver": [solver_settings(case, finer=n)
+                       for n in ((1, 2) if name == "ends" else (1,))],
             "pool": (pool_depth(case), start_film(case, steady=True),
                      start_film(case, steady=False)),
         }  # fmt: skip
         if has_lugs(case):
-            said[name]["places"] = [case_places(case, quick=way) for way in (True, False)]
+            said[name]["places"] = [rows(case_places(case, quick=way)) for way in (True, False)]
             said[name]["tread"] = soles.landing_front(case), soles.tread_on_sole(case)[:2]
     periods = np.array([[0.008, 0.0], [0.001, 0.006]])
-    said["lattices"] = [places(periods, n) for n in (1, 2, 5, 12)]
-    said["begins"] = places(periods[:1], 3, np.array([0.4]))
-    said["angles"] = shoe_angles()
+    said["lattices"] = [rows(places(periods, n)) for n in (1, 2, 5, 12)]
+    said["begins"] = rows(places(periods[:1], 3, np.array([0.4])))
+    said["angles"] = rows(shoe_angles())
     bevel = UncertainBevel.of(CASES["flat"])
     assert bevel is not None
     said["turns"] = bevel.turns(7), bevel.message
@@ -141,9 +143,15 @@ def test_places_of_a_run(file_regression):
         np.testing.assert_allclose(_reduced(turned), [[0.01, 0.0], [0.0, 0.02]])
 
 
+def rows(these: Iterable[TreadPlace]) -> list[str]:
+    """Return places a line each."""
+    return [f"{one.shift} {one.turn} {one.yaw} {one.finer}" for one in these]
+
+
 def numbers_of(place: TreadPlace, spacing: float) -> dict[str, float]:
     """Return made-up numbers of a place that depend on where, how turned and how fine it is."""
-    film = 12 + 4 * math.sin(700 * place.shift[0]) + 60 * place.turn + 900 * (spacing - 1e-3)
+    film = 12 + 4 * math.sin(700 * place.shift[0]) + 60 * place.turn
+    film += 900 * (spacing - 1e-3) * (1 + 80 * place.shift[0] + 30 * place.turn)
     film += 0.3 * (place.finer - 1)
     parts = {"cof_adhesion": 0.1 - 0.003 * film, "cof_hysteresis": 0.02 - 0.0003 * film,
              "cof_viscous": 0.004 * film}  # fmt: skip
@@ -177,9 +185,9 @@ def friction_of() -> tuple[FrictionCoefficients, SampledCof]:
 
 
 MADE: dict[str, tuple[str, dict[str, Any]]] = {
-    "flat": ("flat", {}), "flat quick": ("flat", {"quick": True}), "bars": ("bars", {}),
+    "flat": ("flat", {}), "bars": ("bars", {}),
     "bars quick": ("bars", {"quick": True}), "lost": ("bars", {"lost": 2}),
-    "turned lost": ("bars", {"lost": 1}), "blocks": ("blocks", {}), "ends": ("ends", {}),
+    "turned lost": ("bars", {"lost": 1}), "ends": ("ends", {}),
     "flat lost": ("flat", {"lost": 3}),
 }  # fmt: skip
 
@@ -201,13 +209,15 @@ def test_numbers_over_places(file_regression, name):
                     "fluid_load": np.full(60, 0.01)}}  # fmt: skip
     spread = with_film_spread(values, np.linspace(-1, 1, 60), made.drawn, stated)
     said = {
-        "it": made, "answers": {key: made.answer(key) for key in made.values},
+        "it": {one.name: getattr(made, one.name) for one in fields(made)
+               if one.name not in ("places", "at_own_place")},
+        "places": rows(made.places), "answers": {key: made.answer(key) for key in made.values},
         "drawn": {key: made.drawn(key, 30) for key in ("fluid_load", "cof", "fluid_load_sensor")},
         "over": over, "draws": drawn, "plain": made.friction(friction, None)[0].cof,
         "averaged": values, "labels": made.labels(), "assumes": made.assumptions(),
-        "fields": made.fields(), "spread": spread,
-        "by steps": errors_by_steps(made, list(scalars.keys() & {"cof", "fluid_load",
-                                                                 "peak_fluid_pressure"}), 50.0),
+        "fields": made.fields(),
+        "spread": {name: spread[name] for name in ("fluid_load", "peak_fluid_pressure")},
+        "by steps": errors_by_steps(made, ("cof", "fluid_load", "peak_fluid_pressure"), 50.0),
     }  # fmt: skip
     held(file_regression, said, f"places {name}")
     assert isinstance(made, ShoeAngles) is (which == "flat")
@@ -342,7 +352,8 @@ def test_what_is_said_of_numbers(file_regression):
             "limit": (limit, limit.kind, str(limit), limit.sentence("mixed")),
             "verdict": (verdict(world, labels), verdict_sentence(world, labels)),
             "headline": headline(Status.CONVERGED, world, labels), "steady": steadiness(world),
-            "table": table(world, {"regime": "mixed"}),
+            "table": table(world, {"regime": "mixed"})
+            if name in ("film", "dry", "later", "slides", "slips", "unknown") else None,
             "cautions": cautions(Status.CONVERGED, world, breaches, assumptions, "report_g6",
                                  labels),
         }  # fmt: skip
@@ -455,7 +466,7 @@ quick_grid_spacing = "2 mm"
         "moved": (moved.clearance, moved.land), "periods": soles.file_periods(case),
         "front": soles.landing_front(case), "lugs": has_lugs(case),
         "worn": soles.file_surface(worn).height, "lines": [one.shape for one in lines],
-        "spring": soles.spring_contact(case, sole), "places": case_places(case, quick=True),
+        "spring": soles.spring_contact(case, sole), "places": rows(case_places(case, quick=True)),
         "notes": [str(one).replace(str(tmp_path), "") for one in soles.outsole_notes(case)],
         "bottoms": refusal(soles.file_sole_map, case.replace("motion.normal_force", "9 kN"), 2e-3),
         "thin": refusal(soles.file_sole_map, case.replace("shoe.sole.outsole_thickness", "2 mm"),

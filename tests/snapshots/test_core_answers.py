@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+import sys
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
@@ -14,6 +15,7 @@ import pytest
 from snapshot import held, refusal
 from underfoot.core import (
     checks,
+    device,
     errors,
     fields,
     fourier,
@@ -939,3 +941,27 @@ def test_systems_and_transforms(file_regression, monkeypatch):
     assert other.result_hash != made.result_hash
     held(file_regression, answers)
     assert values.SourcedValue(2.0).reason == "uncertainty not estimated"
+
+
+def test_large_arrays_go_to_a_card_by_themselves(monkeypatch):
+    """From 512 x 512 points on, where a card is there; told, always or never."""
+    for there in ("A card", None):
+        monkeypatch.setattr(device, "card", lambda there=there: there)
+        assert device.on_card("auto", 512 * 512) == (there is not None)
+        assert not device.on_card("auto", 512 * 512 - 1)
+        assert not device.on_card("cpu", 10**9)
+    monkeypatch.setattr(device, "card", lambda: "A card")
+    assert device.on_card("cuda", 1)
+
+
+def test_a_bar_on_a_terminal_shows_share_stage_and_residual(capsys, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "90")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with progress.bar("Work") as report:
+        report("first", 0.4)
+        report("second", 1.7, 3e-4)
+    drawn = capsys.readouterr().err
+    assert "100 %" in drawn
+    assert "second" in drawn
+    assert "residual 3.0e-04" in drawn

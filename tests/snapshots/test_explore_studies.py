@@ -1,7 +1,7 @@
 """Design studies on a made-up law of their outputs: plans, batches, results, checks, refusals."""
 
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from underfoot.explore.claims import block_edges
 from underfoot.explore.computing import compute_job, crash_record, status_bytes
 from underfoot.explore.cost import study_cost
 from underfoot.explore.effects import effects, sampled_effect_points
-from underfoot.explore.engines import engine
+from underfoot.explore.engines import _next, engine
 from underfoot.explore.export import export_designs
 from underfoot.explore.goals import (
     Condition,
@@ -45,7 +45,7 @@ from underfoot.explore.plan import Method, StudyPlan, job_key
 from underfoot.explore.posterior import Posterior, _half_normal, _log_density, posterior
 from underfoot.explore.proposals import first_points, next_batch
 from underfoot.explore.record import CaseJob, Ending, Record, draws_place
-from underfoot.explore.result import StudyResult, value_text
+from underfoot.explore.result import StudyResult, _repeats, value_text
 from underfoot.explore.scan import scan_cases
 from underfoot.explore.status import StudyStatus, study_status
 from underfoot.explore.store import Store
@@ -278,9 +278,27 @@ def test_checks_and_costs(file_regression, results, tmp_path):
     big = StudyCheck(**(parts | {"machine": Computer(2, 1e6, 1e3), "cases": 900000}))
     said["big"] = big.headline(), big.cautions(), big.tasks, big.workers
     said["sizes"] = [size_text(x) for x in (10, 999_999, 1e6, 2.34e8, 1e9, 5.55e9)]
-    costs = study_cost(plan_of("goals"), Store(tmp_path / "goals"))
-    said["cost"] = costs and {one: getattr(costs, one) for one in costs.__dataclass_fields__
-                              if one not in ("disk",)}  # fmt: skip
+    plan, jobs = plan_of("goals"), results["goals"].jobs[:30]
+    store = Store.made(tmp_path / "cost")
+    store.adopt(plan)
+    store.add_batch(store.jobs(), jobs)
+    with store.working(2):
+        for k, job in enumerate(jobs):
+            took = {"cpu_seconds": 2.0 + 0.1 * k, "seconds": 3.0 + 0.1 * (k % 4), "memory": k,
+                    "worker": str(k % 2), "ended": 1e9 + k}  # fmt: skip
+            store.add_record(replace(results["goals"].records[job.key], **took))
+    costs = study_cost(plan, Store(tmp_path / "cost"))
+    assert costs is not None
+    said["cost"] = {one.name: getattr(costs, one.name) for one in fields(costs)
+                    if one.name != "disk"}  # fmt: skip
+    for job in jobs:
+        place = tmp_path / "cost" / "fields.zarr" / job.key
+        place.mkdir(parents=True)
+        (place / "c0").write_bytes(bytes(4000))
+    more = study_cost(plan, Store(tmp_path / "cost"))
+    assert more is not None
+    assert more.disk - costs.disk == pytest.approx(4000)
+    said["repeats"] = [_repeats("a.x", paths) for paths in (["b.x", "a.x"], ["a.x", "a.y"])]
     said["no cost"] = study_cost(plan_of("follow"), Store(tmp_path / "follow"))
     said["blocks"] = [block_edges(n) for n in (0, 1, 5, 3000)]
     held(file_regression, said)
@@ -359,6 +377,15 @@ def test_readings_and_their_posterior(file_regression, results, tmp_path):
         "none": refusal(posterior, Study(plan_of("grid"), tmp_path / "none")).partition(": is")[2],
     }  # fmt: skip
     held(file_regression, said)
+
+
+@pytest.mark.parametrize(
+    ("jobs", "count", "taken"),
+    [("abc", 2, 2), ("abc", 4, 3), ("abc", 0, 0), (("a", None, "b"), 3, 1), ("", 2, 0)],
+)
+def test_so_many_jobs_are_taken_as_there_is_room_for(jobs, count, taken):
+    there: Any = iter(jobs)
+    assert _next(there, count) == list(jobs)[:taken]
 
 
 def test_stores_and_what_their_status_says(file_regression, results, tmp_path):

@@ -379,7 +379,11 @@ def test_coefficients(file_regression):
     draws = LawDraws(np.array([0.5, 1.0, 9.0]), np.ones(3), np.array([1.0, 2.0, 0.0]), 0.01,
                      np.array([0.1, 1.0, 2.0]), np.array([-1.0, 0.0, 2.0]), -0.5, 1.0, 2.0
     )  # fmt: skip
+    many = (rng.uniform(0, 3e5, (12, 9)), np.full((12, 9), 1e4), rng.uniform(1e-6, 1e-4, (12, 9)))
+    unwetted = {**drawn, "wet": np.zeros((9, 8), bool)}
     said = {
+        "many": sampled_cof(law, *many, speed=0.3, samples=100),
+        "unwetted": sampled_cof(law, contact, fluid, film, film_shear=errors["a"], **unwetted),
         "plain": plain,
         "placed": cof(parts, contact, fluid, spacing=1e-3, sampled=sampled, source="a", **places),
         "sampled": sampled, "whole": whole, "dry": dry, "steady": steady, "modelled": modelled,

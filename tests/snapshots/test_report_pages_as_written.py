@@ -83,7 +83,7 @@ def test_any_answer(file_regression, tmp_path):
         "refused": [refusal(write_report, 3, tmp_path / "b"), refusal(plot, Answer()),
                     refusal(write_report, Answer(), tmp_path)],
     }  # fmt: skip
-    held(file_regression, told, hide=PACKED)
+    held(file_regression, made.placeless(told, tmp_path), hide=PACKED)
 
 
 def test_what_can_not_be_written(file_regression, tmp_path, monkeypatch):
@@ -105,7 +105,7 @@ def test_what_can_not_be_written(file_regression, tmp_path, monkeypatch):
     told["over"] = sorted(os.listdir(tmp_path / "n"))
     monkeypatch.setenv("UNDERFOOT_DEBUG", "1")
     told["debug"] = refusal(write_folder, tmp_path / "d", {"a": fails(ValueError("odd"))}, {})
-    held(file_regression, told, hide=PACKED)
+    held(file_regression, made.placeless(told, tmp_path), hide=PACKED)
 
 
 ANSWERS = {

@@ -114,6 +114,32 @@ def _rows(heel):
     }
 
 
+@pytest.mark.parametrize("name", ["grid", "arc", "worn through"])
+def test_rows_of_parts(file_regression, name):
+    """Two and three cells in a spacing; a part of the sole has the cells of that part."""
+    tilted = {"shoe_angle": 0.1, "spacing": 1.5e-3, "padding": 1.5e-3}
+    square = heel_map(HEELS[name], **tilted)
+    rows = np.s_[3:-2], np.s_[4:-3]
+    part = replace(
+        square,
+        x=square.x[rows[0]],
+        y=square.y[rows[1]],
+        cut=square.cut and square.cut.part(rows),
+        removed=None,
+        **{
+            each: getattr(square, each)[rows]
+            for each in ("clearance", "inside", "land", "tread_depth")
+        },
+    )
+    answers = {}
+    for columns in (2, 3):
+        fine = heel_map(HEELS[name], **tilted, columns=columns)
+        answers[str(columns)] = row_cells(square, fine)
+        answers[f"{columns}, part"] = row_cells(part, fine)
+        assert answers[f"{columns}, part"].shape == part.clearance.shape
+    held(file_regression, answers, f"rows {name}")
+
+
 @pytest.mark.parametrize("name", ["grid", "rounded lugs", "slits", "worn through", "arc"])
 def test_heels_as_surfaces(file_regression, name):
     surface = heel_surface(HEELS[name], spacing=0.5e-3)

@@ -331,14 +331,13 @@ FOUND = {
 
 def test_which_bodies_are_the_outsole(file_regression):
     answers = {}
-    for name, bodies in FOUND.items():
+    for number, (name, bodies) in enumerate(FOUND.items()):
         one = mesh(None, bodies=bodies)
         answers[name] = {"group": group_bodies(one)}
-        for how, options in {
-            "auto": {},
-            "flip": {"down": "flip"},
-            "chosen": {"solid": "a"},
-        }.items():
+        ways = {"auto": {}}
+        if number % 4 == 0:  # of some also what a user states
+            ways |= {"flip": {"down": "flip"}, "chosen": {"solid": "a"}}
+        for how, options in ways.items():
             try:
                 found = found_outsole(one, replace(COARSE, **options), "a.obj")
             except Exception as error:  # which one is held

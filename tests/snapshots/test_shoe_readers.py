@@ -303,6 +303,20 @@ def _named(old, new):
     return made.package(text.replace(old, new))
 
 
+def _bambu_turned():
+    """Return a package whose settings name the second of two components first."""
+    other = made.model(made.thing(1, MESH) + made.thing(2, CUT), "")
+    parts = [made.component(n, path="/3D/a.model") for n in (1, 2)]
+    settings = (
+        '<config><object id="3"><part id="2" subtype="negative_part">'
+        '<metadata key="name" value="cut"/></part><part id="1" subtype="normal_part">'
+        '<metadata key="name" value="lug"/></part></object></config>'
+    )
+    files = {"3D/a.model": other, "Metadata/model_settings.config": settings}
+    root = made.model(made.thing(3, made.components(*parts)), made.item(3), more=made.REQUIRED)
+    return made.package(root, **files)
+
+
 THREEMF = {
     "as it is": lambda: _model(),
     "no build": lambda: _named("build>", "built>"),
@@ -357,6 +371,7 @@ THREEMF = {
     "Prusa's cut": lambda: made.prusa("NegativeVolume"),
     "Prusa's other": lambda: made.prusa("Wax"),
     "Bambu's cut": lambda: made.bambu("negative_part"),
+    "Bambu's parts in another order": lambda: _bambu_turned(),
 }  # fmt: skip
 
 

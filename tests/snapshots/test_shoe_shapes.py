@@ -275,3 +275,25 @@ def test_what_is_just_possible():
     assert fit_wear(WornPatch(1e-3, 0.06, 0.05), HEEL).area == pytest.approx(math.pi / 4 * 3e-3)
     assert fit_wear(WornPatch(1e-3, 0.02, 0.02, 0.03, 0.0249), HEEL)
     assert fit_wear(WearPlane(1e-3), HEEL).depth == 1e-3
+
+
+@pytest.mark.parametrize("chamfer", [0.0, 0.5e-3])
+def test_lugs_are_free_that_keep_clear_of_a_kink(chamfer):
+    """By the lug's length and, on both sides, the rim's rounding and two of its own."""
+    from underfoot.shoe.parametric.modelling import Outline
+    from underfoot.shoe.parametric.solid import _free_lugs
+
+    square = np.array([[0.0, 0.0], [6e-3, 0.0], [6e-3, 6e-3], [0.0, 6e-3]])
+    lug = Outline(square + np.array([0.04, -3e-3]))
+    clear = 1e-3 + 2 * (chamfer or 0.3e-3)
+    tread = replace(
+        TREADS["grid"] if "grid" in TREADS else next(iter(TREADS.values())),
+        edge_chamfer=chamfer, edge_radius=0.0 if chamfer else 0.3e-3, grooves=(),
+    )  # fmt: skip
+    for kink, free in (
+        (0.04 - 1.01 * clear, True), (0.04 - 0.99 * clear, False), (0.043, False),
+        (0.046 + 0.99 * clear, False), (0.046 + 1.01 * clear, True),
+    ):  # fmt: skip
+        shape = replace(HEEL, length=0.09, width=0.07, rear_radius=0.01, front_radius=0.01,
+                        edge_radius=1e-3, tread=tread, profile=Facet(0.1, kink))  # fmt: skip
+        assert bool(_free_lugs([lug], shape)) == free, kink

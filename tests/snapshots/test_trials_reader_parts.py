@@ -558,6 +558,7 @@ def test_profiles_and_what_is_wrong_with_one(tmp_path, file_regression):
         {
             "whole": profile_from(PROFILE),
             "empty": profile_from({}),
+            "no baseline": profile_from({"file": {"subtract_baseline": False}}).subtract_baseline,
             "wrong": {
                 key: value if isinstance(value, str) else "taken" for key, value in answers.items()
             },
@@ -792,6 +793,13 @@ def test_what_stands_for_a_lost_place(file_regression):
                 for said, path in paths.items()
                 for every in (False, True)
             },
+            "how far is lost": [
+                [far for far in np.arange(40.0, 90.0, 0.25) if "sign" in unseen(one(far))]
+                for one in (
+                    lambda far: np.where((TIME == 0.3)[:, None], [far, 0.1, 0.2], HEEL),
+                    lambda far: np.where((TIME == 0.3)[:, None], [far, 0.1, 0.2], HEEL**2),
+                )
+            ],
             "forces": {said: np.flatnonzero(coded_forces(force)) for said, force in forces.items()},
             "clocks": {said: settled(camera_clock(given)) for said, given in clocks.items()},
             "seen": camera_clock(clocks["late"]).seen(clocks["late"]["a"]),

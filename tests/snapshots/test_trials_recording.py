@@ -602,6 +602,13 @@ def test_signals(file_regression):
                 )
             ],
             "saturated, slow": [is_saturated(np.minimum(load, x), 50.0) for x in (300.0, 690.0)],
+            "cut flat for so many samples": {
+                str(hertz): [
+                    n for n in range(1, 60) if is_saturated(np.minimum(ramp, 60.0 - n), hertz)
+                ]
+                for ramp in [np.arange(61.0)]
+                for hertz in (100.0, 1000.0, 2000.0)
+            },
             "longest": [
                 longest_run(np.array([0, 1, 1, 0, 1], bool)),
                 longest_run(np.zeros(3, bool)),

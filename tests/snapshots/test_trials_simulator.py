@@ -204,5 +204,19 @@ def test_c3d_of_a_walk(file_regression, tmp_path):
             "plates": trial.plates,
             "heel": trial.markers["LHEE"].positions,
             "pressure": trial.channels["P21"].values if "P21" in trial.channels else None,
+            "plate axes": {key: one.values for key, one in list(trial.channels.items())[:6]},
         }
     held(file_regression, read)
+
+
+def test_defects_of_many_slips(file_regression):
+    many = [slip_truth(number, 5) for number in range(60)]
+    held(
+        file_regression,
+        {
+            "missing": " ".join(str(defects.missing_frames) for _, defects, _ in many),
+            "dropped": " ".join(str(defects.dropped_samples) for _, defects, _ in many),
+            "rcof": np.array([truth.rcof for truth, *_ in many]),
+            "speed": np.array([truth.peak_speed for truth, *_ in many]),
+        },
+    )

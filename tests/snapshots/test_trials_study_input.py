@@ -305,7 +305,7 @@ SHEETS = {
         "ansi_a326_3",
         "floor;Prüfer;condition;DCOF\n"
         + "".join(
-            f"F{f};{who};wet;{0.4 + 0.05 * f + 0.01 * k + 0.004 * r:.3f}\n"
+            f"F{f};{who};wet;{0.4 + 0.05 * f + 0.01 * k + 0.004 * r + 0.003 * (f * k % 2):.3f}\n"
             for f in range(3)
             for k, who in enumerate(("A", "B"))
             for r in range(3)

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import underfoot as uf
+from snapshot import held
 from underfoot.case import Case
 from underfoot.compute.resolve import resolve_context
 from underfoot.compute.run import run
@@ -485,6 +486,16 @@ def test_the_treaded_heel_is_the_better_one_in_a_thick_fluid(choice):
         low, high = each.slips.interval
         assert 0 <= low <= each.slips.value <= high <= 1
     assert choice.place.wet_steps == pytest.approx(0.1 * choice.place.steps)
+
+
+def test_a_solved_choice_tells_what_it_told(choice, file_regression):
+    """Its words and two digits of its numbers: what a coarser machine rounds alike."""
+    held(file_regression, {
+        "headline": list(map(str, choice.headline())),
+        "remarks": {name: list(map(str, each)) for name, each in choice.remarks().items()},
+        "tables": [[str(table.title), *(" | ".join(map(str, row)) for row in table.rows)]
+                   for table in choice.tables()],
+    })  # fmt: skip
 
 
 def test_what_helps_most_is_the_first_row_and_nothing_idle_is_one(choice):

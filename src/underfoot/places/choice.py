@@ -394,7 +394,9 @@ def _ratio(value: float) -> str:
     """Return a ratio of slips; beyond a factor of 100 it is of the slip model's tails."""
     if value < 1 / MOST_RATIO:
         return Message("below {least}", least=f"{1 / MOST_RATIO:g}")
-    return Message("above {most}", most=f"{MOST_RATIO:g}") if value > MOST_RATIO else f"{value:.2g}"
+    if value > MOST_RATIO:
+        return Message("above {most}", most=f"{MOST_RATIO:g}")
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def _share(left: tuple[float, float, float]) -> str:
