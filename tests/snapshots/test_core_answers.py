@@ -33,6 +33,7 @@ from underfoot.core import (
     text,
     threads,
     typed,
+    unit_text,
     units,
     values,
 )
@@ -211,7 +212,7 @@ def test_numbers_and_units(file_regression, monkeypatch):
     for system in ("si", "us"):
         monkeypatch.setenv("UNDERFOOT_UNITS", system)
         answers[f"in {system}"] = {
-            unit: [units.display(size, unit) for size in sizes] + [units.tread_unit(unit)]
+            unit: [unit_text.display(size, unit) for size in sizes] + [unit_text.tread_unit(unit)]
             for unit in (
                 "m",
                 "Pa",
@@ -233,13 +234,14 @@ def test_numbers_and_units(file_regression, monkeypatch):
         ] + [presentation.quantity_text(2.5e-6, "m", 1e-7), presentation.quantity_text(3e-5, "m^2")]
     monkeypatch.delenv("UNDERFOOT_UNITS")
     answers["plain"] = [
-        units.plain_number(size)
+        unit_text.plain_number(size)
         for size in (*sizes, 9e-7, -9e-7, 1.1e-6, 99e-6, 101e-6, 1e6, -1e6, 999999.0)
     ]
     answers["text"] = [
-        units.number_text(v, d) for v, d in ((123456, 3), (1e6, 3), (1e-3, 2), (9e-4, 2), (0.5, 4))
+        unit_text.number_text(v, d)
+        for v, d in ((123456, 3), (1e6, 3), (1e-3, 2), (9e-4, 2), (0.5, 4))
     ]
-    answers["metres"] = [units.metres(v) for v in (3.125e-5, 0.5, 12.0)]
+    answers["metres"] = [unit_text.metres(v) for v in (3.125e-5, 0.5, 12.0)]
     held(file_regression, answers)
 
 

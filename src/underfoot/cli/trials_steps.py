@@ -144,4 +144,5 @@ def export(
     walk = walkway_of(trial, vertical=read.vertical, walking=read.walking, landmarks=read.landmarks)
     found = stances(walk)
     out.write_bytes(c3d_with_events(trial, found))
-    say(f"{sum(s.accepted for s in found)} steps as events in {out}")
+    count = sum(s.accepted for s in found)
+    say(f"{count} {'step' if count == 1 else 'steps'} as events in {out}")

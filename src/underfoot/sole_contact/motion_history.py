@@ -49,7 +49,9 @@ class MotionHistory:
                 raise InputError(
                     Message("{label} has shape {shape}", label=name, shape=str(values.shape)),
                     where=f"history.{name}",
-                    allowed=Message("one row as long as time, {shape}, of 2 or more", shape=str(shape)),
+                    allowed=Message(
+                        "one row as long as time, {shape}, of 2 or more", shape=str(shape)
+                    ),
                 )
             if not np.isfinite(values).all():
                 raise InputError("a value is not finite", where=f"history.{name}")
