@@ -27,6 +27,7 @@ RELATIVE = 1e-5
 NUMBER = re.compile(r"(?<![\w#.])[-+−]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+−]?\d+)?")
 RUN = re.compile(rf"(?:{NUMBER.pattern}[\sMLHVCQSTAZmlhvcqstaz,]*){{{MOST + 1},}}")
 SILENT = (
+    (re.compile(re.escape(str(Path(__file__).resolve().parents[1]))), "REPOSITORY"),
     (re.compile(r"<style.*?</style>|<!--.*?-->", re.DOTALL), ""),
     (re.compile(r"<script(?![^>]*json).*?</script>", re.DOTALL), ""),
     (re.compile(r"\s?data-message='[^']*'|\s?data-message=\"[^\"]*\""), ""),
@@ -35,8 +36,6 @@ SILENT = (
     (re.compile(r"\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d(?:\.\d+)?)?(?:Z|\+\d\d:\d\d)?)?"),
      "DATE"),
     (re.compile(r"\b(Underfoot|underfoot) \d+\.\d+\.\d+\S*"), r"\1 VERSION"),
-    (re.compile(r"[^\s\"'(>=]*/pytest-of-[^/\s]*/pytest-\d+/(?:popen-\w+/)?[^/\s\"'<)]*"),
-     "FOLDER"),
 )  # fmt: skip
 
 
@@ -64,7 +63,9 @@ def held(file_regression: Any, value: Any, name: str | None = None, *, hide: str
     ``name``: of the file of lines, else that of the test. ``hide``: a pattern of what differs with
     each run, such as the time that it took.
     """
-    text = snapshot_lines(value)
+    folder = file_regression.request.getfixturevalue("tmp_path")
+    made = rf"[^\s\"'(>=]*{re.escape(str(folder.parent))}/[^/\s\"'<)]*"
+    text = re.sub(made, "FOLDER", snapshot_lines(value))
     if hide:
         text = re.sub(hide, "HIDDEN", text)
     file_regression.check(

@@ -1,6 +1,7 @@
 """Cases: every key with its range and default, every option, scenarios, refusals and texts."""
 
 import math
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,7 @@ def _bounds(field):
 
 def test_every_key(file_regression):
     """Unit, range with its ends, default with its source and what it is."""
+    import_module("underfoot.places.calibration")  # which brings options too
     lines = {}
     for path, field in fields().items():
         known = default_of(field)

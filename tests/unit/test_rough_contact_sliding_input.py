@@ -48,7 +48,10 @@ def negative_term(w):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"height": holed()}, r"1 of 1024 heights are missing.*\(3, 7\).*surface.filled"),
+        (
+            {"height": holed()},
+            r"1 of 1024 heights are missing.*\(3, 7\).*surface.fill_missing_heights",
+        ),
         ({"height": np.empty((0, 0))}, "at least 8 x 4"),
         ({"height": np.zeros((3, 3))}, "at least 8 x 4"),
         ({"height": waves()[:, 0]}, "1 dimension.*np.repeat"),

@@ -526,7 +526,7 @@ def value_text(origin: Origin, unit: str, *, spread: bool = True) -> str:
     if isinstance(given, bool):
         return "yes" if given else "no"
     if isinstance(given, list | tuple):
-        return f"{len(given)} terms"
+        return f"{len(given)} term{'s' * (len(given) != 1)}"
     if origin.kind == FILE and isinstance(origin.value, float):
         return display(origin.value, unit)
     text, deviation = f"{plain_text(given, unit)}", origin.leaf.uncertainty

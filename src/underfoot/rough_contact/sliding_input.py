@@ -86,7 +86,7 @@ def checked_contact_input(
             ),
             where="height",
             allowed="a finite height at every node",
-            remedy="Fill or cut them away first (underfoot.surface.filled)",
+            remedy="Fill or cut them away first (underfoot.surface.fill_missing_heights)",
         )
     pair = isinstance(spacing, tuple | list) or np.ndim(spacing) > 0
     steps: Any = spacing if pair else (spacing, spacing)

@@ -67,7 +67,7 @@ class HeightMap(Heights):
         source: Instrument, file or generator.
         processing: What was done to the heights, in order.
         spacing_y: m, along y, of oblong cells; contact solvers need square ones
-            (``underfoot.surface.squared``).
+            (``underfoot.surface.square_cells``).
 
     Raises:
         InputError: Missing heights, not two-dimensional, fewer than 2 points a side, spacing not
@@ -172,7 +172,7 @@ def check_heights(heights: np.ndarray) -> None:
             ),
             where="heights",
             allowed="a finite height at every point",
-            remedy="Fill them (underfoot.surface.filled) or cut them away; the result then says so",
+            remedy="Fill them (underfoot.surface.fill_missing_heights) or cut them away; the result then says so",
         )
 
 

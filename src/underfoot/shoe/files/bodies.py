@@ -206,7 +206,10 @@ def _without_islands(bodies: _Bodies, keep: Mask) -> tuple[Mask, list[Message]]:
     if not off.any():
         return keep, []
     return keep & ~off, [
-        Message("{count} specks apart from all else were left out.", count=np.count_nonzero(off))
+        Message(
+            "{count} {count:speck|specks} apart from all else {count:was|were} left out.",
+            count=np.count_nonzero(off),
+        )
     ]
 
 
