@@ -108,15 +108,17 @@ def test_shoes_alike_share_the_chance_and_neither_is_best(monkeypatch):
 
 
 def test_a_shoe_is_replaced_when_it_slips_twice_as_often(monkeypatch):
-    cofs = {"fast": (0.24, 0.10), "slow": (0.24, 0.235), "new": (0.24, 0.24)}
+    cofs = {"fast": (0.24, 0.10), "slow": (0.24, 0.235), "new": (0.24, 0.24), "slick": (0.1, 0.05)}
     told = {
         each.shoe.name: each.replaced
-        for each in choice_of(monkeypatch, cofs, wears=("fast", "slow")).shoes
+        for each in choice_of(monkeypatch, cofs, wears=("fast", "slow", "slick")).shoes
     }
     assert told["fast"].startswith("after ")
     assert float(told["fast"].split()[1]) < 10
     assert told["slow"] == "not within its 10 months"
     assert told["new"] == ""
+    # it slips in most of its steps, which no wear can double
+    assert told["slick"].startswith("new already, it slips in ")
 
 
 STUDY = """\

@@ -857,6 +857,10 @@ def _replaced(
         return Message("not yet: {ratio} times the slips of new", ratio=_share(left))
     if shoe.months is None:
         return ""
+    share = float(np.median(new / place.wet_share))
+    if share * TWICE > 1:  # it can't slip in more than all of its steps
+        text = probability_text(share)
+        return Message("new already, it slips in {share} of the steps in a fluid", share=text)
     growth = np.log(np.maximum(worn, 1e-300) / np.maximum(new, 1e-300))
     with np.errstate(divide="ignore"):
         months = np.where(growth > 0, shoe.months * math.log(TWICE) / growth, np.inf)
