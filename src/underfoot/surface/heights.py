@@ -172,8 +172,8 @@ def check_heights(heights: np.ndarray) -> None:
             ),
             where="heights",
             allowed="a finite height at every point",
-            remedy="Fill them (underfoot.surface.fill_missing_heights) or cut them away; the result "
-            "then says so",
+            remedy="Fill them (underfoot.surface.fill_missing_heights) or cut them away; the "
+            "result then says so",
         )
 
 
