@@ -151,7 +151,7 @@ def test_a_speck_apart_from_the_sole_is_left_out(place):
         tread_measures(alone.surface).land_ratio, abs=1e-3
     )
     assert (found.down, found.forward) == (alone.down, alone.forward)
-    assert "specks apart" in said(found)
+    assert "speck apart" in said(found)
 
 
 @pytest.mark.parametrize("gap", [0.02, 0.3, 1.0])
