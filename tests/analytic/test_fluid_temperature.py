@@ -50,6 +50,7 @@ def test_the_heat_of_sliding_is_that_of_conduction_into_both_faces():
     assert 3.0 < found < 4.5  # K: one step of a slip tester
 
 
+@pytest.mark.slow
 def test_a_full_film_is_not_exact():
     case = Case.load("examples/work_shoe_untreaded_glycerol.toml")
     full = case.replace({"contaminant.viscosity": "1 Pa*s", "numerics.tread_positions": 1})

@@ -191,6 +191,7 @@ def test_short_ways_and_small_loads_get_no_advice():
     assert drainage(framed_lug("front"), np.zeros((SIZE, SIZE))) is None
 
 
+@pytest.mark.slow
 def test_a_run_names_the_lug_that_drains_worst(tmp_path):
     shoe = {
         "from": "work_shoe_full_tread",

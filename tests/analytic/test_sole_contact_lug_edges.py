@@ -114,6 +114,7 @@ def test_film_and_friction_of_blocks_of_the_coupled_finite_elements():
                 assert (1 - borne) * factor == pytest.approx(1 - film + pull, rel=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "drag"), [(0.11e-3, 0.1), (0.83e-3, 0.01)])
 def test_film_under_a_block_does_not_depend_on_the_cells(radius, drag):
     assert block_film(radius, drag, 0.5e-3) == pytest.approx(block_film(radius, drag), abs=0.03)
@@ -149,6 +150,7 @@ def test_ribs_along_the_sliding_have_no_edge_that_lets_a_film_in():
     assert with_edges == pytest.approx(without, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_sharp_edges_grip_more_than_round_ones_under_thick_fluid():
     """Ishizako et al. 2022: 0.11 mm above 0.83 mm."""
     for drag in (0.01, 0.03, 0.1):
@@ -253,6 +255,7 @@ def test_lugs_of_a_sole(forward):
     assert lug_edges(sole_map(tread("none"), 5e-4), 0.0, worn_edge_radius=WORN) is None
 
 
+@pytest.mark.slow
 def test_a_run_says_what_the_edges_do():
     case = tread("transverse", **SIZES).replace("numerics.tread_positions", 1)
     with_edges, without = (

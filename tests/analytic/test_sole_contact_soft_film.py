@@ -150,6 +150,7 @@ def test_ring_influence_is_hertzian():
     assert deflection == pytest.approx(np.pi / 4 * (2 - r**2), abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("modulus", "start"), [(3e6, 50e-6), (9e6, 100e-6)])
 def test_squeezed_soft_film_is_that_of_the_radial_reference(modulus, start):
     """Sphere pressed on a flooded floor: dimple and rim within 3 % of the radial solution."""

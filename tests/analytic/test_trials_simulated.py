@@ -35,6 +35,7 @@ def slips(tmp_path_factory):
     return folder, analyse_folder(folder, protocol("report_g6"), processes=1)
 
 
+@pytest.mark.slow
 def test_slips_are_found_with_speed_and_start(slips):
     """Issue limits: peak slipping speed within 3 %, slip start within 25 ms."""
     folder, analysis = slips
@@ -304,6 +305,7 @@ def test_boundary_folder_tells_shoe_floor_and_lubricant_apart():
         assert p[term] > 0.01, term
 
 
+@pytest.mark.slow
 def test_pin_on_disk_tells_fluid_and_roughness_apart(tmp_path):
     """G.2's second question: COF_BL by fluid and by the roughness of the pin, and both together."""
     from underfoot.trials.simulator.folder import disk_run

@@ -39,6 +39,7 @@ def test_there_are_more_than_seventy_faults():
     assert len(FAULTS) >= 70
 
 
+@pytest.mark.slow
 def test_sound_logs_are_accepted_and_right(tmp_path):
     logs = [sound_log(seed) for seed in range(7100, 7180)]
     found = [outcome(log, log.cof, tmp_path / str(log.seed)) for log in logs]
@@ -185,6 +186,7 @@ def test_a_speed_in_no_known_unit_is_said(tmp_path):
     assert "no known unit of speed" in str(one.reasons)
 
 
+@pytest.mark.slow
 def test_every_sheet_of_a_workbook_is_a_slide(tmp_path):
     """The second of two slides was lost; only `describe` named its sheet."""
     logs = [log for log in map(sound_log, range(7100, 7180)) if "speed (m/s)" in log.columns]

@@ -103,6 +103,7 @@ def test_rinsing_what_does_not_mix_with_water_is_never_ranked(fluid) -> None:
     assert all(0 <= each.higher <= 1 for each in found.best)
 
 
+@pytest.mark.slow
 def test_changes_are_computed_and_ranked_by_the_chance_they_leave() -> None:
     # at an instant: the film of steady sliding carries too little here to be the limit
     case = Case.from_text(TEXT).replace("motion.duration", "0.12 s")

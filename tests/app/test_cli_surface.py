@@ -189,6 +189,7 @@ def test_a_scan_shorter_than_the_cutoff(folder):
     refused(folder, "holds no cut-off", "Measure a longer part")
 
 
+@pytest.mark.slow
 def test_dead_pixels_are_filled_and_told(tmp_path):
     whole = surface()
     heights = 1e6 * whole.heights[:512]

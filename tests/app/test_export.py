@@ -230,6 +230,7 @@ def test_ply_and_obj_are_in_millimetres_and_say_so(worn_shoe_result, tmp_path):
         assert len(np.unique(colours, axis=0)) > 20
 
 
+@pytest.mark.slow
 def test_the_pressed_sole_lies_flat_where_it_touches(worn_shoe_case):
     # on squares: finer cells know a corner that the middle of a square does not show
     worn_shoe_result = run(worn_shoe_case.replace("numerics.cells_along", 1), quick=True)

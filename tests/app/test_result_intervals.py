@@ -88,6 +88,7 @@ def test_a_skewed_interval_takes_the_place_of_one_deviation(result):
     assert value_text("cof", even) == "0.100 ± 0.050"
 
 
+@pytest.mark.slow
 def test_overloaded_rubber_has_no_peak_of_the_film_pressure():
     """It grows with the grid; the sensor's, a mean over its face, does not."""
     crushed = {

@@ -174,6 +174,7 @@ def test_run_of_a_file_beats_the_same_sole_without_tread(folder):
     assert any("determined from the tread" in line for line in treaded.assumptions)
 
 
+@pytest.mark.slow
 def test_what_comes_next_never_meets_a_sole_of_the_same_name(folder):
     sole, told = folder / "my_sole.stl", []
     for name in ("my_sole", "first", "supplier/second"):

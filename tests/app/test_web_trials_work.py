@@ -50,6 +50,7 @@ def _by_command(asked, tmp_path):
     return tables
 
 
+@pytest.mark.slow
 def test_what_is_shown_after_edits_is_what_the_command_says(walks, tmp_path):
     """A contact is moved, moved again and another step excluded; numbers, reasons and log agree."""
     asked = _asked(walks)
@@ -161,6 +162,7 @@ def test_edits_in_a_workbook_are_not_hidden_by_a_new_table(walks):
     assert CliRunner().invoke(trials_app, arguments).exit_code == 2
 
 
+@pytest.mark.slow
 def test_slips_show_the_heel_and_its_events(tmp_path):
     folder = tmp_path / "slips"
     simulated_folder("slips", folder, count=3)

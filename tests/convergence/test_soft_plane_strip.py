@@ -74,6 +74,7 @@ def _plane(monkeypatch):
     monkeypatch.setattr(stepping, "row_compliance", plane_strain)
 
 
+@pytest.mark.slow
 def test_the_film_converges_from_below_at_first_order():
     shares = np.array([share(0.6e-3, columns) for columns in (16, 32, 64, 128)])
     gained = np.diff(shares)

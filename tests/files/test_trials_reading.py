@@ -44,6 +44,7 @@ def test_motion_capture_is_read(name, plates, rate, markers, marker_rate, source
     assert len(trial.checksum) == 64
 
 
+@pytest.mark.slow
 def test_tribometer_logs_are_read():
     steps = read_trials(DATA / "cetr" / "HT-2n-6-4_2_001.csv")
     means = [float(np.mean(step.channel("COF").values)) for step in steps]

@@ -99,6 +99,7 @@ def test_a_motion_with_a_history_is_refused(solved):
         Continuation(CASE.replace("motion", "heel_strike_to_flat"))
 
 
+@pytest.mark.slow
 def test_the_shoe_angle_and_the_speed_of_a_flat_sole_are_refused():
     """A facet traps a pool that it knows nothing of, and a slow one wipes less of it away.
 

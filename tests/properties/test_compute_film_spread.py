@@ -130,6 +130,7 @@ def test_a_history_on_the_quick_grid_is_marched_with_the_changes_alone(monkeypat
     assert len(marched) == 3  # another grid: what it is compared with, too
 
 
+@pytest.mark.slow
 def test_a_known_roughness_leaves_the_model_alone():
     known, assumed = (run(flat(**more), quick=True) for more in ({FACTOR: 2.0}, {}))
     assert known["cof"].value == assumed["cof"].value
@@ -168,6 +169,7 @@ def test_the_load_on_the_film_never_leaves_the_load():
     assert (low, high) == pytest.approx((200, 400))
 
 
+@pytest.mark.slow
 def test_a_preview_is_as_unsure_as_a_run():
     case = flat()
     march = Continuation(case)

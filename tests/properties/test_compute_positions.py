@@ -59,6 +59,7 @@ def bars():
     return case.replace({"shoe.tread": bars, "shoe.heel.width": "66 mm"})
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.sampled_from([name for name in PATTERNS if name != "lettering"]),  # it needs a text
@@ -565,6 +566,7 @@ def test_the_share_done_of_a_run_rises_over_all_its_positions(bars, quick):
     assert steps.max() < 0.2
 
 
+@pytest.mark.slow
 def test_positions_in_processes_of_their_own_have_the_same_digits(bars):
     told = []
     case = bars.replace({"numerics.grid_spacing": "2 mm", "numerics.tread_positions": 3})
@@ -625,6 +627,7 @@ def test_the_angle_widens_the_interval_by_what_marches_of_the_turned_shoe_say(ba
     assert any("shoe_angle: ±1 deg" in line for line in found.assumptions)
 
 
+@pytest.mark.slow
 def test_a_turned_shoe_that_can_t_go_on_is_marched_and_one_without_answer_is_said(
     bars, monkeypatch
 ):

@@ -83,6 +83,7 @@ def test_the_film_s_part_is_that_of_runs_at_one_standard_deviation(plain, path, 
             assert effect.moves[name][k] == pytest.approx(log, rel=0.1, abs=0.02), name
 
 
+@pytest.mark.slow
 def test_a_stated_viscosity_reaches_the_film():
     plain = run(heel("untreaded"), quick=True)
     known = run(stated(heel("untreaded"), VISCOSITY, 0.11), quick=True)

@@ -206,6 +206,7 @@ def test_the_numerical_error_of_a_motion_holds_its_steps_in_time(shoe, fluid, mo
         assert errors.deviation(name) > errors.steps[name] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fluid", ["water", "glycerol_50pct"])
 def test_a_history_may_begin_under_its_load(fluid):
     """No step takes a sole from the air to 300 N at once: it comes up before, as in a step."""
@@ -234,6 +235,7 @@ def test_a_history_may_begin_under_its_load(fluid):
     assert "come up" not in _last_instant(case.replace("motion", "heel_strike_to_flat"))
 
 
+@pytest.mark.slow
 def test_a_sole_that_falls_through_a_thin_fluid_finds_the_floor():
     """Nothing holds it up, and one step did not find the floor from 0.2 mm: it begins lower."""
     case = sole_case(70.0, "pair").replace("motion.duration", "0.2 s")
@@ -267,6 +269,7 @@ def test_channels_that_summits_fill_are_named():
     assert not any(line.startswith("tread: ") for line in deep.breaches)
 
 
+@pytest.mark.slow
 def test_a_motion_that_ends_at_rest_says_what_its_friction_is():
     points = [
         {"time": f"{time} ms", "normal_force": f"{force} N", "speed": f"{speed} m/s"}

@@ -40,6 +40,7 @@ shoe_angle = "0 deg"
 """
 
 
+@pytest.mark.slow
 def test_a_flat_pad_that_floats_at_its_own_angle_has_an_answer():
     """Its contact beside that angle was drawn as a factor of nearly nothing: COF of 32."""
     case = Case.from_text(PAD).replace("numerics.quick_grid_spacing", "2 mm")

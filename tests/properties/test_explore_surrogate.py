@@ -89,6 +89,7 @@ def test_stated_errors_are_those_of_fresh_runs(function, noise, tells):
     assert 0.92 < np.mean(inside) < 0.98  # 93 to 97 % and what 250 runs leave open
 
 
+@pytest.mark.slow
 def test_a_run_counts_by_its_noise():
     """A third of the runs are noisy; where they say so, the mean is nearer to the truth."""
     points, fresh = qmc.Sobol(2, rng=5).random(64), qmc.Sobol(2, rng=6).random(256)

@@ -226,6 +226,7 @@ def test_sensors_lie_to_the_right_of_a_heel_that_lands_to_their_left():
     assert y == pytest.approx([0.025, -0.005, -0.035])
 
 
+@pytest.mark.slow
 def test_the_share_who_slip_holds_the_spread_of_the_contact_friction():
     case = Case.load(EXAMPLES / "work_shoe_full_tread_dry.toml")
     case = case.replace({"friction.model": "pair", "risk.rcof_mean": 0.5})

@@ -56,6 +56,7 @@ def solve(
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=4, deadline=None)
 @given(
     viscosity=st.floats(1e-3, 0.3),

@@ -72,6 +72,7 @@ def test_advance_and_solve_sliding_are_one_march():
     assert last.fluid_load == pytest.approx(solved.fluid_load, rel=1e-9)
 
 
+@pytest.mark.slow
 @settings(max_examples=5, deadline=None, phases=[Phase.explicit, Phase.generate])
 @given(
     low=st.floats(2.0, 100.0),

@@ -208,6 +208,7 @@ def computed():
     return g3.compute(Options())
 
 
+@pytest.mark.slow
 def test_study_g3_holds_eq_26_to_both_ends_of_the_printed_ranges(computed):
     said = verdicts("g3", computed)
     # 4.33 N under water whatever the dry adhesion; printed at most 2.76 N (G.3.2, Table 5)

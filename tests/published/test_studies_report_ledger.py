@@ -79,6 +79,7 @@ def test_ninety_rows_work_and_every_other_has_its_cause():
     assert sum(row.rating == "works" for row in ROWS) >= 90
 
 
+@pytest.mark.slow
 def test_each_sentence_of_the_conclusions_is_judged():
     told = report_ledger.sentences()
     assert len(told) == 14

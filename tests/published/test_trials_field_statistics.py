@@ -203,6 +203,7 @@ def test_equivalence_beside_statsmodels():
         equivalence(a, b, 0)
 
 
+@pytest.mark.slow
 def test_effect_size_and_its_interval():
     rng = np.random.default_rng(2)
     a, b = rng.normal(1, 1, 15), rng.normal(0, 1, 11)
@@ -248,6 +249,7 @@ def delong(y, x):
     return psi.mean(), psi.mean(axis=1).var(ddof=1) / len(s) + psi.mean(axis=0).var(ddof=1) / len(o)
 
 
+@pytest.mark.slow
 def test_roc_area_beside_scikit_learn_and_delong():
     from sklearn.metrics import brier_score_loss, roc_auc_score
 

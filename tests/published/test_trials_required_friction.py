@@ -100,6 +100,7 @@ def test_the_baseline_moves_rcof_as_described():
     assert any("shear baseline of 10.9 N" in flag.message for flag in plates[0].flags)
 
 
+@pytest.mark.slow
 def test_definitions_move_rcof_as_known():
     """Medians over 45 stances elsewhere: corrected +0.008, 8th order +0.009, none +0.019."""
     trials = [_trial(name) for name, *_ in SEEN]

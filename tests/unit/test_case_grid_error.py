@@ -109,6 +109,7 @@ def test_a_grid_is_not_compared_with_itself(quick_grid):
     assert "difference" not in found.labels["grid_error"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["untreaded_glycerol", "full_tread_dry"])
 def test_every_run_tells_its_numerical_error(name):
     grid = COARSE if "untreaded" in name else {"numerics.grid_spacing": "1.2 mm"}  # of its lugs

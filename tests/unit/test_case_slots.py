@@ -185,6 +185,7 @@ def test_an_address_that_is_no_option_is_refused(address):
         Case(**BASE, friction={"model": address})
 
 
+@pytest.mark.slow
 def test_an_object_in_a_slot_is_used_named_and_hashed():
     case = Case(**BASE)
     law = ConstantLaw(0.25, 0.05, "my own pin", 0.219)

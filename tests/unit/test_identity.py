@@ -144,6 +144,7 @@ def test_an_uncertainty_counts_and_a_name_does_not(case):
     assert case.replace("name", "another") == case
 
 
+@pytest.mark.slow
 def test_a_result_has_the_hash_of_its_case_and_one_of_its_own(smooth):
     first, again, fine = run(smooth, quick=True), run(smooth, quick=True), run(smooth)
     assert {each.provenance.case_hash for each in (first, again, fine)} == {smooth.hash}
@@ -153,6 +154,7 @@ def test_a_result_has_the_hash_of_its_case_and_one_of_its_own(smooth):
     assert first.provenance.objects == {}
 
 
+@pytest.mark.slow
 def test_threads_do_not_count(smooth, monkeypatch):
     first = run(smooth, quick=True)
     monkeypatch.setattr("underfoot.core.provenance.threads_in_use", lambda: 7)
@@ -161,6 +163,7 @@ def test_threads_do_not_count(smooth, monkeypatch):
     assert second.provenance.result_hash == first.provenance.result_hash
 
 
+@pytest.mark.slow
 def test_another_program_has_another_name_and_finds_no_old_entries(smooth, monkeypatch, tmp_path):
     first = run(smooth, quick=True).provenance
     Cache("room", tmp_path).store("key", {"x": np.ones(2)})
@@ -446,6 +449,7 @@ def test_code_of_a_law_counts_with_the_files_beside_it(package, smooth):
     assert cofs[0] == cofs[1] != cofs[2]
 
 
+@pytest.mark.slow
 def test_a_sweep_after_an_edit_of_the_law_computes_again(package, smooth, tmp_path):
     cofs = []
     for level in (0.3, 0.5, 0.5):

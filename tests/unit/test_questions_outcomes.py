@@ -74,6 +74,7 @@ def test_a_case_that_can_not_even_start_leaves_the_others_their_numbers(case, mo
     assert found[1].number("cof") > 0
 
 
+@pytest.mark.slow
 def test_processes_change_nothing(case) -> None:
     cases = [case, case.replace("motion.speed", "0.3 m/s")]
     one = outcomes(cases, quick=True, cached=False)

@@ -149,6 +149,7 @@ def test_packed_fields_unpack_to_three_digits(seed, size):
     np.testing.assert_allclose(again[known], values[known], rtol=5e-4)
 
 
+@pytest.mark.slow
 def test_a_history_of_a_field_becomes_frames_and_a_long_one_is_thinned(worn_shoe_result):
     dataset = sole(1e-3)
     frames = np.stack([k * dataset.contact_pressure.values for k in range(1, 31)])
@@ -164,6 +165,7 @@ def test_a_history_of_a_field_becomes_frames_and_a_long_one_is_thinned(worn_shoe
     assert scene["quantities"][0]["peak"] >= np.nanmax(last) * 0.999
 
 
+@pytest.mark.slow
 def test_a_run_keeps_a_few_instants_of_its_march_and_shows_them_of_one_sole(
     worn_shoe_case, worn_shoe_result, tmp_path, monkeypatch
 ):

@@ -39,6 +39,7 @@ def test_a_scalar_by_its_name_or_the_nearest_one(worn_shoe_result):
     assert "0.0" in str(result)
 
 
+@pytest.mark.slow
 def test_a_run_of_a_file(worn_shoe_case, tmp_path):
     case = worn_shoe_case.replace({"numerics.tread_positions": 1, "numerics.cells_along": 1})
     case.save(tmp_path / "case.toml")

@@ -59,6 +59,7 @@ def test_sensors_read_while_the_heel_is_over_them(run):
     assert found[gone].max() == 0.0
 
 
+@pytest.mark.slow
 def test_faster_means_more_load_on_the_film_and_less_friction(wet):
     """The feedback of the report's G.5.3, in the full model with a contact that knows no speed."""
     setting = slip_setting(
