@@ -126,19 +126,19 @@ def check_printable(shape: SoleShape) -> None:
     tread = shape.tread
     fine: list[tuple[str, str, float]] = []
     if tread is not None and tread.depth > 0:
-        fine += [("tread.lug_width", "lug", tread.smallest_lug)]
-        fine += [("tread.channel_width", "channel", tread.channel_width)]
-        fine += [("tread.grooves", "groove", each.width) for each in tread.grooves]
+        fine += [("tread.lug_width", "a lug", tread.smallest_lug)]
+        fine += [("tread.channel_width", "a channel", tread.channel_width)]
+        fine += [("tread.grooves", "a groove", each.width) for each in tread.grooves]
         if tread.sipes is not None:
-            fine += [("sipes.width", "sipe", tread.sipes.width)]
+            fine += [("sipes.width", "a sipe", tread.sipes.width)]
             left = tread.sipes.spacing - tread.sipes.width
-            fine += [("sipes.spacing", "wall between sipes", left)]
+            fine += [("sipes.spacing", "a wall between sipes", left)]
     if shape.arc_channel is not None and shape.arc_channel.depth > 0:
-        fine += [("arc_channel.width", "arc channel", shape.arc_channel.width)]
+        fine += [("arc_channel.width", "an arc channel", shape.arc_channel.width)]
     for where, name, size in fine:
         if size < LEAST_PRINTABLE:
             raise InputError(
-                f"a {name} of {size * 1e3:g} mm can be neither printed nor moulded",
+                f"{name} of {size * 1e3:g} mm can be neither printed nor moulded",
                 where=where,
                 allowed=f"at least {LEAST_PRINTABLE * 1e3:g} mm",
             )
