@@ -332,7 +332,9 @@ class Lines:
         """Return whether tests run the line of a fault, inside a function."""
         begin = statement_lines(mutant.file, mutant.line)[0]
         met = self._lines.get(mutant.file, {})
-        return in_function(mutant) and bool(met.get(mutant.line) or met.get(begin))
+        # what is compiled runs as it was, but where a test calls the function that it was made of
+        met_here = met.get(mutant.line) or met.get(begin)
+        return in_function(mutant) and not in_kernel(mutant) and bool(met_here)
 
     def meeting(self, mutant: Mutant) -> list[Test]:
         """Return the tests that a fault should meet."""
@@ -346,10 +348,12 @@ class Lines:
                 return list(read)
             every = {one for tests in of_file.values() for one in tests}
             return list(every | {one for file in files for one in self.tests.get(file, ())})
-        if met := of_file.get(mutant.line) or of_file.get(begin):
-            return met
-        if near := {one for line in range(begin, end + 1) for one in of_file.get(line, ())}:
-            return list(near)
+        met = of_file.get(mutant.line) or of_file.get(begin)
+        met = met or {one for line in range(begin, end + 1) for one in of_file.get(line, ())}
+        if in_kernel(mutant):  # its calls leave no trace
+            return list({*met, *(one for file in files for one in self.tests.get(file, ()))})
+        if met:
+            return list(met)
         if not compiled(mutant.file):
             apart = {file for file, text in test_texts() if any(one in text for one in PROCESSES)}
             files = tuple(file for file in files if file in apart)
@@ -381,6 +385,17 @@ def statement_lines(file: str, line: int) -> tuple[int, int]:
     """Return the first and last line of the innermost statement in a function, else (-1, -1)."""
     around = [lines for lines in statements(file) if lines[0] <= line <= lines[1]]
     return around[-1] if around else (-1, -1)
+
+
+def in_kernel(mutant: Mutant) -> bool:
+    """Return whether the line of a fault stands in a function that is compiled."""
+    tree = ast.parse((REPOSITORY / SOURCE / mutant.file).read_text(encoding="utf-8"))
+    return any(
+        one.lineno <= mutant.line <= (one.end_lineno or one.lineno)
+        and any("njit" in ast.unparse(each) for each in one.decorator_list)
+        for one in ast.walk(tree)
+        if isinstance(one, ast.FunctionDef)
+    )
 
 
 def in_function(mutant: Mutant) -> bool:

@@ -1,11 +1,14 @@
 """Old paths of modules: answered with a warning that names the new one."""
 
+import ast
 import importlib
 import sys
 import warnings
+from pathlib import Path
 
 import pytest
 
+import underfoot
 from underfoot.core.moved import HOMES, new_home
 
 
@@ -32,3 +35,34 @@ def test_what_never_was_is_still_missing():
         importlib.import_module("underfoot.trials.gaits")
     with pytest.warns(FutureWarning), pytest.raises(ModuleNotFoundError, match="nothing_here"):
         importlib.import_module("underfoot_places.nothing_here")
+
+
+def old_members():
+    """Yield module, class, name and the two names that each ``renamed_member`` of a class has."""
+    source = Path(underfoot.__file__).parent
+    for path in sorted(source.rglob("*.py")):
+        if "renamed_member(" not in (text := path.read_text(encoding="utf-8")):
+            continue
+        module = ".".join(path.relative_to(source.parent).with_suffix("").parts)
+        for of in (one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.ClassDef)):
+            for line in (one for one in of.body if isinstance(one, ast.Assign)):
+                calls = [one for one in ast.walk(line.value) if isinstance(one, ast.Call)]
+                if made := [one for one in calls if ast.unparse(one.func) == "renamed_member"]:
+                    old, new = (one.value for one in made[0].args)
+                    yield module.removesuffix(".__init__"), of.name, line.targets[0].id, old, new
+
+
+OLD_MEMBERS = list(old_members())
+
+
+@pytest.mark.parametrize(("module", "of", "name", "old", "new"), OLD_MEMBERS)
+def test_an_old_member_is_called_as_before_and_answers_as_one_that_is_there(
+    module, of, name, old, new
+):
+    kind = getattr(importlib.import_module(module), of)
+    assert name == old != new
+    assert hasattr(kind, new) or new in getattr(kind, "__dataclass_fields__", {})
+
+
+def test_there_are_old_members():
+    assert len(OLD_MEMBERS) > 3
