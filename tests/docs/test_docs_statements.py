@@ -160,7 +160,16 @@ def test_every_option_that_a_page_names_belongs_to_a_command():
     known = set().union(*map(generated.option_names, generated.command_tree().values()))
     known |= {"--version", "--units", *old_names()}
     # of other programs
-    elsewhere = {"--mend", "--count", "--with", "--array", "--wrap", "--sizes", "--peers"}
+    elsewhere = {
+        "--regen-all",
+        "--mend",
+        "--count",
+        "--with",
+        "--array",
+        "--wrap",
+        "--sizes",
+        "--peers",
+    }
     count = 0
     for page in PAGES:
         for span in spans(page):
