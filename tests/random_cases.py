@@ -11,6 +11,7 @@ from collections import Counter
 
 import numpy as np
 
+from small_pads import PAD
 from underfoot import Case, Result, run
 from underfoot.case.sole import usual_tread
 from underfoot.compute.contact_friction import place_of_tread, sole_errors
@@ -64,29 +65,16 @@ def drawn_pad(rng: np.random.Generator) -> Case:
     length = rng.uniform(25, 300)
     width = min(length, 76.0)
     pressure, viscosity = np.exp(rng.uniform(np.log([5e3, 1.0]), np.log([2e5, 500.0])))
-    return Case.from_text(f"""
-file_version = 2
-[shoe]
-material.shore_a = {rng.uniform(50, 95):.0f}
-roughness = {{ra = "2 um", cutoff = "0.8 mm"}}
-tread.pattern = "none"
-[shoe.heel]
-length = "{length:.1f} mm"
-width = "{width:.1f} mm"
-rear_radius = "0 mm"
-profile.model = "flat"
-edge_radius = "0 mm"
-[shoe.sole]
-outsole_thickness = "10 mm"
-[floor]
-roughness = {{rq = "3 um", cutoff = "0.8 mm"}}
-[contaminant]
-viscosity = "{viscosity:.3g} cP"
-[motion]
-speed = "0.3 m/s"
-normal_force = "{min(max(pressure * length * width * 1e-6, 20), 1500):.1f} N"
-shoe_angle = "{rng.uniform(0, 10):.2f} deg"
-""")
+    return Case.from_text(PAD).replace(
+        {
+            "shoe.material.shore_a": f"{rng.uniform(50, 95):.0f}",
+            "shoe.heel.length": f"{length:.1f} mm",
+            "shoe.heel.width": f"{width:.1f} mm",
+            "contaminant.viscosity": f"{viscosity:.3g} cP",
+            "motion.normal_force": f"{min(max(pressure * length * width * 1e-6, 20), 1500):.1f} N",
+            "motion.shoe_angle": f"{rng.uniform(0, 10):.2f} deg",
+        }
+    )
 
 
 def beyond_physics(case: Case, result: Result) -> list[str]:

@@ -14,6 +14,7 @@ from package_messages import filled
 from web_app import coarsened, drawn, page_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
+from underfoot.core.errors import InputError, unknown_name
 from underfoot.core.remark import Message, Remark, join_lines
 
 pytest.importorskip("nicegui")
@@ -359,3 +360,30 @@ def test_messages_are_put_in_by_their_template_and_values(tmp_path, monkeypatch)
     with page_of(page_file.as_uri()) as page:
         page.wait_for_timeout(300)
         assert page.locator("p").all_inner_texts() == list(said.values())
+
+
+def test_a_message_is_put_in_whole_and_what_is_quoted_stays(tmp_path):
+    """In the page: a name that is a word too, a text without a template, a part of another."""
+    walker = Message(
+        "The walker {verdict}: peak heel speed {speed:.2f} m/s (slip above 0.2 m/s), distance "
+        "{distance:.0f} mm ({outcome}).",
+        verdict=Message("slips"), speed=0.5, distance=40.0, outcome="recovered",
+    )  # fmt: skip
+    unknown = Message("{x} of a thing without words", x=Message("{given} is no count", given="3"))
+    error = InputError(Message("{given} is no count", given="1.5"), where="a.b", allowed="1 to 4")
+    said = [walker, unknown, error.message, unknown_name("shoe", "load", ["new"]).message]
+    speaker = (Path(text.__file__).parents[1] / "static" / "language.js").read_text("utf-8")
+    file = tmp_path / "page.html"
+    scripts = f"<script>{text.Text('de').script()}</script><script>{speaker}</script>"
+    file.write_text(f"<meta charset=utf-8>{scripts}", encoding="utf-8")
+    with page_of(file.as_uri()) as shown:
+        spoken = [
+            shown.evaluate("message => messageInLanguage(message)", each.page_data())
+            for each in said
+        ]
+    assert spoken[0].startswith("Die Person rutscht: höchste Fersengeschwindigkeit 0,50 m/s")
+    assert spoken[1:] == [
+        "3 is no count of a thing without words",
+        "a.b: 1,5 ist keine Anzahl. Erlaubt: 1 bis 4.",
+        "unbekannt: shoe „load“. Erlaubt: new.",
+    ]

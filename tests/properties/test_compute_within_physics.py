@@ -14,36 +14,19 @@ from underfoot.core import UnderfootError
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from random_cases import beyond_physics, drawn_case, drawn_pad
+from small_pads import PAD
 
-PAD = """
-file_version = 2
-[shoe]
-material.shore_a = 95
-roughness = {ra = "2 um", cutoff = "0.8 mm"}
-tread.pattern = "none"
-[shoe.heel]
-length = "76 mm"
-width = "76 mm"
-rear_radius = "0 mm"
-profile.model = "flat"
-edge_radius = "0 mm"
-[shoe.sole]
-outsole_thickness = "10 mm"
-[floor]
-roughness = {rq = "3 um", cutoff = "0.8 mm"}
-[contaminant]
-viscosity = "50 cP"
-[motion]
-speed = "0.3 m/s"
-normal_force = "44.5 N"
-shoe_angle = "0 deg"
-"""
+TESTER_PAD = {
+    "shoe.material.shore_a": 95, "shoe.heel.length": "76 mm", "shoe.heel.width": "76 mm",
+    "contaminant.viscosity": "50 cP", "motion.normal_force": "44.5 N", "motion.shoe_angle": "0 deg",
+    "numerics.quick_grid_spacing": "2 mm",
+}  # fmt: skip
 
 
 @pytest.mark.slow
 def test_a_flat_pad_that_floats_at_its_own_angle_has_an_answer():
     """Its contact beside that angle was drawn as a factor of nearly nothing: COF of 32."""
-    case = Case.from_text(PAD).replace("numerics.quick_grid_spacing", "2 mm")
+    case = Case.from_text(PAD).replace(TESTER_PAD)
     result = run(case, quick=True)
     film = result.data["position_fluid_load"].values
     assert film.max() > 0.98 * 44.5
