@@ -75,6 +75,8 @@ def asked(*given, **more):
     def short(one):
         if isinstance(one, list | tuple):
             return [short(each) for each in one]
+        if isinstance(one, float):
+            return float(f"{one:.4g}")
         if hasattr(one, "heights"):
             z = one.heights
             return (
