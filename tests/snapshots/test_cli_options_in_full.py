@@ -24,6 +24,7 @@ from underfoot.cli import guard, micro, studies
 from underfoot.compute import run as compute_run
 from underfoot.core import Status
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.unit_text import UNITS_VARIABLE
 from underfoot.places import machines as machines_of_places
 from underfoot.questions import ask, comparison, contact, risk, slips
 from underfoot.studies import Options, g1
@@ -477,7 +478,7 @@ def test_cases_and_their_files(file_regression, tmp_path, monkeypatch):
         ("app", "p", "--port", "0", "--host", "0.0.0.0", "--no-browser"), ("app",),
         ("app", "--port", "65536"), ("catalogue", "fluids", "--json"), 
         ("explain", "canola_oil", "--full"), ("risk", "case.toml", "--wanted=x"),
-        ("--units", "us", "explain", "acof"), ("--units", "odd"),
+        ("--units", "us", "explain", "canola_oil"), ("--units", "odd"),
         ("trials", "plan", "shoe=A,B", "fluid=dry,water", "--repeats", "2", "--seed", "3"),
         ("trials", "plan", "shoe=A,B", "fluid=dry,water", "--together", "fluid", "--suffix", ".c3d",
          "--out", "plan.csv", "--block", "shoe"), ("trials", "plan", "shoe"),
@@ -503,12 +504,12 @@ def test_cases_and_their_files(file_regression, tmp_path, monkeypatch):
         ("trials", "bundle", "pins", "--protocol", "report_g2", "--out", "pins/b"),
         ("trials", "bundle", "--check", "pins"),
     ):  # fmt: skip
+        monkeypatch.setenv(UNITS_VARIABLE, "si")  # --units sets it for the process
         code, out, err = said(tmp_path, *words)
         name = " ".join(words)
         while name in told:
             name += " again"
         told[name] = [code, json.loads(out) if out.startswith(("{", "[")) else out, err]
-    monkeypatch.delenv("UNDERFOOT_UNITS", raising=False)
     told["served"] = heard
     told["plan"] = (tmp_path / "plan.csv").read_text()
     told["mine"] = (tmp_path / "n.toml").read_text()[:200]
