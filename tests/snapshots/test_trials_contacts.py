@@ -59,8 +59,8 @@ def reason(duration=0.7, peak=800.0, *, weight=None, braking=1.0, start=500, oth
         part[5, 1] = more.pop("spoil")
     feet = feet or NOBODY
     feet = SimpleNamespace(**{**vars(feet), "plate": made, "walk": walk_of(made)})
-    return str(check._reason(walk_of(made, weight=weight), stance(start, start + count, peak, **more),
-                             list(others), usual, feet))  # fmt: skip
+    judged = stance(start, start + count, peak, **more)
+    return str(check._reason(walk_of(made, weight=weight), judged, list(others), usual, feet))  # fmt: skip
 
 
 def test_what_is_a_step_and_why_others_are_none():
@@ -242,7 +242,8 @@ PLATES["one"].force[:, 2] = np.arange(2000.0)
 def edited(*edits, contacts=None):
     contacts = contacts or [stance(500, 1200, number=1), stance(560, 1300, number=2, name="two"),
                             stance(1500, 1900, number=3)]  # fmt: skip
-    return edited_contacts(contacts, [Edit(step, what, value, "seen", "row 2") for step, what, value in edits],
+    told = [Edit(step, what, value, "seen", "row 2") for step, what, value in edits]
+    return edited_contacts(contacts, told,
                            PLATES, UP)  # fmt: skip
 
 
@@ -271,7 +272,8 @@ def test_edits_of_times_sides_and_plates():
     assert (moved.peak, moved.by_hand) == (1099.0, ("contact", "toe off"))
     for wrong, words in (
         ((1, "contact", 0.5004), "changes nothing"), ((1, "toe off", 1.2), "changes nothing"),
-        ((1, "contact", 1.199), "end before it begins"), ((1, "contact", 2.0), "outside the record"),
+        ((1, "contact", 1.199), "end before it begins"),
+        ((1, "contact", 2.0), "outside the record"),
         ((1, "contact", -0.001), "outside the record"), ((3, "plate", "one"), "on one alone"),
         ((1, "plate", "four"), "plate with a contact"),
     ):  # fmt: skip
