@@ -60,7 +60,8 @@ def reason(duration=0.7, peak=800.0, *, weight=None, braking=1.0, start=500, oth
     feet = feet or NOBODY
     feet = SimpleNamespace(**{**vars(feet), "plate": made, "walk": walk_of(made)})
     judged = stance(start, start + count, peak, **more)
-    return str(check._reason(walk_of(made, weight=weight), judged, list(others), usual, feet))  # fmt: skip
+    walk = walk_of(made, weight=weight)
+    return str(check._reason(walk, judged, list(others), usual, feet))
 
 
 def test_what_is_a_step_and_why_others_are_none():
