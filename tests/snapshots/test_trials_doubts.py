@@ -94,7 +94,8 @@ def test_a_trial_far_from_the_others_of_its_person():
 @pytest.mark.parametrize(
     ("a", "b", "slip"),
     [("vinyl", "vinyl", False), ("vinyl", "vinil", True), ("vinyl", "vinl", True),
-     ("vinyl", "vinyyl", True), ("vinyl", "viynl", True), ("vinyl", "vyinl", False), ("vinyl", "vniyl", True),
+     ("vinyl", "vinyyl", True), ("vinyl", "viynl", True), ("vinyl", "vyinl", False),
+     ("vinyl", "vniyl", True),
      ("vinyl", "vi", False), ("vinyl", "finil", False), ("vinyl", "vlnyi", False),
      ("vinyl", "vinylx", True), ("vinyl", "vinylxx", False), ("vinyl", "xvinyl", True)],
 )  # fmt: skip
