@@ -11,7 +11,8 @@ from test_studies_answers import drawn, told
 
 import made_answers as made
 from snapshot import held, refusal
-from underfoot.core import Cache, ConvergenceError, DataError, SourcedValue
+from underfoot.block.result import MicroAverages, MicroResult
+from underfoot.core import Cache, ConvergenceError, DataError, SourcedValue, Status
 from underfoot.friction import Pair, packaged_pair_draws
 from underfoot.friction.tread_error import TreadPair
 from underfoot.questions.sensitivity import InputEffect, Sensitivity
@@ -20,6 +21,7 @@ from underfoot.studies import (
     calibration,
     corpus,
     default_law,
+    g1,
     g4,
     g5,
     lug_states,
@@ -35,7 +37,7 @@ from underfoot.studies.runner import Computed, Options, PublishedStudyResult, St
 from underfoot.studies.verdict import ComputedQuantity
 
 
-def whole(computed, rows=14):
+def whole(computed, rows=5):
     """Return all that a study computed, in lines."""
     return {
         "quantities": told(computed.quantities),
@@ -167,7 +169,7 @@ def test_six_shoes_in_two_fluids(file_regression, monkeypatch):
     said = {}
     for quick in (True, False):
         options = Options(quick, 2, progress=lambda *said: heard.append(said))
-        said["quick" if quick else "full"] = whole(g4.compute(options), 4 if quick else 12)
+        said["quick" if quick else "full"] = whole(g4.compute(options), 2 if quick else 4)
     said["asked"] = asked
     said["heard"] = [[stage, round(share, 3)] for stage, share, *_ in heard[:12:3]]
     held(file_regression, said)
@@ -369,7 +371,7 @@ def test_what_the_data_fix(file_regression, monkeypatch):
     monkeypatch.setattr(calibration, "judge_slip", judged)
     lines = -49.2 + 9 * noise(40), -0.06 + 0.01 * noise(40)
     monkeypatch.setattr(calibration, "precision_of_published", lambda: lines)
-    found = {quick: whole(calibration.compute(Options(quick, 2)), 40) for quick in (True, False)}
+    found = {quick: whole(calibration.compute(Options(quick, 2)), 7) for quick in (True, False)}
     held(file_regression, {"quick": found[True], "full": found[False], "asked": asked})
 
 
@@ -561,3 +563,81 @@ def test_a_ledger_of_few_rows(file_regression, monkeypatch, tmp_path):
                     report_ledger.cof(family="dry", pressure=1e5, floor_rq=4e-6)],
         },
     )  # fmt: skip
+
+
+# blocks
+
+
+def slid(case):
+    """What a block that nobody slid gives."""
+    where, time = np.maximum(np.arange(9.0) - 3, 0) * 2e-4, 1e-4 * np.arange(9)
+    level = 0.02 * case.speed + 2e2 * case.shoe_rz + 1e3 * case.floor_rz
+    soft = case.material == "rubber"
+    area = 1e-6 * (1 + 9 * soft) / (1 + case.speed)
+    pressure = 1.6e5 + 1e4 * case.speed
+    means = MicroAverages(level * soft, 2 * level, 2.1 * level, area, 0.1, pressure, 2, 0.01, 9e-7,
+                          0.09)  # fmt: skip
+    lost = (case.speed, case.series, soft) == (1.0, "report", False) and case.floor_rz < 2e-5
+    status = Status.NOT_CONVERGED if lost else Status.CONVERGED
+    waves = 0.02 * np.sin(2 * np.pi * where / 4e-4)
+    return MicroResult(time, where, 0.06 + 0 * time, waves + 0.001, 0 * time, 1e-7 + 1e-8 * time,
+                       9e-8 + 0 * time, -1e-5 + 0 * time, 4e-7, means, None, status, 9, 1e-5, 0.5,
+                       ("a note",) if soft else ())  # fmt: skip
+
+
+def test_blocks_of_made_up_runs(file_regression, monkeypatch, tmp_path):
+    asked: list[Any] = []
+    now: list[Any] = []
+    parts = g1.parts_of
+
+    def block(shape, ratio):
+        asked.append([shape.elements, round(ratio, 6)])
+        return "block"
+
+    def parts_of(case, settings):
+        now[:] = [case, settings]
+        return parts(case, settings)
+
+    def sliding(block, floor, rubber, loading, *, steps_per_wavelength):
+        assert (block, loading.speed) == ("block", now[0].speed)
+        if len(asked) < 3:
+            asked.append([steps_per_wavelength, loading.control, loading.hold_time,
+                          loading.slide_distance])  # fmt: skip
+        return slid(now[0])
+
+    monkeypatch.setattr(g1, "parts_of", parts_of)
+    monkeypatch.setattr(g1.condensed, "condensed_block", block)
+    monkeypatch.setattr(g1.condensed, "condensed_sliding", sliding)
+    heard: list[Any] = []
+    both = g1.Settings(speeds=(0.1, 1.0))
+    said: dict[str, Any] = {}
+    for name, quick, settings in (
+        ("full", False, both), ("quick", True, None),
+        ("by load", False, replace(both, series=("broad",), control="load")),
+    ):  # fmt: skip
+        options = Options(quick, 1, 0, settings, lambda *told: heard.append(told[:2]))
+        computed = whole(g1.compute(options), 3)
+        said[name] = computed if name == "full" else [computed["says"], computed["quantities"]]
+    said["heard"] = [heard[0], heard[-1], len(heard)]
+    said["asked"] = asked[:8]
+
+    def marched(*given):
+        asked.append([one.__class__.__name__ for one in given])
+        return slid(now[0])
+
+    monkeypatch.setattr(g1.explicit, "explicit_sliding", marched)
+    monkeypatch.setattr(g1, "Cache", lambda room: SimpleNamespace(folder=tmp_path))
+    monkeypatch.setattr(
+        g1, "cached_arrays",
+        lambda room, function, items, keys, *, processes: [
+            (item, function(item)) for item in items[::-1]
+        ],
+    )  # fmt: skip
+    explicit = replace(both, solver="explicit", series=("report",))
+    cells = list(g1.matrix(explicit))
+    (tmp_path / f"{g1._key(cells[0], explicit)}.npz").touch()
+    said["kept"] = g1.kept_cases(explicit, cells), g1.kept_cases(both, cells)
+    options = Options(False, 2, 0, explicit, lambda *told: None)
+    computed = whole(g1.compute(options), 5)
+    said["explicit"] = [computed["says"], computed["tables"], asked[-1]]
+    held(file_regression, said)
