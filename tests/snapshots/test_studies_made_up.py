@@ -575,7 +575,8 @@ def slid(case):
     soft = case.material == "rubber"
     area = 1e-6 * (1 + 9 * soft) / (1 + case.speed)
     pressure = 1.6e5 + 1e4 * case.speed
-    means = MicroAverages(level * soft, 2 * level, 2.1 * level, area, 0.1, pressure, 2, 0.01, 9e-7,
+    loss = 1.0 if soft else 0.5 * (case.series == "broad")
+    means = MicroAverages(level * loss, 2 * level, 2.1 * level, area, 0.1, pressure, 2, 0.01, 9e-7,
                           0.09)  # fmt: skip
     lost = (case.speed, case.series, soft) == (1.0, "report", False) and case.floor_rz < 2e-5
     status = Status.NOT_CONVERGED if lost else Status.CONVERGED
