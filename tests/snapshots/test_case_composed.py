@@ -7,6 +7,7 @@ import pytest
 
 from snapshot import refusal
 from underfoot.case import text
+from underfoot.case.case import Case
 from underfoot.case.compose import Composition, _settle_contact, _settle_hardness, expand_sections
 from underfoot.case.section import CATALOGUE, DEFAULT, GIVEN, Origin
 from underfoot.core.leaves import Leaf
@@ -166,3 +167,26 @@ def test_entries_of_another_fluid_leave_their_friction():
     ):  # fmt: skip
         assert _of_another_fluid(Origin(kind, Leaf(1.0, source="a"), entry), ours) == other
     assert _of_another_fluid(Origin(CATALOGUE, Leaf(1.0, source="a"), "fluid oil"), {})
+
+
+POINT = {"time": "0 ms", "normal_force": "100 N", "speed": "0.3 m/s", "shoe_angle": "5 deg"}
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        ([POINT], ["motion.duration: 0 ms is outside"]),
+        (["x", POINT], ["motion.duration: 0 ms", "history_points.0: 'x' can't be used"]),
+        ([POINT, "x"], ["history_points.1: 'x' can't be used"]),
+        ([POINT, {**POINT, "normal_force": "0.99 N"}], ["history ends with 0.99 N. Allowed: 1 N"]),
+    ],
+)
+def test_histories_that_cannot_be(points, words):
+    given = {
+        "shoe": "work_shoe_full_tread", "floor": "vinyl_g4", "contaminant": "glycerol_90pct",
+        "motion": {"from": "slip_tester_g4", "history_points": points},
+    }  # fmt: skip
+    told = refusal(Case.from_mapping, given)
+    assert told.startswith("CaseError")
+    assert all(one in told for one in words)
+    assert ("duration" in told) == (points[-1] is POINT)
