@@ -116,7 +116,7 @@ def test_files_that_are_dropped(file_regression, monkeypatch, session):
         for file in ("measured/x.csv", "measured/x.toml"):
             asyncio.run(arrived([file]))
         told[f"{folder} {len(told)}"] = words
-    told["changed"], told["used"] = changed, used
+    told["changed"], told["used"] = list(changed), list(used)
     told["asked"] = [[name, [str(one).rpartition("/")[2] for one in given]]
                      for name, given, _ in asked]  # fmt: skip
     monkeypatch.undo()
@@ -142,7 +142,8 @@ def test_files_that_are_dropped(file_regression, monkeypatch, session):
         {"page": lambda: measured_file.build(session, "a", "floor", lambda: used.append("left"))},
         leave,
     )
-    told["left"], told["used then"] = changed, used[-2:]
+    told["left"] = [[name, [f"{k}: {v}" for k, v in one.items()]] for name, one in changed]
+    told["used then"] = used[-2:]
     told["label"] = [line.strip() for line in lines["page"].splitlines() if "old.csv" in line]
     monkeypatch.undo()
     taken: list[Any] = []
