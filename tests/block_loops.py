@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from underfoot.block._kernels import energy, generate, motion
+from underfoot.block._kernels.energy import element_energies
+from underfoot.block._kernels.generate import LANES, source
+from underfoot.block._kernels.motion import contact, move
 
 
 def plain(kernel: Any) -> Any:
@@ -18,9 +20,9 @@ def written_loops() -> dict[str, Any]:
     """Return the loops of all kinds of material by their names."""
     loops: dict[str, Any] = {
         "njit": lambda *_, **__: lambda kernel: kernel, "prefer_wide_registers": lambda: None,
-        "element_energies": plain(energy.element_energies), "contact": plain(motion.contact),
-        "move": plain(motion.move), "EVERY": (np.arange(generate.LANES),),
+        "element_energies": plain(element_energies), "contact": plain(contact),
+        "move": plain(move), "EVERY": (np.arange(LANES),),
     }  # fmt: skip
-    text = generate.source().replace(f"for l in range({generate.LANES}):", "for l in EVERY:")
+    text = source().replace(f"for l in range({LANES}):", "for l in EVERY:")
     exec("\n".join(line for line in text.splitlines() if not line.startswith("from ")), loops)
     return loops

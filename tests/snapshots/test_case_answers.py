@@ -1,4 +1,8 @@
-"""Cases: every key with its range and default, every option, scenarios, refusals and texts."""
+"""Cases: every key with its range and default, every option, scenarios, refusals and texts.
+
+Of ``underfoot.case.describe``, ``underfoot.case.schema``, ``underfoot.case.tables``,
+``underfoot.case.template``, ``underfoot.case.versions``.
+"""
 
 import math
 from importlib import import_module

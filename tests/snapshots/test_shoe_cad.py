@@ -1,4 +1,7 @@
-"""CAD files as they are read: units, names, triangles; crowns, wear and drafts of solids."""
+"""CAD files as they are read: units, names, triangles; crowns, wear and drafts of solids.
+
+Of ``underfoot.shoe.parametric.worn_solid``.
+"""
 
 import math
 import pickle

@@ -1,4 +1,7 @@
-"""How a sole lies in its file: each decision just below and just above its limit."""
+"""How a sole lies in its file: each decision just below and just above its limit.
+
+Of ``underfoot.shoe.files.orientation``.
+"""
 
 import math
 
