@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
+import pytest
 from test_explore_studies import BASE, HERE, PLANS, SWEEP, ended, made_up, plan_of
 
 from snapshot import held, refusal
@@ -535,3 +536,54 @@ def test_small_answers(file_regression, tmp_path):
     said["of 100"] = [of_100(x) for x in (0.0, 0.29, 0.999, 1.0)]
     said["silence"] = store.SILENT, study.PAUSE, study.LONGEST_PAUSE
     held(file_regression, said)
+
+
+class Jobs(list):
+    """Jobs as a folder holds them."""
+
+    closed = True
+
+    @property
+    def keys(self):
+        return [job.key for job in self]
+
+
+@pytest.mark.parametrize(
+    ("designs", "whole"),
+    [
+        ([(k, 0) for k in range(9)], True), ([(k, 0) for k in range(9)] + [(9, 1)], True),
+        ([(k, 0) for k in range(8)], False), ([(k, 0) for k in range(8)] + [(9, 1)], False),
+    ],
+)  # fmt: skip
+def test_jobs_of_version_1_are_kept_where_the_first_batch_is_whole(monkeypatch, designs, whole):
+    plan = plan_of("grid")
+    jobs = Jobs(CaseJob(f"k{d}", d, 0, 0, batch, (0.0, 0.0), {}) for d, batch in designs)
+    jobs.closed = False
+    closed: list[Any] = []
+    rounds = iter([0, 5])
+    later = Jobs()
+    records = SimpleNamespace(pack=print)
+    one = Study(plan, "folder")
+    found = iter([jobs, later, later])
+    one.store = cast(Any, SimpleNamespace(
+        jobs=lambda: next(found), records=lambda: records,
+        close_batches=lambda kept_of: closed.append(len(kept_of)),
+        begin_round=lambda jobs, *, ended: next(rounds), add_batch=lambda jobs, batch: 9,
+    ))  # fmt: skip
+    monkeypatch.setattr(study, "next_batch", lambda plan, so_far: ["a batch"])
+    assert one._begin_next()
+    assert closed == [len(jobs) if whole else 0]
+
+
+def test_a_study_without_a_next_batch_is_packed_and_ended(monkeypatch):
+    said: list[Any] = []
+    jobs = Jobs([CaseJob("k", 0, 0, 0, 0, (0.0,), {})])
+    one = Study(plan_of("grid"), "folder")
+    one.store = cast(Any, SimpleNamespace(
+        jobs=lambda: jobs, records=lambda: SimpleNamespace(pack=lambda keys: said.append(keys)),
+        begin_round=lambda jobs, *, ended: said.append(ended) or 0,
+        add_batch=lambda jobs, batch: said.append(batch) or 0,
+    ))  # fmt: skip
+    monkeypatch.setattr(study, "next_batch", lambda plan, so_far: [])
+    assert not one._begin_next()
+    assert said == [False, [], True, ["k"]]
