@@ -15,7 +15,7 @@ from underfoot.explore import check, engines, posterior, store, study
 from underfoot.explore.check import Computer, StudyCheck, study_check
 from underfoot.explore.claims import ASKED, LARGEST, begin_round, block_edges, latest_round
 from underfoot.explore.computing import status_bytes
-from underfoot.explore.cost import StudyCost, mean_cost, spread_jobs, study_cost
+from underfoot.explore.cost import StudyCost, _steady, mean_cost, spread_jobs, study_cost
 from underfoot.explore.inputs import JointDraws
 from underfoot.explore.jobs import BatchJobs, add_batch, jobs_at
 from underfoot.explore.lines import seal_line, unseal_line
@@ -587,3 +587,17 @@ def test_a_study_without_a_next_batch_is_packed_and_ended(monkeypatch):
     monkeypatch.setattr(study, "next_batch", lambda plan, so_far: [])
     assert not one._begin_next()
     assert said == [False, [], True, ["k"]]
+
+
+@pytest.mark.parametrize(
+    ("cases", "workers", "used"), [(6, 6, 6), (6, 3, 3), (7, 4, 3), (8, 5, 8), (5, 2, 3), (4, 2, 4)]
+)
+def test_the_first_case_of_a_process_counts_where_few_others_are_left(cases, workers, used):
+    """Of ``cases``, evenly over processes, those are used that are no first ones, or all."""
+    pairs: Any = [
+        (k, Record(f"k{k}", Ending.COMPUTED, worker=f"w{k % workers}", ended=float(k)))
+        for k in range(cases)
+    ]
+    left = _steady(pairs)
+    assert len(left) == used
+    assert used == cases or min(k for k, _ in left) == workers
