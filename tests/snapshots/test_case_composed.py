@@ -1,6 +1,8 @@
 """A case put together from its parts: contact of measured surfaces, records, texts and files."""
 
+import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -9,6 +11,7 @@ from snapshot import refusal
 from underfoot.case import text
 from underfoot.case.case import Case
 from underfoot.case.compose import Composition, _settle_contact, _settle_hardness, expand_sections
+from underfoot.case.friction import _loss_tested, _slope, _span
 from underfoot.case.section import CATALOGUE, DEFAULT, GIVEN, Origin
 from underfoot.core.leaves import Leaf
 
@@ -190,3 +193,58 @@ def test_histories_that_cannot_be(points, words):
     assert told.startswith("CaseError")
     assert all(one in told for one in words)
     assert ("duration" in told) == (points[-1] is POINT)
+
+
+def test_keys_have_their_places_in_a_file():
+    lines = (
+        '[shoe]\nfrom = "a"\ntread.depth = 3\n# note\n"odd key" = """\na = 3\n"""\nb = [1,\n 2]\n'
+    )
+    lines += "[shoe.wear]\nmode = 'plane'\n[[x.y]]\nz = 1\n"
+    found = text.key_lines(lines)
+    assert found == {
+        ("shoe",): 1, ("shoe", "from"): 2, ("shoe", "tread"): 3, ("shoe", "tread", "depth"): 3,
+        ("shoe", "odd key"): 5, ("shoe", "b"): 8, ("shoe", "wear"): 10,
+        ("shoe", "wear", "mode"): 11, ("x", "y"): 12, ("x", "y", "z"): 13,
+    }  # fmt: skip
+    place = text.Places("a.toml", lines, changed=("motion.speed", "shoe.wear"))
+    place.moved["shoe.new"] = "shoe.tread.depth"
+    for path, said in (
+        ("shoe.tread.depth", "shoe.tread.depth (a.toml, line 3)"),
+        ("shoe.tread.width", "shoe.tread.width (a.toml, line 3)"),
+        ("shoe.b[1]", "shoe.b[1] (a.toml, line 8)"), ("floor", "floor (a.toml)"),
+        ("shoe.new", "shoe.new (a.toml, line 3)"),
+        ("motion.speed", "motion.speed (set for this run)"),
+        ("shoe.wear.mode", "shoe.wear.mode (set for this run)"),
+        ("shoe.wearing", "shoe.wearing (a.toml, line 1)"),
+    ):  # fmt: skip
+        assert str(place(path)) == said
+    assert text.Places()("shoe.wear") == "shoe.wear"
+
+
+def test_roughness_that_hysteresis_sees():
+    def scan(order, low, high):
+        return {0: 3e-6, 1: 0.4}[order] if (low, high) == (2.5e-6, 0.8e-3) else -1.0
+
+    def roughness(**more):
+        given = {"file": None, "moment": scan, "rq_or_estimate": 4e-6, "rq_uncertainty": None,
+                 "share_up_to": lambda longest, hurst: longest * 1e3 * hurst}  # fmt: skip
+        return cast(Any, SimpleNamespace(**(given | more)))
+
+    assert _slope(roughness()) is None
+    assert _slope(roughness(file="a")) == 0.4
+    assert _span(roughness(rq_or_estimate=None), (1.0, 2.0), 0.5) == (1.0, 2.0)
+    assert _span(roughness(), (1.0, 2.0), 0.5) == pytest.approx((1.6e-6, 1.6e-6))
+    assert _span(roughness(file="a"), (1.0, 2.0), 0.5) == pytest.approx((3e-6, 3e-6))
+    low, high = _span(roughness(rq_uncertainty=4e-7), (1.0, 2.0), 1.0)
+    assert (low, high) == pytest.approx((3.2e-6 / math.exp(0.196), 3.2e-6 * math.exp(0.196)))
+
+
+def test_a_loss_is_tested_at_the_slowest_rate_of_sliding():
+    told = []
+    material = SimpleNamespace(loss_tested_at=lambda rate: told.append(rate) or True)
+    for speed in (0.4, -0.4):
+        context = SimpleNamespace(
+            motion=SimpleNamespace(speed=speed), shoe=SimpleNamespace(material=material)
+        )
+        assert _loss_tested(cast(Any, context))
+    assert told == pytest.approx([2 * math.pi * 0.4 / 0.8e-3] * 2)
