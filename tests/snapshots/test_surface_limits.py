@@ -27,6 +27,7 @@ from underfoot.surface.prepare import (
     make_periodic,
     without_spikes,
 )
+from underfoot.surface.read import read_surface
 from underfoot.surface.roughness import (
     areal_roughness,
     curvature,
@@ -37,6 +38,7 @@ from underfoot.surface.roughness import (
     slope,
 )
 from underfoot.surface.scan import _cutoff, _held, _numbers, _uneven, height_cautions
+from underfoot.surface.spectrum import ProfileSpectrum
 
 UM = 1e-6
 
@@ -347,3 +349,31 @@ def test_maps_made_periodic():
     assert mirror.heights.shape == (256, 256)
     assert mirror.heights[0] == pytest.approx(mirror.heights[-1])
     assert mirror.heights[:, 127] == pytest.approx(mirror.heights[:, 128])
+
+
+def test_positions_rounded_in_print_are_a_grid_and_others_are_none(tmp_path):
+    """Steps of 0.15 um in one decimal are off by half a digit, no more."""
+    rng = np.random.default_rng(6)
+
+    def read(places):
+        rows = [f"{x:.1f} {y:.1f} {rng.normal():.4f}" for x in places for y in places]
+        path = tmp_path / "a.xyz"
+        path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        return read_surface(path, length_unit="um", height_unit="um")
+
+    made = read([0.0, 0.2, 0.3, 0.5, 0.6, 0.8, 0.9])
+    assert made.spacings == pytest.approx((0.15 * UM, 0.15 * UM))
+    assert made.shape == (7, 7)
+    with pytest.raises(DataError, match="is uneven: up to"):
+        read([0.0, 0.2, 0.3, 0.5, 0.69, 0.8, 0.9])
+
+
+@pytest.mark.parametrize("wrong", [[0.0, 1.0], [-1.0, 1.0], [2.0, 1.0], [1.0, 1.0], [1.0, np.nan]])
+def test_wave_numbers_rise_from_above_nothing(wrong):
+    with pytest.raises(InputError, match="ascending, above 0"):
+        ProfileSpectrum(np.array(wrong), np.ones(2), (1.0, 2.0))
+    one = ProfileSpectrum(np.array([0.5]), np.ones(1), (0.5, 0.5))
+    assert one.area == pytest.approx([1.0])
+    for density in ([1.0, -1e-9], [1.0, np.nan]):
+        with pytest.raises(InputError, match="negative or missing"):
+            ProfileSpectrum(np.array([1.0, 2.0]), np.array(density), (1.0, 2.0))
