@@ -318,14 +318,14 @@ def test_a_shoe_is_turned_up_and_down_where_its_contact_goes_on(monkeypatch, fai
     monkeypatch.setattr(solve, "continue_contact", continued)
     monkeypatch.setattr(solve, "place_numbers", lambda parts, end: {"end": end})
     parts = fake(case=fake(motion=fake(build=lambda: None)))
-    found = solve._turned(parts, fake())
+    found = solve._turn_and_solve(parts, fake())
     if fails:
         assert found == {}
         return
     assert turns == [place.turn for place in TURNED]
     assert found == {place: {"end": place.turn} for place in TURNED}
     parts.case.motion.build = lambda: "history"
-    assert solve._turned(parts, fake()) == {}
+    assert solve._turn_and_solve(parts, fake()) == {}
 
 
 @pytest.mark.parametrize("processes", [1, 3])

@@ -274,7 +274,7 @@ def test_periods_of_a_pattern_lean_by_less_than_one_of_its_first(second, reduced
     """Of 10 units along; the lattice stays, so what is taken off is a whole number of the first."""
     unit = length / 10
     given = np.array([(10, 0), second]) * unit
-    assert positions._reduced(given) == pytest.approx(np.array([(10, 0), reduced]) * unit)
+    assert positions._reduce_periods(given) == pytest.approx(np.array([(10, 0), reduced]) * unit)
 
 
 @pytest.mark.parametrize("wet", [True, False])
@@ -292,7 +292,7 @@ def test_the_quick_grid_is_compared_in_cells_and_where_a_film_remembers_in_time(
     monkeypatch.setattr(numerical_error, "cells_along", lambda *_: 1)
     parts: Any = SimpleNamespace(case=case, viscosity=0.1 if wet else None)
     own = {"cof": 0.33, "fluid_load": 36.0}
-    told: Any = numerical_error._compared(parts, own, cast(Any, None))
+    told: Any = numerical_error._grid_differences(parts, own, cast(Any, None))
     assert told.grid == pytest.approx({"cof": 0.03, "fluid_load": 4.0})
     assert told.steps == pytest.approx({"cof": 0.04, "fluid_load": 2.0} if wet else {})
 

@@ -375,7 +375,7 @@ class Option(Section):
         """Return the option that a package offers by this name, or at ``module:Class``."""
         if ":" not in name:
             option = find_offer(cls.slot, name, cls._wrong)
-            return option or _named(cls.options(), name)
+            return option or _find_option(cls.options(), name)
         option = load_address(name)
         if wrong := cls._wrong(option):
             raise InputError(f'"{name}" {wrong}')
@@ -395,7 +395,7 @@ class Option(Section):
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-def _named(options: Mapping[str, type[Option]], name: str) -> type[Option]:
+def _find_option(options: Mapping[str, type[Option]], name: str) -> type[Option]:
     if name not in options:
         error = unknown_name("choice", name, options)
         raise InputError(error.what, allowed=", ".join(options), nearest=error.nearest)

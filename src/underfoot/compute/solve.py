@@ -292,11 +292,11 @@ def average_positions(
 
     known = {TreadPlace(): place_numbers(parts, solution.contact)}
     if has_lugs(parts.case):
-        known |= _turned(parts, solution.contact)
+        known |= _turn_and_solve(parts, solution.contact)
     return tread_positions(parts.case, known, at_places, spacing=parts.spacing, quick=quick)
 
 
-def _turned(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
+def _turn_and_solve(parts: Prepared, contact: SoleContact) -> dict[TreadPlace, Mapping[str, float]]:
     """Return the numbers of a contact that goes on in two steps with the shoe turned up and down.
 
     Empty where the steps can't be made, or the motion follows a history.

@@ -145,7 +145,7 @@ class _Walk:
             self._list("method", (part.__func__, part.__self__))
         elif isinstance(part, CodeType):
             self._list("code", (part.co_code, part.co_consts, part.co_names))
-        elif (inner := _wrapped(part)) is not None:
+        elif (inner := _inner_function(part)) is not None:
             self.feed(inner)
         else:
             self._object(part)
@@ -175,7 +175,7 @@ class _Walk:
     def _in_code(self, value: Any) -> Any:
         """Return a value that code refers to; of an object of a library its class alone."""
         plain = (*_PLAIN, *_KINDS, float, np.generic, Enum, type, FunctionType, ModuleType)
-        if isinstance(value, plain) or _wrapped(value) is not None:
+        if isinstance(value, plain) or _inner_function(value) is not None:
             return value
         return type(value) if self._told_by_version(type(value)) else value
 
@@ -223,7 +223,7 @@ class _Walk:
         top = name.partition(".")[0]
         if top == OWN or (top in sys.stdlib_module_names and top != "__main__"):
             return True
-        if not _required() & set(map(_plain, _distributions(top))):
+        if not _required_packages() & set(map(_plain, _distributions(top))):
             return False
         self._text("library", f"{top} {_versions(top)}")
         return True
@@ -248,7 +248,7 @@ def _names(code: CodeType) -> Iterable[str]:
             yield from _names(each)
 
 
-def _wrapped(part: Any) -> Any:
+def _inner_function(part: Any) -> Any:
     """Return the function within a cached or compiled one, else None."""
     inner = getattr(part, "__wrapped__", None) if isinstance(part, _CACHED) else None
     return inner or getattr(part, "py_func", None)
@@ -313,7 +313,7 @@ def _versions(top: str) -> str:
 
 
 @cache
-def _required() -> frozenset[str]:
+def _required_packages() -> frozenset[str]:
     """Return the packages that this one requires: the version of one says its code."""
     try:
         lines = metadata.requires(OWN) or []

@@ -108,14 +108,14 @@ def _decimal(digits: str, text: str, usual: str) -> str | None:
                     remedy="Write it without thousands, with the decimal sign of the page",
                 )
             return f"{whole or 0}.{part or 0}"
-        if len(set(signs[:-1])) == 1 and _grouped(whole, signs[0]):
+        if len(set(signs[:-1])) == 1 and _is_grouped(whole, signs[0]):
             return f"{whole.replace(signs[0], '')}.{part or 0}"
         return None
-    if len(set(signs)) == 1 and _grouped(digits, last):
+    if len(set(signs)) == 1 and _is_grouped(digits, last):
         return digits.replace(last, "")
     return None
 
 
-def _grouped(digits: str, sign: str) -> bool:
+def _is_grouped(digits: str, sign: str) -> bool:
     """Return whether digits stand in thousands."""
     return re.fullmatch(rf"[1-9]\d{{0,2}}(?:{re.escape(sign)}\d{{3}})+", digits) is not None

@@ -237,7 +237,7 @@ def _common_draws(
     return rows
 
 
-def _listed(given: Any) -> Sequence[Any]:
+def _as_list(given: Any) -> Sequence[Any]:
     return given if isinstance(given, list | tuple) else [given]
 
 
@@ -394,7 +394,7 @@ class _Reader:
         """Return every combination of the conditions; one without changes where none are given."""
         choices = []
         for name, given in self.table("conditions").items():
-            path, texts = ALIASES.get(name, name), _listed(given)
+            path, texts = ALIASES.get(name, name), _as_list(given)
             choice = self.attempt(f"conditions.{name}", read_choice, path, texts, known)
             if choice is not None:
                 choices.append([(path, *pair) for pair in zip(choice.options, texts, strict=True)])
@@ -409,7 +409,7 @@ class _Reader:
         """Return the condition of each reading, and what was measured in it."""
         readings = [
             self.attempt(f"reading[{number}]", _reading, one, f"reading {number}", known)
-            for number, one in enumerate(_listed(self.plain["reading"]), start=1)
+            for number, one in enumerate(_as_list(self.plain["reading"]), start=1)
         ]
         good = list(filter(None, readings))
         return tuple(state for state, _ in good), tuple(reading for _, reading in good)
@@ -425,7 +425,7 @@ class _Reader:
         def read(name: str, function: Callable[..., Any], *more: Any) -> tuple[Any, ...]:
             goals = [
                 self.attempt(f"outputs.{name}[{k}]", function, text, UNITS, states, *more)
-                for k, text in enumerate(_listed(table.get(name, [])))
+                for k, text in enumerate(_as_list(table.get(name, [])))
             ]
             return tuple(filter(None, goals))
 

@@ -354,12 +354,12 @@ class PairReadOption(PairOption):
     def build(self, context: Context) -> FrictionLaw:
         """Return the law, narrowed."""
         law = self.unread(context)
-        told = _narrowed(law.pair, self.floor_readings(), self.draws_file, self.sha256)
+        told = _narrow_pair(law.pair, self.floor_readings(), self.draws_file, self.sha256)
         return PairContactLaw(law.pair, law.viscosity, told.draws)
 
 
 @lru_cache(maxsize=32)
-def _narrowed(
+def _narrow_pair(
     pair: Pair, readings: tuple[FloorReading, ...], draws_file: str | None, sha256: str | None
 ) -> FloorCalibration:
     draws = packaged_pair_draws()

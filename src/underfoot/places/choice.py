@@ -622,8 +622,8 @@ def choose_shoe(
             shoe,
             mean_of_draws(rates[shoe.name] / place.wet_share, source=MODEL.source),
             float(chance),
-            _replaced(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
-            _reported(place, rates[shoe.name], rates[present.name]),
+            _replacement_time(shoe, states[shoe.name], worn_rate.get(shoe.name), place, joint),
+            _reported_slips(place, rates[shoe.name], rates[present.name]),
         )
         for shoe, chance in zip(place.shoes, best, strict=True)
     )
@@ -805,7 +805,7 @@ def _sum(shares: Mapping[tuple[str, str], Array]) -> Array:
     return np.sum([shares[key] for key in sorted(shares)], axis=0)
 
 
-def _left(after: Array, before: Array) -> tuple[float, float, float]:
+def _slip_ratio(after: Array, before: Array) -> tuple[float, float, float]:
     """Return the ratio of the mean slips between the 2.5 and 97.5 % of the ratio of the draws.
 
     Draws in which nobody slips, before and after, have no ratio.
@@ -820,14 +820,14 @@ def _left(after: Array, before: Array) -> tuple[float, float, float]:
 
 def _lever(name: str, after: Array, before: Array) -> Lever:
     fewer = np.mean(after < before) + 0.5 * np.mean(after == before)
-    return Lever(name, _left(after, before), float(fewer))
+    return Lever(name, _slip_ratio(after, before), float(fewer))
 
 
-def _reported(place: Place, after: Array, today: Array) -> str:
+def _reported_slips(place: Place, after: Array, today: Array) -> str:
     if place.reported is None:
         return ""
     ends = (1 / MOST_RATIO, MOST_RATIO)
-    low, median, high = np.clip(_left(after, today), *ends)
+    low, median, high = np.clip(_slip_ratio(after, today), *ends)
     least, middle, most = (_count(place.reported * ratio) for ratio in (low, median, high))
     if low == high:
         return middle
@@ -836,7 +836,7 @@ def _reported(place: Place, after: Array, today: Array) -> str:
     return Message("{median} ({low} to {high})", median=middle, low=least, high=most)
 
 
-def _replaced(
+def _replacement_time(
     shoe: PlaceShoe,
     states: Mapping[bool, Mapping[tuple[str, str], Cell]],
     worn: Array | None,
@@ -851,7 +851,7 @@ def _replaced(
         return ""
     new = _sum(_slips(place, joint, states[False]))
     if shoe.worn_region is not None:
-        left = _left(worn, new)
+        left = _slip_ratio(worn, new)
         if left[1] > TWICE:
             return Message("now: {ratio} times the slips of new", ratio=_share(left))
         return Message("not yet: {ratio} times the slips of new", ratio=_share(left))

@@ -222,7 +222,7 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
         assumed.append("people.days_per_year: no number of the choice hangs on it")
     if "steps_per_day" not in people:
         assumed.append("people.steps_per_day: not given; 8000 assumed")
-    named = _listed(people, "task", "people")
+    named = _table_list(people, "task", "people")
     tasks = tuple(_task(each, mean) for each in named) or (Task("walking", 1.0, mean),)
     of_tasks = all("rcof" in each for each in named or [{}])
     if "rcof_mean" in people and of_tasks:
@@ -297,7 +297,7 @@ def _tables(table: Mapping[str, Any], key: str) -> Sequence[Mapping[str, Any]]:
     return entries
 
 
-def _listed(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
+def _table_list(table: Mapping[str, Any], key: str, where: str) -> Sequence[Any]:
     """Return a list of tables within one; one table by itself is refused as such."""
     entries = table.get(key, [])
     if not isinstance(entries, list):
@@ -387,7 +387,7 @@ def _floor(
         assumed.append(Message("{where}.roughness: Rq is Rz over 4 to 8", where=where))
     readings = tuple(
         _floor_reading(each, f"{where}.reading {number}")
-        for number, each in enumerate(_listed(entry, "reading", where), start=1)
+        for number, each in enumerate(_table_list(entry, "reading", where), start=1)
     )
     if not section and not readings:
         assumed.append(
@@ -442,7 +442,7 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             remedy="Give the tread that is left (tread.depth), and its wear from then on",
         )
     readings = []
-    for number, each in enumerate(_listed(entry, "reading", where), start=1):
+    for number, each in enumerate(_table_list(entry, "reading", where), start=1):
         at = f"{where}.reading {number}"
         _check_keys(each, "shoe.reading", at)
         test = str(each.get("test", ""))

@@ -302,7 +302,7 @@ def method_prediction(
     if "method.question" in entry.values:
         return ask(entry.text("method.question"), case, method=entry.name, keep=keep)
     plan = [
-        (name, *_prepared(case, entry, floor, fluid, keep))
+        (name, *_prepare_case(case, entry, floor, fluid, keep))
         for name, floor, fluid in _conditions(entry)
     ]
     share = 1.0 / (1 + len(plan)) if with_band else 1.0
@@ -334,7 +334,7 @@ def method_prediction(
         end = plan[0][1].motion.end_time
         used = "steady sliding" if end is None else Message("at {end}", end=Amount(end, "s"))
         leaf = entry.values["method.averaging_end"]
-        requirements.append(_required("averaging window", window, used, leaf))
+        requirements.append(_requirement("averaging window", window, used, leaf))
     return MethodPrediction(
         case.name,
         entry.name,
@@ -355,7 +355,7 @@ def _conditions(entry: Entry) -> list[tuple[str, Leaf | None, Leaf | None]]:
     ]
 
 
-def _prepared(
+def _prepare_case(
     case: Case, entry: Entry, floor: Leaf | None, fluid: Leaf | None, keep: Sequence[str]
 ) -> tuple[Case, list[MethodRequirement]]:
     """Return the case under the method, and what the method asked for."""
@@ -381,7 +381,7 @@ def _prepared(
             settings.append(MethodRequirement(section, str(leaf.given), used, Basis.DEPARTURE))
         else:
             changes[section] = str(leaf.given)
-            settings.append(_required(section, str(leaf.given), "as required", leaf))
+            settings.append(_requirement(section, str(leaf.given), "as required", leaf))
     if "method.sole" in entry.values and not has_whole_sole(case):
         raise InputError(
             "the sole is a heel piece",
@@ -406,7 +406,7 @@ def _prepared(
             used = Message("{setting} (kept)", setting=Amount(getattr(changed.motion, name), unit))
             settings.append(MethodRequirement(label, required, used, Basis.DEPARTURE))
         else:
-            settings.append(_required(label, required, "as required", leaf))
+            settings.append(_requirement(label, required, "as required", leaf))
     return changed, settings
 
 
@@ -435,7 +435,7 @@ def _window(entry: Entry) -> str:
     return Message("{begin} to {end} after {after}", begin=begin, end=end, after=after)
 
 
-def _required(name: str, required: str, used: str, leaf: Leaf) -> MethodRequirement:
+def _requirement(name: str, required: str, used: str, leaf: Leaf) -> MethodRequirement:
     if leaf.assumed:
         return MethodRequirement(name, required, used, Basis.ASSUMED)
     basis = Basis.VERIFIED if leaf.verified else Basis.FROM_MEMORY

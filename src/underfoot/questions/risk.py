@@ -351,7 +351,7 @@ def risk_assessment(
     draws = present.data.get("cof_draws")
     acof = present.scalars["cof"], None if draws is None else np.asarray(draws)
     models = model_risks(case, *acof, target)
-    own = _needed(target, *acof, required_friction(case), case.risk.build())
+    own = _needed_acof(target, *acof, required_friction(case), case.risk.build())
     return RiskAssessment(
         case.name,
         outcome,
@@ -390,7 +390,7 @@ def model_risks(
                 risk.probability.value or 0.0,
                 risk.low,
                 risk.high,
-                _needed(target, acof, draws, people, model),
+                _needed_acof(target, acof, draws, people, model),
             )
         )
     return tuple(risks)
@@ -425,7 +425,7 @@ def _sure(effect: ChangeEffect) -> str:
     return drawn_probability_text(effect.higher)
 
 
-def _needed(
+def _needed_acof(
     target: float,
     acof: SourcedValue,
     draws: Array | None,

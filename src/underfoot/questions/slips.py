@@ -532,12 +532,12 @@ def _value_text(value: SourcedValue) -> str:
     if value.value is None:
         return Message("not determined: {reason}", reason=value.reason)
     if value.unit == "m/s":
-        spread = "" if value.uncertainty is None else f" ± {_speed(value.uncertainty)}"
+        spread = "" if value.uncertainty is None else f" ± {_speed_text(value.uncertainty)}"
         return f"{value.value:.2f}{spread} m/s"
     return quantity_text(value.value, value.unit, value.uncertainty)
 
 
-def _speed(value: float) -> str:
+def _speed_text(value: float) -> str:
     return f"{value:.2f}" if value >= 0.005 else "below 0.01"
 
 

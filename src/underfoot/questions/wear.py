@@ -514,7 +514,7 @@ def wear_series(
             name: limit_crossing(points, name, limit, draws=draws, seed=seed, between=between)
             for name in LOADS
         },
-        assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced(case)),
+        assumptions=(*_assumptions(cases[-1], mode, inputs), *_replaced_wear_note(case)),
         quick=quick,
         untreaded=results[-1] if bare else None,
         walker=WearWalker(case.value("shoe.wear.wear_rate") or USUAL_WEAR_RATE, pair),
@@ -688,7 +688,7 @@ def _measures(case: Case) -> WearMeasures:
     return wear_measures(sole_shape(case))
 
 
-def _replaced(case: Case) -> tuple[Message, ...]:
+def _replaced_wear_note(case: Case) -> tuple[Message, ...]:
     """Return that the wear of the case itself counts for nothing; empty of a new shoe."""
     depth = case.shoe.wear.depth
     if depth == 0:

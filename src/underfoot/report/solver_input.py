@@ -87,7 +87,7 @@ def write_solver_input(result: Result, path: Path | str) -> Exported:
         lines.append(f"*ELEMENT, TYPE=C3D15, ELSET={name}")
         lines += [", ".join(map(str, (k + 1, *(prisms[k] + 1)))) for k in chosen]
     for name, members in (("FOOT", foot), ("LAND", land)):
-        lines += [f"*NSET, NSET={name}", *_wrapped(np.unique(members) + 1)]
+        lines += [f"*NSET, NSET={name}", *_wrap_numbers(np.unique(members) + 1)]
     for name, (modulus, ratio) in rubbers.items():
         lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{1e-6 * modulus:.9g}, {ratio:.9g}"]
         lines.append(f"*SOLID SECTION, ELSET={name}, MATERIAL={name}")
@@ -151,6 +151,6 @@ def _rows(numbers: Ints, values: Floats) -> Iterable[str]:
             for n, row in zip(numbers, values, strict=True))  # fmt: skip
 
 
-def _wrapped(members: Ints) -> list[str]:
+def _wrap_numbers(members: Ints) -> list[str]:
     """Return lines of sixteen numbers, as many as a line may hold."""
     return [", ".join(map(str, members[k : k + 16])) for k in range(0, len(members), 16)]

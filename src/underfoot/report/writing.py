@@ -68,7 +68,7 @@ def write_folder(
                 failed[name] = failure
         has_page = (staging / "report.html").exists()
     lost = {name: write for name, write in data.items() if name in failed}
-    failures = (*failed.values(), *([_rescued(lost)] if lost else []))
+    failures = (*failed.values(), *([_rescue(lost)] if lost else []))
     return Written(folder, folder / "report.html" if has_page else None, failures)
 
 
@@ -141,7 +141,7 @@ def _reason(error: Exception) -> str:
     return f"internal error ({type(error).__name__}: {error}); please report it."
 
 
-def _rescued(lost: Mapping[str, Writer]) -> str:
+def _rescue(lost: Mapping[str, Writer]) -> str:
     """Write what was computed into a folder for temporary files and return where it is."""
     folder = Path(tempfile.mkdtemp(prefix="underfoot-"))
     saved = [name for name, write in lost.items() if not _failure(folder / name, write)]

@@ -68,7 +68,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
     body = slab(shape) * raise_face(rim_face(shape.rim_arcs(), -_BELOW), 0.3)
     if shape.edge_radius > 0:
         rim = [i for i, edge in enumerate(body.edges) if _on_lower_rim(edge, shape)]
-        body = _rounded(body, rim, shape.edge_radius, "the lower rim", remarks)
+        body = _round_edges(body, rim, shape.edge_radius, "the lower rim", remarks)
     lower = body
     tread, lugs = shape.tread, []
     if tread is not None and tread.depth > 0:
@@ -88,7 +88,7 @@ def sole_solid(shape: SoleShape) -> SoleSolid:
             free = [i for i, edge in edges if _belongs(edge, whole)]
             if free:
                 flat = tread.edge_chamfer > 0
-                body = _rounded(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
+                body = _round_edges(body, free, edge, "the lugs' edges", remarks, chamfer=flat)
             if len(free) < len(edges):
                 remarks.append(
                     f"{len(edges) - len(free)} of {len(edges)} edges of lugs stay sharp: "
@@ -182,7 +182,7 @@ def _half_ring(channel: ArcChannel) -> Any:
     return raise_face(closed(outer), 0.3) - raise_face(closed(inner), 0.3)
 
 
-def _rounded(
+def _round_edges(
     body: Any,
     edges: list[int],
     radius: float,
@@ -315,14 +315,14 @@ def write_sole(shape: SoleShape, path: Path | str, *, solid: SoleSolid | None = 
     made = solid or sole_solid(shape)
     draft = path.with_name(f"{path.stem}.draft{kind}")
     try:
-        volume, triangles = _written(made, draft, path)
+        volume, triangles = _write_draft(made, draft, path)
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)
     return SoleFile(path, made.volume, volume, triangles, made.lugs, made.remarks)
 
 
-def _written(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
+def _write_draft(made: SoleSolid, draft: Path, path: Path) -> tuple[float, int]:
     """Write ``draft`` and return the volume (m^3) and triangles read back from it.
 
     Raises:
@@ -371,7 +371,7 @@ def sole_mesh(made: SoleSolid) -> Any:
         # of a sliver between two walls the kernel may draw nothing
         if candidate.is_watertight or trimesh.repair.fill_holes(candidate, use_fan=True):
             return candidate
-    return _meshed(made)
+    return _mesh_body(made)
 
 
 def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -382,7 +382,7 @@ def _without_pairs(faces: NDArray[np.intp]) -> NDArray[np.intp]:
     return faces[count[index.ravel()] == 1]
 
 
-def _meshed(made: SoleSolid) -> Any:
+def _mesh_body(made: SoleSolid) -> Any:
     """Return the surface mesh of the finite-element mesher: slower, but closed on any solid."""
     trimesh = optional_module("trimesh", "cad", WRITING)
     step = optional_module("netgen.meshing", "cad", WRITING).MeshingStep.MESHSURFACE

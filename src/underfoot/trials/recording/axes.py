@@ -55,11 +55,11 @@ class Ramp:
 
     def surface(self, up: np.ndarray, walking: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return normal and forward tangent of the walking surface in the plate's axes, (3,)."""
-        return _turned(up, walking, self.angle if self.plate_frame == "horizontal" else 0.0)
+        return _turn_axes(up, walking, self.angle if self.plate_frame == "horizontal" else 0.0)
 
     def gravity(self, up: np.ndarray, walking: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return vertical and forward horizontal in the plate's axes, both (3,)."""
-        return _turned(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
+        return _turn_axes(up, walking, -self.angle if self.plate_frame == "surface" else 0.0)
 
     @property
     def name(self) -> Message:
@@ -92,7 +92,7 @@ def ramp_from(angle: object, plate_frame: str = "", *, where: str = "ramp") -> R
     return Ramp(to_si(angle, "rad", where=where), plate_frame)
 
 
-def _turned(up: np.ndarray, walking: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
+def _turn_axes(up: np.ndarray, walking: np.ndarray, angle: float) -> tuple[np.ndarray, np.ndarray]:
     cos, sin = math.cos(angle), math.sin(angle)
     return cos * up - sin * walking, cos * walking + sin * up
 
