@@ -348,7 +348,7 @@ def test_places_are_solved_one_after_the_other_or_in_processes(monkeypatch, proc
     for name, made in (
         ("tread_positions", positions_of), ("_numbers_at", numbers_at), ("in_processes", several),
         ("place_numbers", lambda *_: "own"), ("has_lugs", lambda _: True),
-        ("_turned", lambda *_: {"turned": 1}), ("position_count", lambda *_, **__: 2),
+        ("_turn_and_solve", lambda *_: {"turned": 1}), ("position_count", lambda *_, **__: 2),
     ):  # fmt: skip
         monkeypatch.setattr(solve, name, made)
     parts = fake(case=CASE, objects={}, spacing=1e-3)

@@ -129,7 +129,7 @@ def test_a_contrast_stands_at_the_places_of_both_of_its_treads(monkeypatch):
     monkeypatch.setattr(tread_pairs, "tread_contrasts", lambda: [contrast])
     monkeypatch.setattr(tread_pairs, "corpus", list)
     monkeypatch.setattr(
-        tread_pairs, "_drawn", lambda one, of_case: np.full(3, of_case(one.cases[0]))
+        tread_pairs, "_draw_cof", lambda one, of_case: np.full(3, of_case(one.cases[0]))
     )
     monkeypatch.setattr(tread_pairs, "_published_bounds", lambda one, under: (0.1, under))
     monkeypatch.setattr(tread_pairs, "_place", lambda case: np.full(6, case))
