@@ -306,7 +306,8 @@ def test_a_region_of_a_file_bends_at_its_ball_where_it_is_nearly_the_whole(
         "file_outsole": lambda _: SimpleNamespace(whole_length=whole),
         "surface_map": lambda *_, **__: "map", "trim_map": lambda made, *_: made,
         "_add_joint": lambda case, made, length: jointed.append(length) or made,
-        "check_load": lambda *_: None, "rolls": lambda _: 0.0, "_press_slits": lambda case, made: made,
+        "check_load": lambda *_: None, "rolls": lambda _: 0.0,
+        "_press_slits": lambda case, made: made,
         "_with_cells": lambda case, made, again: made,
     }  # fmt: skip
     for name, fake in fakes.items():

@@ -70,8 +70,13 @@ class TrialsFolder:
     @property
     def command(self) -> str:
         """The command that says the same, in the folder of the project."""
-        parts = ["underfoot trials analyse", json.dumps(f"trials/{self.name}"), "--protocol"]
-        parts += [self.settings["protocol"], "--out", json.dumps(f"results/{self.name} trials")]
+        parts = ["underfoot trials analyse", _in_quotes(f"trials/{self.name}"), "--protocol"]
+        parts += [self.settings["protocol"], "--out", _in_quotes(f"results/{self.name} trials")]
         if self.settings["names"]:
-            parts += ["--names", f"'{self.settings['names']}'"]
+            parts += ["--names", _in_quotes(self.settings["names"])]
         return " ".join(parts + ["--merge-spelling"] * self.settings["merge_spelling"])
+
+
+def _in_quotes(text: str) -> str:
+    """Return a text as one word of a command, for shells of all systems."""
+    return json.dumps(text, ensure_ascii=False)

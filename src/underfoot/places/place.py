@@ -17,7 +17,7 @@ from underfoot.core.remark import Message, Remark
 from underfoot.friction.shoe_class import ShoeClass, shoe_class, slip_tests
 
 from .calibration import FloorReading
-from .joint import CofReading
+from .joint import CofReading, check_kind
 from .machines import machine
 
 ANY_ROUGHNESS = {"rq": {"value": "1.73 um", "uncertainty": "1.91 um"}}
@@ -409,7 +409,7 @@ def _floor_reading(entry: Any, where: str) -> FloorReading:
     value = device.checked(entry["value"], f"{where}.value")
     kind = str(entry.get("kind", "value"))
     spread = _number(entry, "sd", where, 0.0, (1e-6, device.most)) if "sd" in entry else None
-    CofReading(float(device.scale.cof(value)), kind)  # refuses what is none
+    check_kind(kind, f"{where}.kind")
     return FloorReading(device, fluid, value, kind, spread)
 
 
@@ -452,7 +452,9 @@ def _shoe(entry: Mapping[str, Any]) -> PlaceShoe:
             raise InputError("is missing", where=f"{at}.cof", allowed="the COF of the certificate")
         cof = _number(each, "cof", at, 0.0, (0.01, 2.0))
         sd = _number(each, "sd", at, 0.0, (1e-6, 2.0)) if "sd" in each else None
-        readings.append(ShoeReading(test, CofReading(cof, str(each.get("kind", "value")), sd)))
+        kind = str(each.get("kind", "value"))
+        check_kind(kind, f"{at}.kind")
+        readings.append(ShoeReading(test, CofReading(cof, kind, sd)))
     known = shoe_class(str(entry["class"]), f"{where}.class") if "class" in entry else None
     present = entry.get("present", False)
     if not isinstance(present, bool):

@@ -474,7 +474,8 @@ def _wilson(hits: int, count: int) -> tuple[float, float]:
     share, z = hits / count, Z95
     middle = (share + z * z / (2 * count)) / (1 + z * z / count)
     half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
-    return max(middle - half, 0.0), min(middle + half, 1.0)
+    # the ends of none and of all are exact: rounding leaves 1e-17 of them
+    return middle - half if hits else 0.0, middle + half if hits < count else 1.0
 
 
 def _breaches(setting: Setting, runs: Sequence[FullRun]) -> tuple[str, ...]:
