@@ -16,7 +16,7 @@ STANDARD = {"protocol": "level_walking", "names": "", "merge_spelling": False}
 def studies(project: Project) -> list[str]:
     """Return the names of the folders of trials."""
     folders = project.inside("trials").iterdir()
-    return sorted(each.name for each in folders if each.is_dir() and each.name[0] != ".")
+    return sorted(folder.name for folder in folders if folder.is_dir() and folder.name[0] != ".")
 
 
 def free_name(project: Project, wanted: str) -> str:

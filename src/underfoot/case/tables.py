@@ -164,7 +164,7 @@ def _one_sheet(path: Path, headings: Sequence[tuple[str, ...]], where: str) -> S
         with suppress(DataError):  # a sheet without a table
             sheet = read_sheet(path, sheet=name)
             known = {_plain(head) for head in sheet.numbers}
-            if all(known.intersection(each) for each in headings):
+            if all(known.intersection(heading) for heading in headings):
                 fitting.append((name, sheet))
     if len(fitting) > 1:
         raise InputError(

@@ -319,7 +319,7 @@ class Result(Presentable):
 
 def _from_known_fields(cls: Any, entry: dict[str, Any]) -> Any:
     """Return an object of what it knows in an entry, which another version may have written."""
-    return cls(**{each.name: entry[each.name] for each in fields(cls) if each.name in entry})
+    return cls(**{field.name: entry[field.name] for field in fields(cls) if field.name in entry})
 
 
 def _write_text(path: Path, text: str) -> None:

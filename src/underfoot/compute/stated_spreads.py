@@ -141,7 +141,7 @@ def odds_changes(less: float, more: float, normal: Array) -> Array:
 
 def sum_of_draws(draws: Mapping[str, Mapping[str, Array]], name: str) -> Array | float:
     """Return the sum of the draws of a name over all paths; 0 without any."""
-    return sum((each[name] for each in draws.values() if name in each), 0.0)
+    return sum((draw[name] for draw in draws.values() if name in draw), 0.0)
 
 
 def exactly(case: Case, path: str) -> SourcedValue:

@@ -243,9 +243,9 @@ def _content(cell: Any) -> Any:
 
 def _names(code: CodeType) -> Iterable[str]:
     yield from code.co_names
-    for each in code.co_consts:
-        if isinstance(each, CodeType):
-            yield from _names(each)
+    for co_const in code.co_consts:
+        if isinstance(co_const, CodeType):
+            yield from _names(co_const)
 
 
 def _inner_function(part: Any) -> Any:
@@ -257,7 +257,7 @@ def _inner_function(part: Any) -> Any:
 def attributes(part: Any) -> dict[str, Any]:
     """Return what an object holds, without what is computed from that when it is asked for."""
     slots = [vars(base).get("__slots__", ()) for base in type(part).__mro__]
-    names = [name for each in slots for name in ([each] if isinstance(each, str) else each)]
+    names = [name for slot in slots for name in ([slot] if isinstance(slot, str) else slot)]
     held = {name: getattr(part, name) for name in names if hasattr(part, name)}
     held.pop("__weakref__", None)
     return _without_lazy(type(part), {**held, **getattr(part, "__dict__", {})})

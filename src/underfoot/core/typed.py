@@ -94,7 +94,7 @@ def _vulgar(text: str) -> str:
 
 def _decimal(digits: str, text: str, usual: str) -> str | None:
     """Return digits with a decimal point and no thousands, None for what is no number."""
-    signs = [each for each in digits if not each.isdigit()]
+    signs = [digit for digit in digits if not digit.isdigit()]
     if not signs:
         return digits
     last = signs[-1]

@@ -117,7 +117,7 @@ class Records(Mapping[str, Record]):
         """
         with os.scandir(self.folder) as entries:
             files = sorted(entries, key=lambda one: (not one.name.startswith(PACKED), one.name))
-        if self._sizes.keys() - {one.name for one in files}:  # packed: places are others now
+        if self._sizes.keys() - {file.name for file in files}:  # packed: places are others now
             self.__init__(self.folder)
         for one in files:
             path = Path(one.path)

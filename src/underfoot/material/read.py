@@ -191,7 +191,7 @@ def _refuse_strains(table: FileTable, w: np.ndarray) -> None:
     places: dict[tuple[int, int], list[float]] = {}
     for row in zip(np.round(100 * np.log(w)), np.round(kelvin / SAME), strain, strict=True):
         places.setdefault((int(row[0]), int(row[1])), []).append(float(row[2]))
-    repeated = [each for each in places.values() if len(each) > 1]
+    repeated = [place for place in places.values() if len(place) > 1]
     if len(repeated) > 0.5 * len(places) and all(
         max(each) > OTHER_STRAIN * min(each) for each in repeated
     ):

@@ -130,7 +130,9 @@ class FloorCalibration(Presentable):
 
     def heading(self) -> str:
         """Return the title."""
-        return Message("Floor by {readings:; }", readings=[each.text for each in self.readings])
+        return Message(
+            "Floor by {readings:; }", readings=[reading.text for reading in self.readings]
+        )
 
     def headline(self) -> tuple[Message, ...]:
         """Return what the readings say of the floor."""

@@ -164,7 +164,7 @@ class ShoeChoice(Presentable):
 
     def _chance(self, answer: ShoeAnswer) -> float:
         """Return the chance that a shoe is best: one with all that are the same shoe."""
-        return math.fsum(each.best for each in self.shoes if same_shoe(each.shoe, answer.shoe))
+        return math.fsum(shoe.best for shoe in self.shoes if same_shoe(shoe.shoe, answer.shoe))
 
     @property
     def _unlike(self) -> tuple[ShoeAnswer, ...]:
@@ -207,7 +207,7 @@ class ShoeChoice(Presentable):
                     count=count, told=told,
                 )
             ]  # fmt: skip
-        if unlikely := [each.shoe.name for each in self.shoes if self._chance(each) < UNLIKELY]:
+        if unlikely := [shoe.shoe.name for shoe in self.shoes if self._chance(shoe) < UNLIKELY]:
             lines.append(
                 Message(
                     "Hardly the best (chance below {limit:.0f} %): {shoes}.",
@@ -328,7 +328,7 @@ class ShoeChoice(Presentable):
 
     def remarks(self) -> Mapping[str, Sequence[str]]:
         """Return what was assumed."""
-        used = {each.machine for floor in self.place.floors for each in floor.readings}
+        used = {reading.machine for floor in self.place.floors for reading in floor.readings}
         read = used or any(shoe.readings or shoe.known_class for shoe in self.place.shoes)
         notes = [
             Message(
@@ -357,13 +357,13 @@ class ShoeChoice(Presentable):
             "name": self.place.name,
             "shoes": [
                 {
-                    "name": each.shoe.name,
-                    "chance_best": each.best,
-                    "slip_probability": each.slips.value,
-                    "interval_95": each.slips.interval,
-                    "replace": each.replaced,
+                    "name": shoe.shoe.name,
+                    "chance_best": shoe.best,
+                    "slip_probability": shoe.slips.value,
+                    "interval_95": shoe.slips.interval,
+                    "replace": shoe.replaced,
                 }
-                for each in self.shoes
+                for shoe in self.shoes
             ],
             "changes": [
                 {"name": lever.name, "left": list(lever.left), "fewer": lever.fewer}
@@ -630,7 +630,7 @@ def choose_shoe(
     step("another floor")
     today = rates[present.name]
     levers = []
-    others = [each for each in answers if each.shoe.name != present.name]
+    others = [answer for answer in answers if answer.shoe.name != present.name]
     if others:
         other = min(others, key=lambda each: float(rates[each.shoe.name].mean())).shoe.name
         name = Message("{other} instead of {present}", other=other, present=present.name)
@@ -662,7 +662,8 @@ def choose_shoe(
         levers.append(_lever(name, _sum(_slips(place, joint, tiled)), new))
     levers += _cleaning(place, solver, present, states[present.name][False], shares[present.name])
     levers = sorted(
-        (each for each in levers if each.does_something), key=lambda each: (each.left[1], each.name)
+        (lever for lever in levers if lever.does_something),
+        key=lambda each: (each.left[1], each.name),
     )
     measurements = _measurements(place, joint, floor_rq, new_cases, matrix)
     mean = {

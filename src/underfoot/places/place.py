@@ -180,10 +180,10 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
     assumed: list[str] = []
     common = _shares(table.get("fluids"), "fluids") if "fluids" in table else None
     entries = _tables(table, "floor")
-    floors = tuple(_floor(each, common, assumed) for each in entries)
+    floors = tuple(_floor(entry, common, assumed) for entry in entries)
     shoes = tuple(_shoe(each) for each in _tables(table, "shoe"))
     _share_steps(entries, assumed)
-    if common is not None and all("fluids" in each for each in entries):
+    if common is not None and all("fluids" in entry for entry in entries):
         remedy = "Leave these out, or those of the floors"
         raise InputError("each floor has its own", where="fluids", remedy=remedy)
     today = [shoe.name for shoe in shoes if shoe.present]
@@ -252,7 +252,7 @@ def place_of(table: Mapping[str, Any], name: str = "place", folder: Path | None 
 
 def _share_steps(floors: Sequence[Mapping[str, Any]], assumed: list[str]) -> None:
     """Say how steps are shared between floors without areas; refuse areas of some of them."""
-    without = [each["name"] for each in floors if "area" not in each]
+    without = [floor["name"] for floor in floors if "area" not in floor]
     if without and len(without) < len(floors):
         raise InputError(
             "is missing, other floors have one",

@@ -319,7 +319,7 @@ class WearSeries(Presentable):
         """Return the distance (m) and months to each state by name; nothing without a walker."""
         names = ("walked_low_m", "walked_high_m", "months_low", "months_high")
         ends = [(*walk.distance, *walk.months) for walk in self.walked()]
-        return [dict(zip(names, each, strict=True)) for each in ends] or [{} for _ in self.points]
+        return [dict(zip(names, end, strict=True)) for end in ends] or [{} for _ in self.points]
 
     def values(self, name: str) -> np.ndarray:
         """Return a number of all points in SI, nan where it was not determined."""

@@ -168,14 +168,17 @@ def _scene(
     result: Result, quantities: tuple[DrawnQuantity, ...], chosen: DrawnQuantity, pressed: bool
 ) -> _Scene:
     dataset = result.data
-    sole, values, remark, case = _fields(result, [each.name for each in quantities])
+    sole, values, remark, case = _fields(result, [quantity.name for quantity in quantities])
     if pressed and sole.pressed is None:
         raise DataError(
             "the result does not hold the shape of the pressed sole",
             where=result.name,
             remedy="It was made by an older version: run the case again",
         )
-    units = {each.name: str(dataset[each.name].attrs.get("units", "1")) for each in quantities}
+    units = {
+        quantity.name: str(dataset[quantity.name].attrs.get("units", "1"))
+        for quantity in quantities
+    }
     area = np.where(np.isfinite(sole.height), sole.spacing**2, np.nan)
     return _Scene(
         result.name,

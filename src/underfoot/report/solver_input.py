@@ -109,9 +109,9 @@ def with_middle_nodes(nodes: Floats, *bodies: Ints) -> tuple[Floats, *tuple[Ints
     """
     ends = [np.sort(body[:, EDGES[: 3 if body.shape[1] == 3 else 9]], axis=2) for body in bodies]
     edges, place = np.unique(
-        np.concatenate([each.reshape(-1, 2) for each in ends]), axis=0, return_inverse=True
+        np.concatenate([end.reshape(-1, 2) for end in ends]), axis=0, return_inverse=True
     )
-    parts = np.split(len(nodes) + place.ravel(), np.cumsum([each[..., 0].size for each in ends]))
+    parts = np.split(len(nodes) + place.ravel(), np.cumsum([end[..., 0].size for end in ends]))
     made = [np.hstack([body, part.reshape(len(body), -1)])
             for body, part in zip(bodies, parts, strict=False)]  # fmt: skip
     return np.vstack([nodes, nodes[edges].mean(axis=1)]), *made

@@ -257,7 +257,7 @@ def _resolution(heel: SoleShape, spacing: float) -> list[Breach]:
     if tread is not None and tread.depth > 0:
         features.append(("tread.channel_width", "channel", tread.channel_width))
         features.append(("tread.lug_width", "lug", tread.smallest_lug))
-        features += [("tread.grooves", "groove", each.width) for each in tread.grooves]
+        features += [("tread.grooves", "groove", groove.width) for groove in tread.grooves]
         if tread.sipes is not None and _shows_slits(tread.sipes, spacing):
             features.append(("tread.sipes.width", "sipe", tread.sipes.width))
     if heel.arc_channel is not None and heel.arc_channel.depth > 0:

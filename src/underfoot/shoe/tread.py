@@ -313,7 +313,7 @@ class Tread:
         def new(place: tuple[float, float]) -> tuple[float, float]:
             return place[0] + shift[0], place[1] + shift[1]
 
-        grooves = tuple(replace(each, place=new(each.place)) for each in self.grooves)
+        grooves = tuple(replace(groove, place=new(groove.place)) for groove in self.grooves)
         return replace(self, offset=new(self.offset), grooves=grooves)
 
     def _before_yaw(self, x: Array, y: Array) -> tuple[Array, Array]:
@@ -336,7 +336,7 @@ class Tread:
         On a lug the value is minus the distance to its nearest edge.
         """
         x, y = self._before_yaw(x, y)
-        grooves = (each.channel_distance(x, y) for each in self.grooves)
+        grooves = (groove.channel_distance(x, y) for groove in self.grooves)
         return np.maximum.reduce([self._pattern_distance(x, y), *grooves])
 
     def _pattern_distance(self, x: Array, y: Array) -> Array:

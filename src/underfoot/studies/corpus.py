@@ -162,7 +162,7 @@ def compute(options: Options) -> Computed:
             "pair.inside_known": ComputedQuantity.of(inside_known),
             "others.above_rivals": ComputedQuantity.of(best.r2 - strongest.r2),
             "others.gain": ComputedQuantity.of(
-                best.log_density - max(one.log_density for one in rivals)
+                best.log_density - max(rival.log_density for rival in rivals)
             ),
             "priors.r2": ComputedQuantity.of(highest_prior),
             "pair.r2": ComputedQuantity.of(whole_best.r2),

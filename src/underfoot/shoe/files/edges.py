@@ -113,7 +113,7 @@ def section_lines(
             share = low / np.where(crossed, low - high, 1.0)
             points = here + share[..., None] * (ahead - here)
             found_lines.append(points[crossed][:, :2].reshape(-1, 2, 2))
-    return [np.concatenate(each) for each in lines]
+    return [np.concatenate(line) for line in lines]
 
 
 def _merge_lines(lines: Array) -> Any:

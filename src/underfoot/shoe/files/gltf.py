@@ -159,7 +159,7 @@ class _Asset:
         if "mesh" in node:
             if "skin" in node:
                 self._unmet("a skin that bends the mesh", required=True)
-            parts = [self._primitive(*each) for each in self._primitives(node)]
+            parts = [self._primitive(*primitive) for primitive in self._primitives(node)]
             for instance in self._instances(extensions.get(_INSTANCES)):
                 mesh = self.json["meshes"][node["mesh"]]
                 for vertices, faces in parts:

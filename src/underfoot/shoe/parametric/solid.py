@@ -118,7 +118,7 @@ def _on_sole(lugs: Sequence[Outline], shape: SoleShape) -> int:
         else shapely.Polygon(lug.points)
         for lug in lugs
     ]
-    return sum(plan.intersection(each).area > _TOUCHED for each in areas)
+    return sum(plan.intersection(area).area > _TOUCHED for area in areas)
 
 
 def check_printable(shape: SoleShape) -> None:
@@ -128,7 +128,7 @@ def check_printable(shape: SoleShape) -> None:
     if tread is not None and tread.depth > 0:
         fine += [("tread.lug_width", "a lug", tread.smallest_lug)]
         fine += [("tread.channel_width", "a channel", tread.channel_width)]
-        fine += [("tread.grooves", "a groove", each.width) for each in tread.grooves]
+        fine += [("tread.grooves", "a groove", groove.width) for groove in tread.grooves]
         if tread.sipes is not None:
             fine += [("sipes.width", "a sipe", tread.sipes.width)]
             left = tread.sipes.spacing - tread.sipes.width
@@ -252,7 +252,7 @@ def _free_lugs(lugs: Sequence[Outline], shape: SoleShape) -> list[Outline]:
         if shape.inward_distance(around[:, 0], around[:, 1]).min() < clear:
             continue
         (x, y), reach = (low + high) / 2, math.hypot(*(high - low)) / 2 + clear
-        if any(each.channel_distance(x, y) > -reach for each in shape.tread.grooves):
+        if any(groove.channel_distance(x, y) > -reach for groove in shape.tread.grooves):
             continue
         if ((kinks > low[0] - clear) & (kinks < high[0] + clear)).any():
             continue

@@ -336,7 +336,7 @@ def _vertical_line(
     markers: Mapping[str, Marker],
     stated: Vertical | None,
 ) -> tuple[np.ndarray, str]:
-    normals = (plate_normal(each) for each in corners)
+    normals = (plate_normal(corner) for corner in corners)
     framed = [int(np.argmax(np.abs(normal))) for normal in normals if normal is not None]
     if framed:
         return np.eye(3)[Counter(framed).most_common(1)[0][0]], "normal of the force plates"

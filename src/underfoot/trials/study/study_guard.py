@@ -85,9 +85,11 @@ def guarded_files(
     for i, results in enumerate(recordings):
         if results and results[0].checksum:
             bytes_of[results[0].checksum].append(i)
-        values = [v for one in results for v in one.facts.values()]
-        values += [m.value for one in results for m in one.measurements]
-        values += [getattr(step, key) for one in results for step in one.steps for key in _STEP]
+        values = [v for result in results for v in result.facts.values()]
+        values += [m.value for result in results for m in result.measurements]
+        values += [
+            getattr(step, key) for result in results for step in result.steps for key in _STEP
+        ]
         numbers = tuple(float(f"{v:.6g}") for v in values if isinstance(v, float) and v % 1.0)
         if len(numbers) >= 3:
             numbers_of[numbers].append(i)
@@ -121,11 +123,16 @@ def guarded_files(
             ),
         )
     files = [
-        replace(one, verdict=REFUSED, reasons=(refused[i][0], *one.reasons), kinds=(refused[i][1],))
+        replace(
+            result,
+            verdict=REFUSED,
+            reasons=(refused[i][0], *result.reasons),
+            kinds=(refused[i][1],),
+        )
         if i in refused
-        else one
+        else result
         for i, results in enumerate(recordings)
-        for one in results
+        for result in results
     ]
     return sorted(files, key=lambda one: one.file), doubts
 
