@@ -593,7 +593,7 @@ def _with_name(given: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
     if "name" in changes or not isinstance(given.get("name"), str) or not replaced:
         return dict(changes)
     told = [_told_change(path, value) for path, value in replaced.items()]
-    more = [f"and {len(told) - NAMED} more"] if len(told) > NAMED else []
+    more = [Message("and {count} more", count=len(told) - NAMED)] if len(told) > NAMED else []
     return {**changes, "name": ", ".join([given["name"], *told[:NAMED], *more])}
 
 

@@ -237,7 +237,9 @@ def _settle_section(
                 del table[key]
             elif composition.lenient(here):
                 del table[key]
-                composition.dropped[here] = f'not used by {model.key} = "{model.name}"'
+                composition.dropped[here] = Message(
+                    'not used by {key} = "{name}"', key=model.key, name=model.name
+                )
     try:
         table = model.completed(table, composition.folder, path)
     except InputError as error:

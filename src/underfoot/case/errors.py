@@ -150,7 +150,10 @@ def _not_taken(owner: type[Section] | None, key: str, where: str) -> InputError:
         return error
     takers = [name for name, o in owner.options().items() if nearest in o.model_fields]
     choice = " or ".join(f'{owner.key} = "{name}"' for name in takers)
-    pieces = {"nearest": nearest, "remedy": f"{nearest} belongs to {choice}"}
+    pieces = {
+        "nearest": nearest,
+        "remedy": Message("{nearest} belongs to {choice}", nearest=nearest, choice=choice),
+    }
     return InputError(error.what, where=where, **(error.parts | pieces))
 
 

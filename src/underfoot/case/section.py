@@ -295,7 +295,7 @@ class Option(Section):
             remedy = "Give the class another name"
             raise InputError(f"{option} {what}", where=where, remedy=remedy)
         if missing := ", ".join(sorted(cls.__abstractmethods__)):
-            remedy = f"Define it as the other options of {cls.slot} do"
+            remedy = Message("Define it as the other options of {slot} do", slot=cls.slot)
             raise InputError(f"{option} does not define {missing}", where=where, remedy=remedy)
         present[name] = cls
 
@@ -344,7 +344,9 @@ class Option(Section):
         if isinstance(given, str):
             given = {cls.key: given}
         if not isinstance(given, Mapping):
-            allowed = f"one of {', '.join(cls.options())}, or a section with its own keys"
+            allowed = Message(
+                "one of {options}, or a section with its own keys", options=", ".join(cls.options())
+            )
             raise refusal(
                 "input",
                 InputError(

@@ -217,7 +217,12 @@ def _column(sheet: Sheet, unit: str, headings: tuple[str, ...], where: str) -> A
                 refuse_percent(written, where=where)
             factor = to_si(f"1 {written}", unit, where=where)
         except InputError as error:
-            what = f'{sheet.name}: "{written}" is no unit of {where.rpartition(", ")[2]}'
+            what = Message(
+                '{name}: "{written}" is no unit of {column}',
+                name=sheet.name,
+                written=written,
+                column=where.rpartition(", ")[2],
+            )
             raise InputError(what, where=where, allowed=unit) from error
     return np.asarray(sheet.numbers[key], dtype=float) * factor
 

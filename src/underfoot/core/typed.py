@@ -9,6 +9,7 @@ import re
 import unicodedata
 
 from .errors import InputError
+from .remark import Message
 
 MINUS = "-\u2212\u2012\u2013\u2010\u2011\ufe63\uff0d"
 """Signs that people write for a minus: those of keyboards, of typesetting, of spreadsheets."""
@@ -72,7 +73,10 @@ def float_of_text(plain: str) -> float:
     """
     number = float(plain)
     if is_lost(number, plain):
-        raise InputError(f"{plain} is too small to be told from 0", allowed="0, or a larger number")
+        raise InputError(
+            Message("{plain} is too small to be told from 0", plain=plain),
+            allowed="0, or a larger number",
+        )
     return number
 
 

@@ -179,9 +179,12 @@ class Store:
             raise InputError(
                 "was changed after its designs were set",
                 where=str(file),
-                remedy="Copy it to where your studies are and give underfoot study run "
-                f"COPY.toml --out {self.folder}: designs are set anew, and cases that both have "
-                "are kept",
+                remedy=Message(
+                    "Copy it to where your studies are and give underfoot study run "
+                    "COPY.toml --out {folder}: designs are set anew, and cases that "
+                    "both have are kept",
+                    folder=self.folder,
+                ),
             )
         return plan
 

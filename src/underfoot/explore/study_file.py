@@ -158,7 +158,7 @@ def read_plan(
             reader.refuse_if(
                 goal.numbers(states, len(draws)) < 2,
                 "outputs",
-                f"{goal} is a statistic of one number",
+                Message("{goal} is a statistic of one number", goal=goal),
                 remedy="Write several [conditions], or draws of what is [uncertain]",
             )
     budget, grid = method.budget, method.design == "grid"
@@ -168,7 +168,9 @@ def read_plan(
         budget is not None and budget < least,
         "method.budget",
         f"a budget of {budget} runs is less than {takes}",
-        allowed=f"from {least} ({'designs times ' * grid}conditions times draws)",
+        allowed=Message(
+            "from {least} ({grid}conditions times draws)", least=least, grid="designs times " * grid
+        ),
     )
     cases = plan.designs * plan.cases_per_design
     low, high = (
@@ -212,7 +214,11 @@ def _on_finer_grid(
     if not changes:
         return case, ()
     settings = ", ".join(f"{name} = {value * 1e3:g} mm" for name, value in changes.items())
-    words = f"The narrowest lug or channel ({narrowest * 1e3:g} mm) needs a finer grid: {settings}"
+    words = Message(
+        "The narrowest lug or channel ({narrowest:g} mm) needs a finer grid: {settings}",
+        narrowest=narrowest * 1000.0,
+        settings=settings,
+    )
     try:
         return case.replace(changes), (f"{words}.",)
     except InputError as error:

@@ -18,6 +18,7 @@ from typing import Any
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core.files import whole_folder
 from underfoot.core.presentation import Presentable, Table
+from underfoot.core.remark import Message
 from underfoot.core.text import harmless
 
 Writer = Callable[[Path], object]
@@ -137,8 +138,15 @@ def _reason(error: Exception) -> str:
         return f"{(error.strerror or str(error)).lower()}; {remedy}."
     if isinstance(error, ImportError):
         package = (error.name or str(error)).partition(".")[0]
-        return f"the package {package} is missing; install it with: pip install {package}"
-    return f"internal error ({type(error).__name__}: {error}); please report it."
+        return Message(
+            "the package {package} is missing; install it with: pip install {package}",
+            package=package,
+        )
+    return Message(
+        "internal error ({name}: {error}); please report it.",
+        name=type(error).__name__,
+        error=error,
+    )
 
 
 def _rescue(lost: Mapping[str, Writer]) -> str:
@@ -147,8 +155,8 @@ def _rescue(lost: Mapping[str, Writer]) -> str:
     saved = [name for name, write in lost.items() if not _failure(folder / name, write)]
     if not saved:
         folder.rmdir()
-        return f"Not saved anywhere: {', '.join(lost)}."
-    return f"Saved in {folder} instead: {', '.join(saved)}."
+        return Message("Not saved anywhere: {lost}.", lost=", ".join(lost))
+    return Message("Saved in {folder} instead: {saved}.", folder=folder, saved=", ".join(saved))
 
 
 def _csv_cell(value: Any) -> Any:

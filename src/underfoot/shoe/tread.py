@@ -193,7 +193,13 @@ class Tread:
             if value is not None and name in lengths:
                 positive(value, f"tread.{name}")
         most = math.radians(75 if self.pattern == "chevrons" else 180)
-        between(self.angle, -most, most, "tread.angle", f"at most {math.degrees(most):g} deg")
+        between(
+            self.angle,
+            -most,
+            most,
+            "tread.angle",
+            Message("at most {degrees:g} deg", degrees=math.degrees(most)),
+        )
         if self.ring_width is not None and self.ring_width >= self.lug_width / 2:
             raise InputError(
                 Message(

@@ -233,7 +233,7 @@ def _sdf(path: Path, fill_missing: bool) -> Profile | HeightMap:
     heights = np.asarray(found.data, dtype=float).T
     if heights.shape[1] == 1:
         heights, sides = heights[:, 0], sides[:1]
-    how = f"read as SDF ({found.header.revision.value})"
+    how = Message("read as SDF ({value})", value=found.header.revision.value)
     return _measured_surface(heights, sides, how, fill_missing, path)
 
 

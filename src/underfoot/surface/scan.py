@@ -282,7 +282,7 @@ def read_scan(
         lines, level, cutoff, max(SHORT_CUTOFF, resolved.wavelength), lay, surface
     )
     if areal is not None:
-        source = f"ISO 25178-2 (Sq), cut-off {display(cutoff, 'm')}"
+        source = Message("ISO 25178-2 (Sq), cut-off {cutoff}", cutoff=display(cutoff, "m"))
         values["rq"] = replace(values["rq"], value=areal, source=source)
     if sections < SECTIONS:
         taken = {"count": sections, "length": Amount(cutoff, "m")}

@@ -115,7 +115,7 @@ class IsotropicSpectrum(_Spectrum):
             density=self.density[inside],
             area=self.area[inside],
             reliable=(max(low, self.reliable[0]), min(high, self.reliable[1])),
-            notes=(*self.notes, f"cut to {low:g} to {high:g} rad/m"),
+            notes=(*self.notes, Message("cut to {low:g} to {high:g} rad/m", low=low, high=high)),
         )
 
 

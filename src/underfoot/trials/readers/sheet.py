@@ -268,7 +268,7 @@ def workbook_rows(data: bytes, where: str, sheet: str | None, notes: list[str]) 
     most = max(counts.values())
     name = next(name for name, count in counts.items() if 2 * count >= most)
     if len(sheets) > 1:
-        notes.append(f'sheet "{name}" of {", ".join(sheets)}')
+        notes.append(Message('sheet "{name}" of {sheets}', name=name, sheets=", ".join(sheets)))
     return sheets[name]
 
 

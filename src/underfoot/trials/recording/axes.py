@@ -42,7 +42,7 @@ class Ramp:
     def __post_init__(self) -> None:
         if not abs(self.angle) <= _STEEPEST:
             allowed = 'from "-30 deg" (walking down) to "30 deg" (walking up)'
-            words = f"a ramp of {math.degrees(self.angle):.4g} deg"
+            words = Message("a ramp of {degrees:.4g} deg", degrees=math.degrees(self.angle))
             raise InputError(words, where="ramp", allowed=allowed)
         if self.plate_frame and self.plate_frame not in PLATE_FRAMES:
             raise unknown_name("plate frame", self.plate_frame, PLATE_FRAMES, where="plate_frame")

@@ -176,7 +176,7 @@ def _job(job: tuple[Any, ...]) -> list[FileResult]:
     try:
         checksums = [file_checksum(path) for path in files]
     except OSError as error:
-        reason = f"can't be read: {error.strerror or error}"
+        reason = Message("can't be read: {strerror}", strerror=error.strerror or error)
         return [FileResult(name, "", REFUSED, (reason,), conditions=noted)]
     key = content_hash(
         base, checksums, name, [p.name for p in files], noted, list(map(repr, edits))
@@ -295,7 +295,7 @@ def _check_whole_edits(edits: list[Edit], trials: int, protocol: Protocol) -> No
             )
             raise EditError(text, where=edit.where, allowed="exclude")
         if edit.step not in range(1, trials + 1):
-            text = f"there is no {edit.step_words}"
+            text = Message("there is no {step_words}", step_words=edit.step_words)
             raise EditError(text, where=edit.where, allowed=f"1 to {trials}")
         if any(edit.step == other.step for other in edits[:i]):
             raise EditError(
