@@ -59,7 +59,7 @@ def read_pose_json(draft: RecordingDraft) -> Trial:
             rows = [[np.nan] * 3 if v is None else list(v)[:3] for v in path_of]
             values = np.array(rows, dtype=float)
         except (TypeError, ValueError):  # a coordinate is missing, or a word
-            values = np.empty(0)
+            values = np.empty((0, 0))
         if values.ndim != 2 or values.shape[1] != 3 or values.size > _MOST:
             raise draft.error(Message("{name} has no three coordinates a frame", name=name))
         places[str(name)] = values
