@@ -48,7 +48,7 @@ def give(sole):
     return float(np.average(field[sole.land], weights=sole.cut.area[sole.land]))
 
 
-@pytest.mark.parametrize("degrees", [0, 17, 30, 45, 73, 90])
+@pytest.mark.parametrize("degrees", [0, 17, 45, 90])
 def test_slits_are_as_long_as_drawn_at_any_angle(degrees):
     sole, width, fine = mapped(siped(math.radians(degrees)), 0.8 * MM), 0.3 * MM, 0.02 * MM
     places = (np.arange(2000) + 0.5) * fine

@@ -103,7 +103,7 @@ def test_blocks_give_way_as_elements_of_high_order_say(side, height):
 
 
 @pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize("spacing", [1e-3, 0.6e-3])
+@pytest.mark.parametrize("spacing", [1e-3, pytest.param(0.6e-3, marks=pytest.mark.slow)])
 def test_the_gap_under_a_bevel_has_the_shape_of_elements_of_order_4(body, spacing):
     """Along the middle within 3 % of the largest rise behind the facet's front (5.5 % at it on
     the coarse grid), the tilt of the facet within 3 %, 15 mm beside the middle within 6 %."""

@@ -18,6 +18,7 @@ from itertools import product
 from pathlib import Path
 
 import underfoot
+from source_trees import tree
 
 PACKAGE = Path(underfoot.__file__).parent
 APART = ("cli/", "studies/", "block/", "reference/")
@@ -96,8 +97,7 @@ def _names(node):
 def trees():
     """Return the syntax tree of each file."""
     return {
-        path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_text(encoding="utf-8"))
-        for path in sorted(PACKAGE.rglob("*.py"))
+        path.relative_to(PACKAGE).as_posix(): tree(path) for path in sorted(PACKAGE.rglob("*.py"))
     }
 
 

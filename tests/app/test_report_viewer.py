@@ -540,7 +540,7 @@ def test_the_word_at_the_toe_stays_whole_in_the_picture(page):
     for width in (390, 1280):
         with opened(page, width=width) as session:
             assert session.value(beyond) <= 0.5
-            for way in [-60] * 12 + [60] * 16:
+            for way in [-120] * 6 + [120] * 8:
                 session.value(zoom.replace("WAY", str(way)))
                 session.settle()
                 assert session.value(beyond) <= 0.5

@@ -60,7 +60,7 @@ def until(condition, seconds=90):
 def finished(tmp_path_factory):
     """Return the folder of a study that ran without a break, in this process."""
     folder = tmp_path_factory.mktemp("study")
-    (folder / "heel.toml").write_text(STUDY.replace("STEPS", "3"))
+    (folder / "heel.toml").write_text(STUDY.replace("STEPS", "2"))
     done = called("study", "run", "heel.toml", "--workers", "1", folder=folder)
     assert done.returncode == 0, done.stderr
     return folder, done
@@ -68,7 +68,7 @@ def finished(tmp_path_factory):
 
 def test_a_study_leaves_tables_and_a_page_and_says_what_came_of_it(finished):
     folder, done = finished
-    assert "6 of 6 cases of 6 designs ended: 6 computed." in done.stdout
+    assert "4 of 4 cases of 4 designs ended: 4 computed." in done.stdout
     assert "The front has" in done.stdout
     names = {path.name for path in (folder / "out" / "heel").iterdir()}
     assert {"results.csv", "results.parquet", "report.html", "study.toml"} <= names
@@ -122,9 +122,9 @@ def test_a_plain_sweep_needs_no_extra(tmp_path):
 def test_check_status_best_and_export(finished):
     folder, _ = finished
     plain = json.loads(called("study", "check", "heel.toml", "--json", folder=folder).stdout)
-    assert (plain["cases"], plain["infeasible"]) == (6, {})
+    assert (plain["cases"], plain["infeasible"]) == (4, {})
     plain = json.loads(called("study", "status", "out/heel", "--json", folder=folder).stdout)
-    assert plain["endings"] == {"computed": 6}
+    assert plain["endings"] == {"computed": 4}
     assert 0.3 < plain["busy"] <= 1.0
     best = json.loads(called("study", "best", "out/heel", "--json", folder=folder).stdout)
     assert all(one["front"] for one in best)

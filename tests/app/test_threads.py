@@ -96,8 +96,7 @@ def answered(question, folder, threads):
 @pytest.mark.parametrize(
     "question",
     [
-        "run",
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("risk", "study", "worker")),
+        *(pytest.param(n, marks=pytest.mark.slow) for n in ("run", "risk", "study", "worker")),
         *(pytest.param(name, marks=pytest.mark.study) for name in ("slip", "validate")),
     ],
 )

@@ -12,28 +12,9 @@ pytest.importorskip("nicegui")
 
 from machine import slowness
 from underfoot.app.jobs import JobQueue, Lane
-from underfoot.core import InputError
 from underfoot.core.errors import Cancelled
 
-HERE = "test_web_jobs:"
-
-
-def doubled(number, progress):
-    progress("half way", 0.5)
-    return 2 * number
-
-
-def deaf(seconds, progress):
-    progress("deaf", 0.1)
-    time.sleep(seconds)
-
-
-def refused(progress):
-    raise InputError("too fast", where="motion.speed", allowed="at most 5 m/s")
-
-
-def killed(progress):
-    os._exit(1)
+HERE = "short_jobs:"
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from package_messages import filled
 from web_app import coarsened, drawn, page_of, served, settled
 
 from outsole_bodies import grooved, heel_body, triangles, write_stl
+from source_trees import nodes
 from underfoot.core.errors import InputError, unknown_name
 from underfoot.core.remark import Message, Remark, join_lines
 
@@ -202,9 +203,8 @@ def sentences_with_options():
     for path in package.rglob("*.py"):
         if path.relative_to(package).as_posix().startswith(APART):
             continue
-        tree = ast.parse(path.read_text("utf-8"))
-        explained = {id(each.value) for each in ast.walk(tree) if isinstance(each, ast.Expr)}
-        for each in ast.walk(tree):
+        explained = {id(each.value) for each in nodes(path) if isinstance(each, ast.Expr)}
+        for each in nodes(path):
             if isinstance(each, ast.JoinedStr):
                 parts = [p.value if isinstance(p, ast.Constant) else "x" for p in each.values]
                 explained |= set(map(id, each.values))

@@ -9,6 +9,8 @@ from string import Formatter
 import pytest
 from package_messages import Forms, Piece, Words, filled, messages
 
+from source_trees import nodes
+
 pytest.importorskip("nicegui")
 
 import underfoot.app
@@ -74,14 +76,14 @@ def said_by_the_package():
         if path.suffix != ".py":
             texts += [path.read_text(encoding="utf-8")] if FOLDER not in path.parents else []
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             name = next(
                 (getattr(node, key) for key in ("arg", "name", "id") if hasattr(node, key)), ""
             )
             said = node.value if isinstance(node, ast.Constant) else name
             if isinstance(said, str):
                 texts += [said, said.replace("_", " ")] if " " not in said else [said]
-    return " ".join("\n".join(texts).lower().split())
+    return " ".join("\n".join(dict.fromkeys(texts)).lower().split())
 
 
 SPEAKING = (".py", ".html", ".js", ".toml", ".csv")

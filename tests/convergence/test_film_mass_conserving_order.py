@@ -18,7 +18,7 @@ def gap(cells, dimples):
     return profile + 2 * H0 * np.clip(1 - (u * u + v * v) / 0.35**2, 0, None) ** 2
 
 
-@pytest.mark.parametrize("dimples", [0, 1, 3])
+@pytest.mark.parametrize("dimples", [0, 3])
 def test_load_is_second_order_across_rupture_and_reformation(dimples):
     """Errors beside the load on the finest grid; a third of the film cavitates."""
     sizes = (24, 32, 48, 64, 96)

@@ -85,8 +85,8 @@ def test_the_film_converges_from_below_at_first_order():
     assert shares[0] == pytest.approx(limit, rel=0.10)  # the cells of a run by default
 
 
-@pytest.mark.parametrize("spacing", [1e-3, 0.6e-3])
-def test_the_place_of_the_corner_on_the_cells_does_not_matter(spacing):
+def test_the_place_of_the_corner_on_the_cells_does_not_matter():
+    spacing = 1e-3
     shares = [share(spacing, 16, 30e-3 + part * spacing) for part in (0.0, 0.25, 0.5, 0.75)]
     assert max(shares) < 1.04 * min(shares)
 

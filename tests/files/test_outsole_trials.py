@@ -14,9 +14,10 @@ from scipy.spatial.transform import Rotation
 
 import trial_soles as made
 from outsole_bodies import heel_body, sole_body, triangles
+from soles_solved import sole_of_file, sole_of_mesh
 from underfoot.core import DataError, InputError
 from underfoot.shoe._kernels.covering_discs import channel_width
-from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file, outsole_from_mesh
+from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file
 from underfoot.shoe.files.cad import stated_unit
 from underfoot.shoe.files.read import read_mesh
 from underfoot.shoe.tread_measures import tread_measures
@@ -29,7 +30,7 @@ LONG = ("scan", "underside", "assembly")
 
 def read(corners, settings=WHOLE, **parts):
     mesh = Mesh(np.ascontiguousarray(corners, dtype=np.float32), "made here", **parts)
-    return outsole_from_mesh(mesh, settings)
+    return sole_of_mesh(mesh, settings).outsole
 
 
 def said(outsole):
@@ -48,8 +49,8 @@ def test_files_are_read_right_without_an_option(tmp_path, name):
     settings = HALF if trial.truth.width or "holes" in name else WHOLE
     if name == "floor plane of a scan":  # on 0.5 mm the edges of its lugs lie on cells' middles
         settings = FileSettings()
-    found = outsole_from_file(trial.write(tmp_path), settings)
-    measures, truth = tread_measures(found.surface), trial.truth
+    solved, _ = sole_of_file(trial.write(tmp_path), settings)
+    found, measures, truth = solved.outsole, solved.measures, trial.truth
     assert measures.land_ratio == pytest.approx(truth.land, abs=0.02)
     assert measures.length * 1e3 == pytest.approx(truth.length, abs=2)
     if truth.depth:
@@ -84,7 +85,7 @@ def test_either_shoe_of_a_pair_can_be_chosen(tmp_path):
 def test_draft_is_that_of_the_walls(tmp_path):
     for name, degrees in (("draft of 8 degrees", 8.0), ("drafted piece 70 x 66", 8.0),
                           ("hexagons, flat", 0.0)):  # fmt: skip
-        found = outsole_from_file(TRIALS[name].write(tmp_path), HALF)
+        found = sole_of_file(TRIALS[name].write(tmp_path), HALF)[0].outsole
         assert np.degrees(found.draft) == pytest.approx(degrees, abs=0.2)
 
 
@@ -141,7 +142,7 @@ def test_loose_triangles_are_no_sole():
         read(corners)
 
 
-@pytest.mark.parametrize("place", [(900, 900, 0), (-150, 0, 40), (150, 10, -200)])
+@pytest.mark.parametrize("place", [(900, 900, 0), (150, 10, -200)])
 def test_a_speck_apart_from_the_sole_is_left_out(place):
     sole = plain_sole(lugs=made.bars)
     speck = np.array(place) + np.array([[[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]]])
@@ -154,7 +155,7 @@ def test_a_speck_apart_from_the_sole_is_left_out(place):
     assert "speck apart" in said(found)
 
 
-@pytest.mark.parametrize("gap", [0.02, 0.3, 1.0])
+@pytest.mark.parametrize("gap", [0.02, 1.0])
 def test_lugs_that_float_under_their_base_are_no_pair(gap):
     base = made.slab(PLAN, 4.0, 4.0 + made.SLAB)
     lugs = [
@@ -371,7 +372,7 @@ def plain_sole(plan=PLAN, lugs=made.hexagons):
     return made.treaded(plan, lugs(plan), 4.0)[0]
 
 
-@pytest.mark.parametrize("length", [85, 110, 137, 150, 165])
+@pytest.mark.parametrize("length", [85, 137, 165])
 def test_forepart_is_no_heel_turned_round(length):
     piece = PLAN.intersection(made.shapely.box(298.5 - length, -200, 400, 200))
     found = read(plain_sole(piece))
@@ -411,9 +412,9 @@ def heel_cut(degrees, sides=35.5, width=70.0):
     return body.intersection(shapely.Polygon([*front, (-9, width)]))
 
 
-@pytest.mark.parametrize("turned", [0, 90])
 @pytest.mark.parametrize(
-    ("degrees", "sides"), [(0, 34), (7.3, 31), (-12, 28), (20, 35.5), (15, 42)]
+    ("degrees", "sides", "turned"),
+    [(0, 34, 90), (7.3, 31, 0), (-12, 28, 90), (20, 35.5, 0), (20, 35.5, 90), (15, 42, 0)],
 )
 def test_a_heel_as_wide_as_long_points_to_its_cut(degrees, sides, turned):
     plan = made.shapely.affinity.rotate(heel_cut(degrees, sides), turned, origin=(0, 0))
@@ -421,8 +422,10 @@ def test_a_heel_as_wide_as_long_points_to_its_cut(degrees, sides, turned):
     assert found.forward == ("+x", "+y")[turned // 90]
 
 
-@pytest.mark.parametrize("height", [10.0, 0.0], ids=("behind the sole", "level with its land"))
-@pytest.mark.parametrize("margin", [40, 5, 0, -5])
+@pytest.mark.parametrize(
+    ("margin", "height"),
+    [(40, 10.0), (-5, 10.0), (5, 0.0), (0, 0.0)],  # behind the sole, level with its land
+)
 def test_table_plane_at_any_margin_is_cut(margin, height):
     x0, y0, x1, y1 = PLAN.bounds
     size = x1 - x0 + 2 * margin, y1 - y0 + 2 * margin, 0.001
@@ -505,8 +508,9 @@ def test_file_of_a_midsole_alone_is_refused_by_its_name():
     assert read(plain_sole(), chosen, **mesh).surface.length == pytest.approx(0.2985, abs=1e-3)
 
 
-@pytest.mark.parametrize("spacing", [0.25e-3, 0.5e-3])
-@pytest.mark.parametrize("channel", [2.0, 3.0, 4.0])
+@pytest.mark.parametrize(
+    ("channel", "spacing"), [(2.0, 0.25e-3), (3.0, 0.5e-3), (4.0, 0.25e-3), (4.0, 0.5e-3)]
+)
 def test_channel_is_as_wide_as_drawn_on_every_grid(channel, spacing):
     piece = PLAN.intersection(made.shapely.box(-10, -200, 60, 200))
     sole = plain_sole(piece, lambda plan: made.bars(plan, 6.0, channel))

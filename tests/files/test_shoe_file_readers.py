@@ -13,9 +13,10 @@ from outsole_bodies import (
     turned,
     write_stl,
 )
+from soles_solved import sole_of_file, sole_of_mesh
 from underfoot.core import DataError, InputError
 from underfoot.shoe import surface_map
-from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file, outsole_from_mesh
+from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file
 from underfoot.shoe.files.read import read_mesh
 from underfoot.shoe.tread_measures import tread_measures
 
@@ -43,7 +44,8 @@ def plain_sole(sole):
 
 
 def read(corners, settings=COARSE, unit=None):
-    return outsole_from_mesh(Mesh(np.asarray(corners, np.float32), "made here", unit), settings)
+    mesh = Mesh(np.asarray(corners, np.float32), "made here", unit)
+    return sole_of_mesh(mesh, settings).outsole
 
 
 def said(outsole):
@@ -58,7 +60,7 @@ def test_every_mesh_format_holds_the_same_outsole(tmp_path, heel, plain_heel, ki
         write_stl(path, heel)
     else:
         path.write_bytes(_exported(mesh, kind))
-    found = outsole_from_file(path, COARSE)
+    found = sole_of_file(path, COARSE)[0].outsole
     assert found.faces == heel.shape[0]
     height = plain_heel.surface.height
     assert found.surface.height.shape == height.shape
@@ -88,7 +90,7 @@ def test_height_map_is_the_body_it_was_made_from(heel):
 
 @pytest.mark.parametrize(("unit", "metres"), [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)])
 def test_unit_is_found_from_the_length(sole, unit, metres):
-    found = read(sole * (1e-3 / metres))
+    found = read(sole * (1e-3 / metres), FileSettings(spacing=1e-3))
     assert found.unit == metres
     assert f"unit {unit} (" in said(found)
     assert found.whole_length == pytest.approx(0.28, abs=1e-3)

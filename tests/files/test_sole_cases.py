@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import sole_forms as made
+from soles_solved import sole_of_file
 from underfoot.core import DataError
 from underfoot.shoe.files import FileSettings, Mesh, outsole_from_file, outsole_from_mesh, read_mesh
 from underfoot.shoe.tread_measures import tread_measures
@@ -18,6 +19,7 @@ FOLDER = Path(__file__).parents[1] / "data" / "soles"
 RIGHT = tomllib.loads((FOLDER / "right.toml").read_text())
 TOUCHING = ("heel", "heel_of_hexagons", "heel_of_bars", "sole_of_bars", "inset_hexagons")
 SLOW = ("ngon", "rel.", "tri.obj", "bare", "sole_components", "sole_half")
+FINE = "f1_"  # its land is right within 1 % on the grid of the default alone
 CASES = [
     pytest.param(kind, name, marks=[pytest.mark.slow] if name.startswith(SLOW) else [])
     for kind, truth in RIGHT.items()
@@ -35,15 +37,17 @@ def test_a_file_gives_its_right_value(kind, name):
     if name.endswith("3dm"):
         pytest.importorskip("rhino3dm")
     truth = RIGHT[kind]
-    found = outsole_from_file(FOLDER / name)
-    measures = tread_measures(found.surface)
+    fine = name.startswith(FINE)
+    settings = None if fine else FileSettings(spacing=0.5e-3)
+    solved, told = sole_of_file(FOLDER / name, settings)
+    found, measures = solved.outsole, solved.measures
     assert (measures.length * 1e3, measures.width * 1e3) == pytest.approx(truth["size"], abs=0.7)
     assert measures.plan_area * 1e4 == pytest.approx(truth["plan"], rel=0.005)
     assert measures.land_ratio == pytest.approx(truth["land"], rel=truth.get("tolerance", 0.01))
     assert measures.channel_depth[1] * 1e3 == pytest.approx(truth["depth"], abs=0.05)
     assert measures.lug_count == pytest.approx(truth["lugs"], abs=truth.get("more_lugs", 0))
     assert found.forward == truth.get("forward", found.forward)
-    text = " ".join(found.surface.remarks)
+    text = " ".join((*found.surface.remarks, told))
     assert "ormals" not in text
     if kind in TOUCHING:  # the lugs of others reach into their base
         assert "tolerated" not in text.replace("tolerated, the lowest" * (name[0] == "e"), "")
@@ -292,8 +296,12 @@ BODIES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("turned", [False, True])
-@pytest.mark.parametrize("name", BODIES)
+ON_ITS_HEAD = ("base and each lug", "one sole on a table", "all in layers, no names")
+
+
+@pytest.mark.parametrize(
+    ("name", "turned"), [*((n, False) for n in BODIES), *((n, True) for n in ON_ITS_HEAD)]
+)
 def test_a_sole_among_bodies_is_told_by_contact(name, turned):
     bodies = BODIES[name]
     if turned:  # on its head: down is +z of the file

@@ -31,6 +31,7 @@ from underfoot.surface import (
 )
 from underfoot.surface.lay import texture
 
+EVEN, UNEVEN = (1e-5, 1e-5), (1e-5, 1.6e-5)  # m, the sides of cells
 FORMS = Path(__file__).parents[1] / "data" / "surface_forms"
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9}
 
@@ -335,8 +336,10 @@ def test_a_column_that_counts_the_rows_is_no_position(tmp_path, first):
         read_surface(tmp_path / "a.csv")
 
 
-@pytest.mark.parametrize("degrees", [0, 30, 45, 90, 135, 160])
-@pytest.mark.parametrize("sides", [(1e-5, 1e-5), (1e-5, 1.6e-5)])
+@pytest.mark.parametrize(
+    ("degrees", "sides"),
+    [(0, EVEN), (30, UNEVEN), (45, EVEN), (90, UNEVEN), (135, UNEVEN), (160, EVEN)],
+)
 def test_a_lay_is_named_and_numbers_are_across_it(tmp_path, degrees, sides):
     made = ridges(degrees, 256, 256, sides)
     (tmp_path / "a.gsf").write_bytes(gsf(made.heights, sides))
@@ -352,9 +355,17 @@ def test_a_lay_is_named_and_numbers_are_across_it(tmp_path, degrees, sides):
     assert "lay" in " ".join(scan.headline())
 
 
-@pytest.mark.parametrize(("first", "second"), [(0, 90), (20, 110), (30, 150), (45, 100)])
-@pytest.mark.parametrize("ratio", [1.0, 0.5])
-@pytest.mark.parametrize("sides", [(1e-5, 1e-5), (1e-5, 1.6e-5)])
+@pytest.mark.parametrize(
+    ("first", "second", "ratio", "sides"),
+    [
+        (0, 90, 1.0, EVEN),
+        (0, 90, 0.5, UNEVEN),
+        (20, 110, 0.5, UNEVEN),
+        (30, 150, 1.0, UNEVEN),
+        (45, 100, 0.5, EVEN),
+        (45, 100, 1.0, UNEVEN),
+    ],
+)
 def test_crossed_lays_are_named_and_both_count(tmp_path, first, second, ratio, sides):
     one, other = (ridges(angle, 256, 256, sides).heights for angle in (first, second))
     (tmp_path / "a.gsf").write_bytes(gsf(one + ratio * other, sides))

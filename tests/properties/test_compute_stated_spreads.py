@@ -56,11 +56,9 @@ def plain() -> Any:
     ("path", "spread"),
     [
         (VISCOSITY, 0.11),
-        ("motion.speed", 0.15),
         ("motion.normal_force", 100.0),
         ("shoe.material.shore_a", 6.0),
         ("shoe.heel.length", 5e-3),
-        ("shoe.tread.channel_width", 0.1e-3),
     ],
 )
 def test_the_film_s_part_is_that_of_runs_at_one_standard_deviation(plain, path, spread):

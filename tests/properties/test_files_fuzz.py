@@ -27,7 +27,7 @@ def seed(name):
 @pytest.mark.filterwarnings("ignore::ImportWarning")  # a library's own choices
 @pytest.mark.parametrize("name", SEEDS)
 @settings(
-    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(damage=damages())
 def test_a_damaged_file_is_read_or_refused_in_words(tmp_path, name, damage):
@@ -46,7 +46,7 @@ def test_what_is_damaged_was_whole(tmp_path, name):
 # h5netcdf's File that could not be opened fails once more where it is collected
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(damage=damages())
 @example(damage=("overwrite", True, 0.2, b"\xff" * 8, b""))

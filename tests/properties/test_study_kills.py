@@ -113,7 +113,7 @@ def calls(plan, folder, lead, at):
 
 
 @pytest.mark.parametrize("lead", [True, False])
-@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("step", [11, pytest.param(1, marks=pytest.mark.slow)])
 def test_killed_at_every_write_the_designs_set_are_those_planned(made_up, tmp_path, lead, step):
     total = calls(made_up, tmp_path / "whole", lead, at=10**9)
     whole = answers(tmp_path / "whole")
@@ -211,7 +211,7 @@ def test_a_study_whose_designs_are_all_the_same_ends_and_tells_one(tmp_path, mon
     assert deviation < 1e-3
 
 
-@pytest.mark.parametrize("place", range(0, 2400, 160))
+@pytest.mark.parametrize("place", range(0, 2400, 480))
 def test_a_list_of_jobs_with_one_changed_byte_is_set_again(made_up, tmp_path, place):
     run(made_up, tmp_path, True)
     whole, path = answers(tmp_path), tmp_path / "jobs.jsonl"

@@ -43,7 +43,7 @@ def _refusal(path: Path) -> DataError | None:
 
 @pytest.mark.parametrize("name", FILES)
 @settings(
-    max_examples=25,
+    max_examples=12,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
@@ -68,7 +68,7 @@ def workbook(tmp_path_factory) -> bytes:
 
 
 @settings(
-    max_examples=40,
+    max_examples=20,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
@@ -80,7 +80,7 @@ def test_damaged_workbooks_never_raise_anything_else(tmp_path, workbook, damage)
     assert refused is None or refused.where
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(data=st.binary(max_size=3000), suffix=st.sampled_from([".c3d", ".csv", ".mot", ".trc"]))
 def test_random_bytes_are_refused(tmp_path_factory, data, suffix):
     path = tmp_path_factory.mktemp("random") / f"x{suffix}"

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from block_loops import plain, written_loops
 from snapshot import held, refusal
-from underfoot.block._kernels import energy, generate, motion, names
+from underfoot.block._kernels import motion, names
 from underfoot.block._kernels.active_set import contact_at_height, contact_under_load
 from underfoot.block._kernels.floor import floor_at_points
 from underfoot.block._kernels.hexahedron import mean_gradient, stiffness_matrices
@@ -190,24 +191,6 @@ def test_explicit_marches(file_regression, name):
     held(file_regression, told(made), f"march_{name}")
     assembly = assemble_march(block, FLOOR, material, load, given)
     assert assembly.impact_friction >= 0
-
-
-def plain(kernel: Any) -> Any:
-    """Return a kernel as it is written."""
-    return getattr(kernel, "py_func", kernel)
-
-
-def written_loops() -> dict[str, Any]:
-    """Return the loops of all kinds of material as they are written, not compiled."""
-    loops: dict[str, Any] = {
-        "njit": lambda *_, **__: lambda kernel: kernel, "prefer_wide_registers": lambda: None,
-        "element_energies": plain(energy.element_energies), "contact": plain(motion.contact),
-        "move": plain(motion.move),
-    }  # fmt: skip
-    text = "\n".join(line for line in generate.source().splitlines()
-                     if not line.startswith("from "))  # fmt: skip
-    exec(text, loops)
-    return loops
 
 
 def test_steps_of_the_written_loops(file_regression):

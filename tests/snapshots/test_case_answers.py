@@ -1,4 +1,8 @@
-"""Cases: every key with its range and default, every option, scenarios, refusals and texts."""
+"""Cases: every key with its range and default, every option, scenarios, refusals and texts.
+
+Of ``underfoot.case.describe``, ``underfoot.case.schema``, ``underfoot.case.tables``,
+``underfoot.case.template``, ``underfoot.case.versions``.
+"""
 
 import math
 from importlib import import_module
@@ -32,7 +36,7 @@ from underfoot.case.parts import (
     unknown_path,
 )
 from underfoot.case.quantity import default_of, one_spelling, one_value
-from underfoot.case.section import quantity_of
+from underfoot.case.section import Section, quantity_of
 from underfoot.case.surfaces import SurfaceRoughness
 from underfoot.compute.resolve import resolve_context
 from underfoot.core import SourcedValue
@@ -85,6 +89,23 @@ def _bounds(field):
         except Exception as error:  # its text is held
             said.append(str(error).partition(" is outside the physical range")[0] + "!")
     return f"{quantity.allowed()}: {'; '.join(said)}"
+
+
+SECTIONS = (
+    "underfoot.case.contact", "underfoot.case.contaminant", "underfoot.case.free_tread",
+    "underfoot.case.friction", "underfoot.case.motion", "underfoot.case.numerics",
+    "underfoot.case.parts", "underfoot.case.people", "underfoot.case.section",
+    "underfoot.case.shoe", "underfoot.case.sole", "underfoot.case.surfaces", "underfoot.case.wear",
+)  # fmt: skip
+"""Modules whose sections have keys; with ranges of ``underfoot.case.quantity``."""
+
+
+def test_every_module_of_sections_is_known():
+    def below(kind):
+        return {kind} | {each for one in kind.__subclasses__() for each in below(one)}
+
+    modules = {kind.__module__ for kind in below(Section)}
+    assert {name for name in modules if name.startswith("underfoot.case.")} == set(SECTIONS)
 
 
 def test_every_key(file_regression):

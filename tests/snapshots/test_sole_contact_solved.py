@@ -1,4 +1,10 @@
-"""Small soles solved in contact and film, and the parts that solve them: values and refusals."""
+"""Small soles solved in contact and film, and the parts that solve them: values and refusals.
+
+Of ``underfoot.sole_contact.film_balance``, ``underfoot.sole_contact.finite_element.compliance``,
+``underfoot.sole_contact.finite_element.elasticity``,
+``underfoot.sole_contact.finite_element.mesh``, ``underfoot.sole_contact.finite_element.plan``,
+``underfoot.sole_contact.long_waves``, ``underfoot.sole_contact.lug_inlet``.
+"""
 
 import math
 from dataclasses import replace

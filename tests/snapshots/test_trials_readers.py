@@ -1,4 +1,12 @@
-"""What every reader makes of a short export, and of the same export with one thing changed."""
+"""What every reader makes of a short export, and of the same export with one thing changed.
+
+Of ``underfoot.trials.readers.amti``, ``underfoot.trials.readers.bts``,
+``underfoot.trials.readers.columns``, ``underfoot.trials.readers.dflow``,
+``underfoot.trials.readers.formats``, ``underfoot.trials.readers.instrument_logs``,
+``underfoot.trials.readers.motive``, ``underfoot.trials.readers.pose_json``,
+``underfoot.trials.readers.tdms``, ``underfoot.trials.readers.text_exports``,
+``underfoot.trials.readers.xsens``, ``underfoot.trials.readers.xsensor``.
+"""
 
 import pytest
 

@@ -1,4 +1,7 @@
-"""Every test and model of the trials, on small samples that meet each of its branches."""
+"""Every test and model of the trials, on small samples that meet each of its branches.
+
+Of ``underfoot.trials.statistics.variance_components``.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,7 @@
-"""What studies are given: folders, conditions, sheets, edits, plans; and what is doubted."""
+"""What studies are given: folders, conditions, sheets, edits, plans; and what is doubted.
+
+Of ``underfoot.trials.study.conditions``.
+"""
 
 from dataclasses import replace
 from functools import cache

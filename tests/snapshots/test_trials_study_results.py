@@ -1,4 +1,8 @@
-"""Whole studies of made-up results: tables, tests, methods, doubts, figures and pages."""
+"""Whole studies of made-up results: tables, tests, methods, doubts, figures and pages.
+
+Of ``underfoot.trials.study.field_statistics``, ``underfoot.trials.study.study_tests``,
+``underfoot.trials.study.tables``.
+"""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,7 @@
-"""Steps and slips: a recorded walk and made-up ones, each with one thing changed."""
+"""Steps and slips: a recorded walk and made-up ones, each with one thing changed.
+
+Of ``underfoot.trials.walking.belts``.
+"""
 
 from dataclasses import replace
 from functools import cache

@@ -15,6 +15,7 @@ import psutil
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from short_work import fatal, fatal_once, squared, threads, wrong
 
 from underfoot.core import Cancelled, UnderfootError
 from underfoot.core import pool as pool_module
@@ -40,24 +41,6 @@ if __name__ == "__main__":
         (folder / "half").write_text("x")
         list(in_processes(work, [0, 1], 2))
 """
-
-
-def squared(number):
-    return number**2
-
-
-def fatal(number):
-    if number == 2:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return number
-
-
-def wrong(number):
-    raise ValueError(f"number {number}")
-
-
-def threads(_):
-    return os.environ["OMP_NUM_THREADS"]
 
 
 @pytest.mark.parametrize("processes", [1, 2])
@@ -213,13 +196,6 @@ def test_the_guard_restores_the_old_folder_of_a_process_killed_between_two_renam
     subprocess.run([sys.executable, "-c", script, str(tmp_path)], check=False)
     until(lambda: [path.name for path in tmp_path.iterdir()] == ["out"], 3)
     assert (Path(tmp_path) / "out" / "a").read_text() == "1"
-
-
-def fatal_once(place):
-    if not Path(place).exists():
-        Path(place).write_text("")
-        os.kill(os.getpid(), signal.SIGKILL)
-    return "second try"
 
 
 def test_a_dead_worker_is_replaced_and_its_item_tried_once_more(tmp_path):

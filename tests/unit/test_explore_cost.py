@@ -77,8 +77,9 @@ def whole(made, cost):
     return sum(cost(job) for k, point in enumerate(points) for job in made.jobs(k, point, 0))
 
 
-@pytest.mark.parametrize("steps", ["", ", steps = 5"])
-@pytest.mark.parametrize(("cost", "share"), [(fine, 1.0), (scattered, 0.9)])
+@pytest.mark.parametrize(
+    ("cost", "share", "steps"), [(fine, 1.0, ", steps = 5"), (scattered, 0.9, "")]
+)
 def test_ten_cases_tell_the_cost_of_a_study_within_a_fifth(made_up, tmp_path, cost, share, steps):
     made_up(cost)
     errors, inside = [], []

@@ -10,6 +10,8 @@ from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from source_trees import nodes, tree
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 SOURCE = REPOSITORY / "src"
 START = 0.2  # of the CPU time of NumPy, SciPy and pydantic that `import underfoot` may take
@@ -39,7 +41,7 @@ def files(folders=(SOURCE,)):
 @cache
 def import_statements(path):
     """Return the import statements of a file, at any depth."""
-    waiting, statements = [ast.parse(path.read_text(encoding="utf-8"))], []
+    waiting, statements = [tree(path)], []
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -220,7 +222,7 @@ def test_the_map_for_contributors_names_every_room():
 
 def names_of(path):
     """Yield the names of functions, their parameters and fields in a file, with their lines."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             yield node.name, node.lineno
             yield from (
@@ -237,7 +239,7 @@ def names_of(path):
 def test_a_public_class_has_its_name_alone():
     homes = {}
     for name, path in files().items():
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree(path).body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 homes.setdefault(node.name, []).append(name)
     assert {name: where for name, where in homes.items() if len(where) > 1} == {}
@@ -249,7 +251,7 @@ def test_no_function_of_a_module_is_a_lone_participle():
         f"{name}.{node.name}"
         for name, path in files().items()
         if not re.fullmatch(r"underfoot\.app\.work(_studies|_table)?", name)
-        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        for node in tree(path).body
         if isinstance(node, ast.FunctionDef)
         and re.fullmatch(
             r"(?!_read$)_?([a-z]+ed|told|made|drawn|found|shown|given|chosen|read|written|held|known|taken"

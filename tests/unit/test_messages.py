@@ -14,6 +14,7 @@ from string import Formatter
 import pytest
 
 import underfoot
+from source_trees import nodes
 from underfoot.core.remark import (
     Amount,
     Message,
@@ -42,9 +43,9 @@ def fields(code):
     return {name: [spec for other, spec in parts if other == name] for name, _ in parts}
 
 
-def faults(tree):
-    """Yield why a call of a tree makes a message of something else than a template and values."""
-    for call in ast.walk(tree):
+def faults(nodes):
+    """Yield why a call among nodes makes a message of something else than a template and values."""
+    for call in nodes:
         if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
             continue
         if (name := call.func.id) not in CODE_AT:
@@ -82,9 +83,9 @@ def takes_messages(annotation):
     return annotation is not None and "Message" in ast.unparse(annotation)
 
 
-def places_of_messages(tree):
+def places_of_messages(nodes):
     """Yield what stands where messages are asked for: arguments, fields, what functions return."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Call):
             yield from (each.value for each in node.keywords if each.arg in KINDS)
             if isinstance(node.func, ast.Attribute) and node.func.attr == "not_estimated":
@@ -97,15 +98,15 @@ def places_of_messages(tree):
             yield from (one.value for one in told if one.value)
 
 
-def texts_for_messages(tree):
-    return [line for place in places_of_messages(tree) for line in put_together(place)]
+def texts_for_messages(nodes):
+    return [line for place in places_of_messages(nodes) for line in put_together(place)]
 
 
 @cache
-def trees():
-    """Return the syntax tree of each file that makes messages, by its place."""
+def nodes_of_files():
+    """Return the nodes of each file that makes messages, by its place."""
     return {
-        place: ast.parse(file.read_text(encoding="utf-8"))
+        place: nodes(file)
         for file in sorted(SOURCE.rglob("*.py"))
         if (place := file.relative_to(SOURCE).as_posix()) != OWN[0]
     }
@@ -115,8 +116,8 @@ def trees():
 def codes():
     """Return every template of the package."""
     found = {}
-    for place, tree in trees().items():
-        for call in ast.walk(tree):
+    for place, within in nodes_of_files().items():
+        for call in within:
             if isinstance(call, ast.Call) and isinstance(call.func, ast.Name):
                 for code in call.args[CODE_AT.get(call.func.id, len(call.args)) :][:1]:
                     if isinstance(code, ast.Constant):
@@ -139,15 +140,18 @@ def codes():
     ],
 )
 def test_a_text_that_is_no_template_is_seen(text):
-    assert list(faults(ast.parse(text)))
+    assert list(faults(ast.walk(ast.parse(text))))
 
 
 def test_a_template_with_its_values_is_taken():
-    assert not list(faults(ast.parse('Remark(about, "{count} steps", count=len(steps))')))
+    code = 'Remark(about, "{count} steps", count=len(steps))'
+    assert not list(faults(ast.walk(ast.parse(code))))
 
 
 def test_every_message_is_a_template_and_its_values():
-    found = {place: list(faults(tree)) for place, tree in trees().items() if place not in OWN}
+    found = {
+        place: list(faults(each)) for place, each in nodes_of_files().items() if place not in OWN
+    }
     assert not {place: lines for place, lines in found.items() if lines}
 
 
@@ -163,16 +167,16 @@ def test_every_message_is_a_template_and_its_values():
     ],
 )
 def test_a_text_where_a_message_is_asked_for_is_seen(code):
-    assert texts_for_messages(ast.parse(code))
+    assert texts_for_messages(ast.walk(ast.parse(code)))
 
 
 def test_the_values_of_a_message_may_be_put_together():
     code = 'def why(n) -> Message: return Message("{size} N", size=[f"{one:.1f}" for one in n])'
-    assert not texts_for_messages(ast.parse(code))
+    assert not texts_for_messages(ast.walk(ast.parse(code)))
 
 
 def test_reasons_conventions_and_assumptions_are_messages():
-    found = {place: texts_for_messages(tree) for place, tree in trees().items()}
+    found = {place: texts_for_messages(each) for place, each in nodes_of_files().items()}
     assert not {place: lines for place, lines in found.items() if lines}
 
 

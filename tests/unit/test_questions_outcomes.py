@@ -10,6 +10,7 @@ import pytest
 from underfoot.case import Case
 from underfoot.compute.run import run
 from underfoot.core import ConvergenceError, SourcedValue, Status
+from underfoot.questions import outcomes as run_of_outcomes
 from underfoot.questions.outcomes import CaseOutcome, outcomes
 from underfoot.questions.sensitivity import (
     InputEffect,
@@ -40,6 +41,21 @@ def _own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("UNDERFOOT_CACHE", str(tmp_path))
 
 
+@pytest.fixture
+def each_solved_once(monkeypatch):
+    """Solve a case once for all tests; each counts and keeps outcomes for itself."""
+
+    def known(case, **options):
+        if case.hash not in SOLVED:
+            SOLVED[case.hash] = run(case, **options)
+        return SOLVED[case.hash]
+
+    monkeypatch.setattr("underfoot.questions.outcomes.run", known)
+
+
+SOLVED = {}
+
+
 def test_outcomes_are_those_of_single_runs_and_are_kept(case, tmp_path) -> None:
     softer = case.replace("shoe.material.shore_a", 60)
     seen: list[float] = []
@@ -58,13 +74,15 @@ def test_outcomes_are_those_of_single_runs_and_are_kept(case, tmp_path) -> None:
     assert seen[0] == 1.0
 
 
+@pytest.mark.usefixtures("each_solved_once")
 def test_a_case_that_can_not_even_start_leaves_the_others_their_numbers(case, monkeypatch) -> None:
+    solved = run_of_outcomes.run
     softer = case.replace("shoe.material.shore_a", 60)
 
     def fails_when_soft(one, **options):
         if one == softer:
             raise ConvergenceError("could not be solved", where="sole_contact")
-        return run(one, **options)
+        return solved(one, **options)
 
     monkeypatch.setattr("underfoot.questions.outcomes.run", fails_when_soft)
     found = outcomes([softer, case], quick=True)
@@ -83,6 +101,7 @@ def test_processes_change_nothing(case) -> None:
         assert left.scalars == right.scalars
 
 
+@pytest.mark.usefixtures("each_solved_once")
 def test_cancel_keeps_what_is_done(case, tmp_path) -> None:
     class Stop(Exception):
         pass
@@ -96,6 +115,7 @@ def test_cancel_keeps_what_is_done(case, tmp_path) -> None:
     assert len(list(tmp_path.rglob("*.npz"))) == 1
 
 
+@pytest.mark.usefixtures("each_solved_once")
 def test_outcome_survives_its_text(case) -> None:
     outcome = outcomes([case], quick=True, cached=False)[0]
     assert CaseOutcome.from_text(outcome.as_text()) == outcome
@@ -143,6 +163,7 @@ def test_only_inputs_in_use_are_varied(case) -> None:
     assert "interface.roughness_beyond_cutoff" not in fewer
 
 
+@pytest.mark.usefixtures("each_solved_once")
 def test_sensitivity_has_the_signs_of_physics(case) -> None:
     chosen = [
         OpenInput("contaminant.viscosity", 1.5, "t", ratio=True),

@@ -54,8 +54,9 @@ def test_a_spread_beyond_all_friction_is_an_answer_as_wide_as_it():
 
 
 def test_a_worn_shoe_is_not_taken_for_a_new_one_in_silence():
-    fine = {"numerics.quick_grid_spacing": "1.25 mm", "numerics.grid_spacing": "1.25 mm"}
+    fine = {"numerics.quick_grid_spacing": "2 mm", "numerics.grid_spacing": "2 mm"}
     worn = {"shoe": "work_shoe_full_tread", "shoe.wear.depth": "1.5 mm"}
+    worn |= {"shoe.tread.lug_width": "8 mm", "shoe.tread.channel_width": "4 mm"}
     case = dry(cof=0.5).replace(fine).replace(worn)
     series = wear_series(case, steps=2, mode="plane", band=False)
     assert series.points[0].measures.removed_depth == 0.0

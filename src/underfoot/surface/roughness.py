@@ -188,9 +188,8 @@ def level_roughness(
     reasons: dict[str, str] = {}
     rdq = bend = None
     by_section = standard.startswith("ISO 4287")
-    if short_cutoff is None or per_section < 9:
-        why = NO_CUTOFF if short_cutoff is None else "fewer than nine points in a section"
-        reasons |= {"rdq": why, "rms_curvature": why}
+    if short_cutoff is None:
+        reasons |= {"rdq": NO_CUTOFF, "rms_curvature": NO_CUTOFF}
     else:
         rdq, bend = (
             float(np.mean([_rms(f(p, profile.spacing)) for p in (pieces if by_section else [z])]))

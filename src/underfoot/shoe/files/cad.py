@@ -222,7 +222,7 @@ def _mesh_solid(path: Path, kind: str, unit: str) -> Mesh:
         remarks = [_inventory(kind, len(solids), len(faces))]
         meshed = _area(triangles)
         if meshed < (1 - _LOST_SHARE) * exact:
-            drawn, drawn_body = _drawing_triangles(shape, faces, number_of)
+            drawn, drawn_body = _drawing_triangles(shape, number_of)
             lost = 1 - max(meshed, _area(drawn)) / exact
             if _area(drawn) > meshed:
                 triangles, body = drawn, drawn_body
@@ -347,13 +347,14 @@ def _corners(
 
 
 def _drawing_triangles(
-    shape: Any, faces: list[Any], number_of: NDArray[np.int32]
+    shape: Any, number_of: NDArray[np.int32]
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """Return the triangles that OCC makes for drawing: coarse, but of every surface it can draw."""
-    shape.MakeTriangulation()
-    drawn = [np.asarray(face.Triangulation(), dtype=np.float32).reshape(-1, 3, 3) for face in faces]
-    counts = [each.shape[0] for each in drawn]
-    return np.ascontiguousarray(np.concatenate(drawn)), np.repeat(number_of, counts)
+    # corners as (x, y, z, number of face); the triangles of one face have no form in Python
+    drawn = shape._webgui_data()["Bezier_trig_points"][:3]
+    corners = np.stack([np.array(each, dtype=np.float32).reshape(-1, 4) for each in drawn], axis=1)
+    face = corners[:, 0, 3].astype(np.int64)
+    return np.ascontiguousarray(corners[:, :, :3]), number_of[face]
 
 
 def _area(triangles: NDArray[np.float32]) -> float:
